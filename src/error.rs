@@ -1,0 +1,127 @@
+//! What can go wrong, one enum, each variant carrying the values that made it.
+
+use thiserror::Error;
+
+/// Errors of the physical model. Nothing is changed by a call that returns one.
+#[derive(Debug, Clone, PartialEq, Error)]
+pub enum Error {
+    /// A single value that is not finite or lies outside its range.
+    #[error("{name} = {value}: allowed is {minimum} to {maximum} {unit}")]
+    OutOfRange {
+        /// Variable or parameter.
+        name: &'static str,
+        /// The refused value.
+        value: f64,
+        /// Smallest allowed value.
+        minimum: f64,
+        /// Largest allowed value.
+        maximum: f64,
+        /// Unit of all three.
+        unit: &'static str,
+    },
+    /// Two values, each allowed by itself, that cannot stand together.
+    #[error("{first} = {first_value} and {second} = {second_value}: {requirement}")]
+    Combination {
+        /// First variable.
+        first: &'static str,
+        /// Its value.
+        first_value: f64,
+        /// Second variable.
+        second: &'static str,
+        /// Its value.
+        second_value: f64,
+        /// What must hold between them.
+        requirement: &'static str,
+    },
+    /// No parameter has this name.
+    #[error("there is no parameter named {name:?}; `wheelrail describe` lists them")]
+    UnknownParameter {
+        /// The name that was looked up.
+        name: String,
+    },
+    /// The text is not a number of the parameter's kind.
+    #[error("{name} = {text:?} is not {expected}")]
+    NotANumber {
+        /// Parameter.
+        name: &'static str,
+        /// What was given.
+        text: String,
+        /// "a real number" or "an integer".
+        expected: &'static str,
+    },
+    /// The stiffness matrix has no Cholesky factor.
+    #[error("the stiffness matrix could not be factorised ({unknowns} unknowns): it is not positive definite")]
+    StiffnessNotPositiveDefinite {
+        /// Number of unknowns.
+        unknowns: usize,
+    },
+    /// The eigenvalue iteration of the depth operator failed.
+    #[error("the depth operator with {unknowns} unknowns could not be diagonalised")]
+    DepthBasis {
+        /// Number of unknowns.
+        unknowns: usize,
+    },
+    /// The normal contact problem did not reach its tolerance.
+    #[error("the normal contact solver ({solver}) stopped after {iterations} iterations at a residual of {residual:e} (relative; {tolerance:e} is required)")]
+    NormalNotConverged {
+        /// Name of the method.
+        solver: &'static str,
+        /// Iterations done.
+        iterations: usize,
+        /// Residual reached, relative to the peak pressure.
+        residual: f64,
+        /// Residual required.
+        tolerance: f64,
+    },
+    /// The friction problem did not reach its tolerance.
+    #[error("the tangential Newton solver stopped after {iterations} iterations at a residual of {residual:e} (relative; {tolerance:e} is required)")]
+    TangentialNotConverged {
+        /// Iterations done.
+        iterations: usize,
+        /// Residual reached, relative to the peak pressure.
+        residual: f64,
+        /// Residual required.
+        tolerance: f64,
+    },
+    /// Normal and tangential problem did not come to rest.
+    #[error("the coupling of normal and tangential contact stopped after {iterations} sweeps at a change of {residual:e} (relative; {tolerance:e} is required)")]
+    MechanicsNotConverged {
+        /// Sweeps done.
+        iterations: usize,
+        /// Last relative change of the tractions.
+        residual: f64,
+        /// Change required.
+        tolerance: f64,
+    },
+    /// The operator split between mechanics and heat did not come to rest.
+    #[error("the thermo-mechanical operator split stopped after {iterations} iterations at a change of {residual:e} (relative; {tolerance:e} is required)")]
+    SplitNotConverged {
+        /// Iterations done.
+        iterations: usize,
+        /// Last relative change.
+        residual: f64,
+        /// Change required.
+        tolerance: f64,
+    },
+    /// The scalar surface condition of one column has no bracketed root.
+    #[error("the surface heat condition at x = {position} m stopped after {iterations} Newton iterations at a residual of {residual:e} K")]
+    SurfaceHeatNotConverged {
+        /// Position of the column, [m].
+        position: f64,
+        /// Iterations done.
+        iterations: usize,
+        /// Residual reached, [K].
+        residual: f64,
+    },
+    /// The contact reaches the end of the window that was sized for `largest_load`.
+    #[error("the contact reaches the end of the contact window (half-width {half_width} m): largest_load = {largest_load} N is too small for this penetration, wear or thermal bulge")]
+    ContactLeavesWindow {
+        /// Half-width of the window, [m].
+        half_width: f64,
+        /// The load that sized it, [N].
+        largest_load: f64,
+    },
+}
+
+/// `Result` of the physical model.
+pub type Result<T> = std::result::Result<T, Error>;
