@@ -241,13 +241,7 @@ impl IntegerParameter {
 ///
 /// # Errors
 /// [`Error::OutOfRange`].
-pub fn check_range(
-    name: &'static str,
-    value: f64,
-    minimum: f64,
-    maximum: f64,
-    unit: &'static str,
-) -> Result<()> {
+pub fn check_range(name: &'static str, value: f64, minimum: f64, maximum: f64, unit: &'static str) -> Result<()> {
     if value >= minimum && value <= maximum {
         Ok(())
     } else {
@@ -425,33 +419,206 @@ macro_rules! table_point {
 
 /// The real parameters in the order in which they are listed.
 pub const REAL_PARAMETERS: &[RealParameter] = &[
-    real!("prescribed_penetration", "m", 1e-4, -1e-2, 1e-2, false,
-        "Penetration of the undeformed wheel into the undeformed rail where control is penetration", prescribed_penetration),
-    real!("largest_load", "N", 120e3, 1.0, 1e7, false,
-        "Largest normal load: it sizes the contact window, and a larger load is refused", largest_load),
-    real!("wheel_radius", "m", 0.46, 0.05, 5.0, false, "Rolling radius of the wheel", wheel_radius),
-    real!("strip_height", "m", 1.0, 0.05, 10.0, false, "Height of the elastic strip that stands for the rail", strip_height),
-    real!("strip_half_length", "m", 2.0, 0.1, 20.0, false, "Half-length of the elastic strip that stands for the rail", strip_half_length),
-    real!("contact_width", "m", 0.01, 1e-4, 1.0, false, "Width of the equivalent line contact", contact_width),
-    real!("lame_lambda", "Pa", 11.66e10, 1e5, 1e13, false, "First Lame coefficient of the rail", lame_lambda),
-    real!("shear_modulus", "Pa", 8.2e10, 1e5, 1e13, false, "Shear modulus (second Lame coefficient) of the rail", shear_modulus),
-    real!("density", "kg/m3", 7.8e3, 1.0, 1e5, false, "Density of the rail", density),
-    real!("heat_capacity", "J/(kg.K)", 460.0, 1.0, 1e5, false, "Specific heat capacity of the rail", heat_capacity),
-    real!("thermal_diffusivity", "m2/s", 1.44e-5, 1e-8, 1e-2, false, "Thermal diffusivity of the rail", thermal_diffusivity),
-    real!("thermal_expansion", "1/K", 12e-6, 0.0, 1e-3, false,
-        "Coefficient of linear thermal expansion of the rail; 0 switches the thermal bulge off", thermal_expansion),
-    real!("heat_partition", "1", 0.5, 0.0, 1.0, false, "Share of the frictional heat that enters the rail", heat_partition),
-    real!("contact_thermal_resistance", "K.N.s/J", 1000.0, 1e-3, 1e12, false,
-        "Thermal resistance of the contact to the wheel times pressure; 1e12 switches the conduction off", contact_thermal_resistance),
-    real!("wear_coefficient", "1/Pa", 0.5e-12, 0.0, 1e-9, false, "Archard wear coefficient; 0 switches wear off", wear_coefficient),
-    real!("slip_regularisation", "m/s", 1e-3, 1e-6, 1.0, true,
-        "Slip speed at which the regularised Coulomb law reaches half the friction bound", slip_regularisation),
-    real!("friction_cold", "1", 0.45, 0.0, 2.0, true, "Friction coefficient of the cold contact", friction_cold),
-    real!("friction_hot", "1", 0.25, 0.0, 2.0, true, "Friction coefficient of the hot contact", friction_hot),
-    real!("friction_temperature_cold", "K", 323.15, 1.0, 5000.0, true,
-        "Absolute temperature up to which the friction coefficient is friction_cold", friction_temperature_cold),
-    real!("friction_temperature_hot", "K", 423.15, 1.0, 5000.0, true,
-        "Absolute temperature from which on the friction coefficient is friction_hot", friction_temperature_hot),
+    real!(
+        "prescribed_penetration",
+        "m",
+        1e-4,
+        -1e-2,
+        1e-2,
+        false,
+        "Penetration of the undeformed wheel into the undeformed rail where control is penetration",
+        prescribed_penetration
+    ),
+    real!(
+        "largest_load",
+        "N",
+        120e3,
+        1.0,
+        1e7,
+        false,
+        "Largest normal load: it sizes the contact window, and a larger load is refused",
+        largest_load
+    ),
+    real!(
+        "wheel_radius",
+        "m",
+        0.46,
+        0.05,
+        5.0,
+        false,
+        "Rolling radius of the wheel",
+        wheel_radius
+    ),
+    real!(
+        "strip_height",
+        "m",
+        1.0,
+        0.05,
+        10.0,
+        false,
+        "Height of the elastic strip that stands for the rail",
+        strip_height
+    ),
+    real!(
+        "strip_half_length",
+        "m",
+        2.0,
+        0.1,
+        20.0,
+        false,
+        "Half-length of the elastic strip that stands for the rail",
+        strip_half_length
+    ),
+    real!(
+        "contact_width",
+        "m",
+        0.01,
+        1e-4,
+        1.0,
+        false,
+        "Width of the equivalent line contact",
+        contact_width
+    ),
+    real!(
+        "lame_lambda",
+        "Pa",
+        11.66e10,
+        1e5,
+        1e13,
+        false,
+        "First Lame coefficient of the rail",
+        lame_lambda
+    ),
+    real!(
+        "shear_modulus",
+        "Pa",
+        8.2e10,
+        1e5,
+        1e13,
+        false,
+        "Shear modulus (second Lame coefficient) of the rail",
+        shear_modulus
+    ),
+    real!(
+        "density",
+        "kg/m3",
+        7.8e3,
+        1.0,
+        1e5,
+        false,
+        "Density of the rail",
+        density
+    ),
+    real!(
+        "heat_capacity",
+        "J/(kg.K)",
+        460.0,
+        1.0,
+        1e5,
+        false,
+        "Specific heat capacity of the rail",
+        heat_capacity
+    ),
+    real!(
+        "thermal_diffusivity",
+        "m2/s",
+        1.44e-5,
+        1e-8,
+        1e-2,
+        false,
+        "Thermal diffusivity of the rail",
+        thermal_diffusivity
+    ),
+    real!(
+        "thermal_expansion",
+        "1/K",
+        12e-6,
+        0.0,
+        1e-3,
+        false,
+        "Coefficient of linear thermal expansion of the rail; 0 switches the thermal bulge off",
+        thermal_expansion
+    ),
+    real!(
+        "heat_partition",
+        "1",
+        0.5,
+        0.0,
+        1.0,
+        false,
+        "Share of the frictional heat that enters the rail",
+        heat_partition
+    ),
+    real!(
+        "contact_thermal_resistance",
+        "K.N.s/J",
+        1000.0,
+        1e-3,
+        1e12,
+        false,
+        "Thermal resistance of the contact to the wheel times pressure; 1e12 switches the conduction off",
+        contact_thermal_resistance
+    ),
+    real!(
+        "wear_coefficient",
+        "1/Pa",
+        0.5e-12,
+        0.0,
+        1e-9,
+        false,
+        "Archard wear coefficient; 0 switches wear off",
+        wear_coefficient
+    ),
+    real!(
+        "slip_regularisation",
+        "m/s",
+        1e-3,
+        1e-6,
+        1.0,
+        true,
+        "Slip speed at which the regularised Coulomb law reaches half the friction bound",
+        slip_regularisation
+    ),
+    real!(
+        "friction_cold",
+        "1",
+        0.45,
+        0.0,
+        2.0,
+        true,
+        "Friction coefficient of the cold contact",
+        friction_cold
+    ),
+    real!(
+        "friction_hot",
+        "1",
+        0.25,
+        0.0,
+        2.0,
+        true,
+        "Friction coefficient of the hot contact",
+        friction_hot
+    ),
+    real!(
+        "friction_temperature_cold",
+        "K",
+        323.15,
+        1.0,
+        5000.0,
+        true,
+        "Absolute temperature up to which the friction coefficient is friction_cold",
+        friction_temperature_cold
+    ),
+    real!(
+        "friction_temperature_hot",
+        "K",
+        423.15,
+        1.0,
+        5000.0,
+        true,
+        "Absolute temperature from which on the friction coefficient is friction_hot",
+        friction_temperature_hot
+    ),
     table_point!(temperature 0 "friction_table.temperature[1]"),
     table_point!(temperature 1 "friction_table.temperature[2]"),
     table_point!(temperature 2 "friction_table.temperature[3]"),
@@ -493,15 +660,12 @@ impl Parameters {
 
     /// Hertz half-length a = √(4 N r₀ / (π b E*)) of a line contact, [m] (Johnson, Contact Mechanics, 4.43).
     pub fn hertz_half_length(&self, load: f64) -> f64 {
-        (4.0 * load * self.wheel_radius
-            / (std::f64::consts::PI * self.contact_width * self.contact_modulus()))
-        .sqrt()
+        (4.0 * load * self.wheel_radius / (std::f64::consts::PI * self.contact_width * self.contact_modulus())).sqrt()
     }
 
     /// Hertz peak pressure p₀ = 2 N / (π a b), [Pa] (Johnson, Contact Mechanics, 4.45).
     pub fn hertz_peak_pressure(&self, load: f64) -> f64 {
-        2.0 * load
-            / (std::f64::consts::PI * self.hertz_half_length(load) * self.contact_width)
+        2.0 * load / (std::f64::consts::PI * self.hertz_half_length(load) * self.contact_width)
     }
 
     /// Volumetric heat capacity ρ c_p, [J/(m³ K)].
@@ -651,8 +815,6 @@ impl Parameters {
             (entry.set)(self, value);
             return Ok(());
         }
-        Err(Error::UnknownParameter {
-            name: name.to_owned(),
-        })
+        Err(Error::UnknownParameter { name: name.to_owned() })
     }
 }

@@ -230,7 +230,13 @@ impl Inputs {
         }
         let largest = parameters.largest_speed();
         let speed = self.motion(parameters).rolling_speed;
-        check_range("rolling speed V of wheel_speed and creepage", speed, -largest, largest, "m/s")
+        check_range(
+            "rolling speed V of wheel_speed and creepage",
+            speed,
+            -largest,
+            largest,
+            "m/s",
+        )
     }
 
     /// The motion that the inputs define: V and ω r₀ − V.
@@ -245,7 +251,10 @@ impl Inputs {
             SlipSource::Creepage => rolling_speed * self.creepage,
             SlipSource::VehicleSpeed => circumferential - rolling_speed,
         };
-        Motion { rolling_speed, rigid_slip }
+        Motion {
+            rolling_speed,
+            rigid_slip,
+        }
     }
 
     /// The inputs after `time` at the given rates of change.

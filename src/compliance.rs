@@ -1,0 +1,177 @@
+//! Factorise once, apply unit loads, keep the dense maps that a step uses (section 4.1 of the paper).
+//!
+//! With u the surface displacement of the contact nodes and f the nodal forces on the rail,
+//! u(V) = C(V) f + C_θ θ, C(V) = C(0) + ρV² Zᵀ K₁ Z, where the columns of Z are the fields of the unit loads and K₁ is
+//! the convective inertia form. The error of C(V) is of order (V/c_R)⁴; C_θ is taken at V = 0, an error of order
+//! (V/c_R)² in the thermal displacement alone.
+//!
+//! Everything is scaled: tractions by p₀, displacements by a²/r₀ of the largest load. Raw compliances of
+//! 1e-11 m/N beside a 1 would wreck the row of the load constraint.
+
+use crate::elasticity::{Elasticity, Fields};
+use crate::error::Result;
+use crate::mesh::Mesh;
+use crate::parameters::Parameters;
+use nalgebra::DMatrix;
+
+/// The units in which the contact problem is solved.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Scales {
+    /// Hertz peak pressure p₀ at the largest load, [Pa].
+    pub pressure: f64,
+    /// a²/r₀ at the largest load, [m].
+    pub displacement: f64,
+}
+
+impl Scales {
+    /// Scales of the given parameters.
+    pub fn new(parameters: &Parameters) -> Scales {
+        let half_length = parameters.hertz_half_length(parameters.largest_load);
+        Scales {
+            pressure: parameters.hertz_peak_pressure(parameters.largest_load),
+            displacement: half_length * half_length / parameters.wheel_radius,
+        }
+    }
+}
+
+/// Displacement of the n contact nodes per traction at the n contact nodes, all n × n and scaled. The first word is
+/// the displacement (normal is upward), the second the traction on the rail.
+#[derive(Debug, Clone)]
+pub struct Compliance {
+    /// C_nn.
+    pub normal_normal: DMatrix<f64>,
+    /// C_nt.
+    pub normal_tangential: DMatrix<f64>,
+    /// C_tn = C_ntᵀ.
+    pub tangential_normal: DMatrix<f64>,
+    /// C_tt.
+    pub tangential_tangential: DMatrix<f64>,
+}
+
+/// The compliance at rest and its derivative with respect to ρV², [1/Pa].
+#[derive(Debug, Clone)]
+pub struct RollingCompliance {
+    /// C(0).
+    pub at_rest: Compliance,
+    /// dC/d(ρV²), [1/Pa].
+    pub inertia: Compliance,
+}
+
+/// Thermal displacement of the contact nodes: row `i` (along x₁) and `n + i` (along x₂), scaled, per kelvin at every
+/// node of the mesh (column `node`). 2n × nodes.
+pub type ThermalDisplacement = DMatrix<f64>;
+
+impl Compliance {
+    /// Splits the 2n × 2n matrix of all displacements per force into its four blocks.
+    fn from_blocks(all: &DMatrix<f64>, coupling: bool) -> Compliance {
+        let n = all.nrows() / 2;
+        let mixed = if coupling { 1.0 } else { 0.0 };
+        Compliance {
+            normal_normal: all.view((n, n), (n, n)).into_owned(),
+            normal_tangential: all.view((n, 0), (n, n)).into_owned() * mixed,
+            tangential_normal: all.view((0, n), (n, n)).into_owned() * mixed,
+            tangential_tangential: all.view((0, 0), (n, n)).into_owned(),
+        }
+    }
+}
+
+impl RollingCompliance {
+    /// C(V) for ρV² = `rho_v2` into `moving`. All matrices are n × n.
+    pub fn at_speed(&self, rho_v2: f64, moving: &mut Compliance) {
+        let combine = |rest: &DMatrix<f64>, inertia: &DMatrix<f64>, out: &mut DMatrix<f64>| {
+            for ((out, rest), inertia) in out.iter_mut().zip(rest.iter()).zip(inertia.iter()) {
+                *out = rest + rho_v2 * inertia;
+            }
+        };
+        let (rest, inertia) = (&self.at_rest, &self.inertia);
+        combine(&rest.normal_normal, &inertia.normal_normal, &mut moving.normal_normal);
+        combine(
+            &rest.normal_tangential,
+            &inertia.normal_tangential,
+            &mut moving.normal_tangential,
+        );
+        combine(
+            &rest.tangential_normal,
+            &inertia.tangential_normal,
+            &mut moving.tangential_normal,
+        );
+        combine(
+            &rest.tangential_tangential,
+            &inertia.tangential_tangential,
+            &mut moving.tangential_tangential,
+        );
+    }
+}
+
+/// The unit-load fields at the contact nodes and what follows from them: compliance and thermal displacement.
+///
+/// # Errors
+/// [`crate::error::Error::StiffnessNotPositiveDefinite`].
+pub fn build(
+    mesh: &Mesh,
+    parameters: &Parameters,
+    scales: &Scales,
+) -> Result<(RollingCompliance, ThermalDisplacement)> {
+    let rail = Elasticity::new(mesh, parameters.lame_lambda, parameters.shear_modulus, 0.0)?;
+    let window = mesh.first_contact..mesh.first_contact + mesh.contact_nodes;
+    let fields = rail.unit_load_fields(mesh, window);
+
+    // A nodal force is the traction times the tributary length.
+    let traction = scales.pressure * mesh.contact_spacing() / scales.displacement;
+    let coupling = parameters.normal_tangential_coupling;
+    let at_rest = surface_displacement(mesh, &fields) * traction;
+    let inertia = inertia_form(&rail, &fields) * traction;
+    let thermal_stress = parameters.thermal_expansion * (3.0 * parameters.lame_lambda + 2.0 * parameters.shear_modulus);
+    let thermal = thermal_displacement(&rail, &fields) * (thermal_stress / scales.displacement);
+    Ok((
+        RollingCompliance {
+            at_rest: Compliance::from_blocks(&at_rest, coupling),
+            inertia: Compliance::from_blocks(&inertia, coupling),
+        },
+        thermal,
+    ))
+}
+
+/// The fields at the contact nodes: 2n × 2n, symmetric.
+fn surface_displacement(mesh: &Mesh, fields: &Fields) -> DMatrix<f64> {
+    let n = mesh.contact_nodes;
+    let dof = |i: usize| 2 * mesh.node(mesh.contact_column(i % n), 0) + i / n;
+    // Reciprocity holds to round-off; the mean makes it exact.
+    DMatrix::from_fn(2 * n, 2 * n, |i, j| 0.5 * (fields[(dof(i), j)] + fields[(dof(j), i)]))
+}
+
+/// Zᵀ K₁ Z of the fields Z: 2n × 2n, symmetric.
+fn inertia_form(rail: &Elasticity, fields: &Fields) -> DMatrix<f64> {
+    let mut image = Fields::zeros(fields.nrows(), fields.ncols());
+    for field in 0..fields.ncols() {
+        for node in 0..fields.nrows() / 2 {
+            let (mut x, mut y) = (0.0, 0.0);
+            for (other, value) in rail.inertia.row(node) {
+                x += value * fields[(2 * other, field)];
+                y += value * fields[(2 * other + 1, field)];
+            }
+            image[(2 * node, field)] = x;
+            image[(2 * node + 1, field)] = y;
+        }
+    }
+    let form = fields.transpose() * image;
+    DMatrix::from_fn(fields.ncols(), fields.ncols(), |i, j| {
+        0.5 * (form[(i, j)] + form[(j, i)])
+    })
+}
+
+/// Adjoint of the thermal load: the displacement at a contact node caused by a unit thermal stress at a node is the
+/// work of that stress on the contact node's unit-load field. 2n × nodes.
+fn thermal_displacement(rail: &Elasticity, fields: &Fields) -> DMatrix<f64> {
+    let nodes = fields.nrows() / 2;
+    let mut map = DMatrix::zeros(nodes, fields.ncols());
+    for field in 0..fields.ncols() {
+        for node in 0..nodes {
+            let (x, y) = (fields[(2 * node, field)], fields[(2 * node + 1, field)]);
+            for ((heated, along_x), (_, along_y)) in rail.thermal_load_x.row(node).zip(rail.thermal_load_y.row(node)) {
+                map[(heated, field)] += along_x * x + along_y * y;
+            }
+        }
+    }
+    map.transpose()
+}

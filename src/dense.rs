@@ -1,0 +1,158 @@
+//! Small dense kernels on caller-owned buffers, column-major: a step factorises and solves without allocating.
+
+use nalgebra::DMatrix;
+
+/// `out += factor · A x`, skipping zero entries of `x`.
+pub fn multiply_add(matrix: &DMatrix<f64>, x: &[f64], factor: f64, out: &mut [f64]) {
+    let rows = matrix.nrows();
+    for (column, &x) in matrix.as_slice().chunks_exact(rows).zip(x) {
+        if x != 0.0 {
+            let x = factor * x;
+            for (out, a) in out.iter_mut().zip(column) {
+                *out += a * x;
+            }
+        }
+    }
+}
+
+/// Cholesky factor L of a symmetric positive definite n × n matrix whose lower triangle is in `a`; L replaces it.
+/// False where the matrix is not positive definite.
+pub fn cholesky(a: &mut [f64], n: usize) -> bool {
+    for j in 0..n {
+        // Left-looking by columns: the inner loop runs down a contiguous column.
+        for k in 0..j {
+            let factor = a[k * n + j];
+            let (left, right) = a.split_at_mut(j * n);
+            let source = &left[k * n + j..k * n + n];
+            for (target, source) in right[j..n].iter_mut().zip(source) {
+                *target -= factor * source;
+            }
+        }
+        let pivot = a[j * n + j];
+        if pivot.is_nan() || pivot <= 0.0 {
+            return false;
+        }
+        let scale = 1.0 / pivot.sqrt();
+        for value in &mut a[j * n + j..j * n + n] {
+            *value *= scale;
+        }
+    }
+    true
+}
+
+/// Solves L Lᵀ x = b in place.
+pub fn cholesky_solve(l: &[f64], n: usize, b: &mut [f64]) {
+    for j in 0..n {
+        let column = &l[j * n + j..j * n + n];
+        let (head, tail) = b[j..n].split_at_mut(1);
+        head[0] /= column[0];
+        for (b, l) in tail.iter_mut().zip(&column[1..]) {
+            *b -= l * head[0];
+        }
+    }
+    for j in (0..n).rev() {
+        let column = &l[j * n + j..j * n + n];
+        let known: f64 = column[1..].iter().zip(&b[j + 1..n]).map(|(l, b)| l * b).sum();
+        b[j] = (b[j] - known) / column[0];
+    }
+}
+
+/// LU factors with row pivoting of the n × n matrix in `a`, in place. False where it is singular.
+pub fn lu(a: &mut [f64], n: usize, pivots: &mut [usize]) -> bool {
+    for j in 0..n {
+        let mut pivot = j;
+        for i in j + 1..n {
+            if a[j * n + i].abs() > a[j * n + pivot].abs() {
+                pivot = i;
+            }
+        }
+        pivots[j] = pivot;
+        if a[j * n + pivot].is_nan() || a[j * n + pivot] == 0.0 {
+            return false;
+        }
+        if pivot != j {
+            for k in 0..n {
+                a.swap(k * n + j, k * n + pivot);
+            }
+        }
+        let scale = 1.0 / a[j * n + j];
+        for value in &mut a[j * n + j + 1..j * n + n] {
+            *value *= scale;
+        }
+        let (left, right) = a.split_at_mut((j + 1) * n);
+        let multipliers = &left[j * n + j + 1..j * n + n];
+        for column in right.chunks_exact_mut(n) {
+            let factor = column[j];
+            if factor != 0.0 {
+                for (target, l) in column[j + 1..].iter_mut().zip(multipliers) {
+                    *target -= factor * l;
+                }
+            }
+        }
+    }
+    true
+}
+
+/// Solves A x = b in place with the factors of [`lu`].
+pub fn lu_solve(a: &[f64], n: usize, pivots: &[usize], b: &mut [f64]) {
+    for (j, &pivot) in pivots[..n].iter().enumerate() {
+        b.swap(j, pivot);
+    }
+    for j in 0..n {
+        let (head, tail) = b[j..n].split_at_mut(1);
+        for (b, l) in tail.iter_mut().zip(&a[j * n + j + 1..j * n + n]) {
+            *b -= l * head[0];
+        }
+    }
+    for j in (0..n).rev() {
+        let (head, tail) = b[..=j].split_at_mut(j);
+        tail[0] /= a[j * n + j];
+        for (b, u) in head.iter_mut().zip(&a[j * n..j * n + j]) {
+            *b -= u * tail[0];
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn residual(matrix: &DMatrix<f64>, x: &[f64], b: &[f64]) -> f64 {
+        let mut r = b.to_vec();
+        multiply_add(matrix, x, -1.0, &mut r);
+        r.iter().fold(0.0, |m, v| v.abs().max(m))
+    }
+
+    proptest! {
+        #[test]
+        fn factorisations_solve(entries in prop::collection::vec(-1.0..1.0, 144), b in prop::collection::vec(-1.0..1.0, 12)) {
+            let n = 12;
+            let a: DMatrix<f64> = DMatrix::from_vec(n, n, entries);
+            let spd: DMatrix<f64> = &a * a.transpose() + DMatrix::identity(n, n);
+            let mut factor = spd.as_slice().to_vec();
+            prop_assert!(cholesky(&mut factor, n));
+            let mut x = b.clone();
+            cholesky_solve(&factor, n, &mut x);
+            // Condition number at most 1 + ‖A‖² ≤ 145.
+            prop_assert!(residual(&spd, &x, &b) < 1e-12);
+
+            let general: DMatrix<f64> = a + DMatrix::identity(n, n) * 4.0;
+            let mut factor = general.as_slice().to_vec();
+            let mut pivots = vec![0; n];
+            if lu(&mut factor, n, &mut pivots) {
+                let mut x = b.clone();
+                lu_solve(&factor, n, &pivots, &mut x);
+                let size = x.iter().fold(1.0, |m: f64, v| v.abs().max(m));
+                prop_assert!(residual(&general, &x, &b) < 1e-11 * size);
+            }
+        }
+    }
+
+    #[test]
+    fn indefinite_and_singular_matrices_are_reported() {
+        assert!(!cholesky(&mut [1.0, 2.0, 2.0, 1.0], 2));
+        assert!(!cholesky(&mut [f64::NAN], 1));
+        assert!(!lu(&mut [1.0, 2.0, 2.0, 4.0], 2, &mut [0; 2]));
+    }
+}

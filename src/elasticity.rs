@@ -1,0 +1,167 @@
+//! P1 plane-strain elasticity (26)–(27): stiffness, convective inertia, thermal load, and the factorised solve.
+//!
+//! Weak form: ∫ σ(u):ε(v) − ρV² ∫ u,₁·v,₁ = α(3λ+2γ) ∫ θ div v + ∫_Γ F·v, u = 0 on Γ₀. The three bilinear forms are
+//! assembled apart, because a step changes V and θ but never factorises.
+
+use crate::error::{Error, Result};
+use crate::mesh::Mesh;
+use faer::linalg::solvers::Solve;
+use faer::sparse::linalg::solvers::Llt;
+use faer::sparse::{SparseColMat, Triplet};
+use faer::{Mat, Side};
+
+/// Displacement fields, one to a column: entry `(2 * node + direction, field)` in [m] (0 along x₁, 1 along x₂).
+pub type Fields = Mat<f64>;
+
+/// A sparse matrix between nodes, by rows.
+#[derive(Debug, Clone)]
+pub struct NodeMatrix {
+    starts: Vec<usize>,
+    columns: Vec<usize>,
+    values: Vec<f64>,
+}
+
+impl NodeMatrix {
+    /// Sums element contributions `(row, column, value)`.
+    fn assemble(nodes: usize, entries: &[(usize, usize, f64)]) -> NodeMatrix {
+        let mut per_row = vec![Vec::<(usize, f64)>::with_capacity(9); nodes];
+        for &(row, column, value) in entries {
+            let row = &mut per_row[row];
+            match row.iter_mut().find(|(c, _)| *c == column) {
+                Some((_, sum)) => *sum += value,
+                None => row.push((column, value)),
+            }
+        }
+        let mut matrix = NodeMatrix {
+            starts: vec![0],
+            columns: Vec::new(),
+            values: Vec::new(),
+        };
+        for row in per_row {
+            matrix.columns.extend(row.iter().map(|(c, _)| c));
+            matrix.values.extend(row.iter().map(|(_, v)| v));
+            matrix.starts.push(matrix.columns.len());
+        }
+        matrix
+    }
+
+    /// Non-zero entries `(column, value)` of a row.
+    pub fn row(&self, row: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
+        let range = self.starts[row]..self.starts[row + 1];
+        range.map(move |k| (self.columns[k], self.values[k]))
+    }
+}
+
+/// The assembled forms of the rail.
+pub struct Elasticity {
+    /// ∫ N_i,₁ N_j,₁: the convective inertia is −ρV² times this, the same for both directions.
+    pub inertia: NodeMatrix,
+    /// ∫ N_i,₁ N_j: load along x₁ at node i of a unit thermal stress at node j.
+    pub thermal_load_x: NodeMatrix,
+    /// ∫ N_i,₂ N_j: the same along x₂.
+    pub thermal_load_y: NodeMatrix,
+    factor: Llt<usize, f64>,
+    /// Free unknown of each `2 * node + direction`, `usize::MAX` where clamped.
+    unknown: Vec<usize>,
+    unknowns: usize,
+}
+
+/// Gradients of the three hat functions of a triangle, [1/m], and its area, [m²].
+fn gradients(points: [[f64; 2]; 3]) -> ([[f64; 2]; 3], f64) {
+    let [p, q, r] = points;
+    let twice_area = (q[0] - p[0]) * (r[1] - p[1]) - (r[0] - p[0]) * (q[1] - p[1]);
+    let side = |a: [f64; 2], b: [f64; 2]| [(a[1] - b[1]) / twice_area, (b[0] - a[0]) / twice_area];
+    ([side(q, r), side(r, p), side(p, q)], 0.5 * twice_area)
+}
+
+impl Elasticity {
+    /// Assembles and factorises. `rho_v2` = ρV² enters the factorised matrix itself; the model uses 0 and carries
+    /// V² to first order ([`crate::compliance`]), the tests use the whole form to bound that error.
+    ///
+    /// # Errors
+    /// [`Error::StiffnessNotPositiveDefinite`]: above the Rayleigh speed the form is not coercive.
+    pub fn new(mesh: &Mesh, lambda: f64, shear: f64, rho_v2: f64) -> Result<Elasticity> {
+        let nodes = mesh.nodes();
+        let mut unknown = vec![usize::MAX; 2 * nodes];
+        let mut unknowns = 0;
+        for node in (0..nodes).filter(|&n| !mesh.is_clamped(n)) {
+            for direction in 0..2 {
+                unknown[2 * node + direction] = unknowns;
+                unknowns += 1;
+            }
+        }
+
+        let triangles = mesh.triangles();
+        let mut stiffness = Vec::with_capacity(21 * triangles.len());
+        let mut inertia = Vec::with_capacity(9 * triangles.len());
+        let mut load_x = Vec::with_capacity(9 * triangles.len());
+        let mut load_y = Vec::with_capacity(9 * triangles.len());
+        for triangle in &triangles {
+            let (grad, area) = gradients(triangle.nodes.map(|n| mesh.coordinates(n)));
+            let measure = area * triangle.weight;
+            for (i, &node_i) in triangle.nodes.iter().enumerate() {
+                for (j, &node_j) in triangle.nodes.iter().enumerate() {
+                    inertia.push((node_i, node_j, measure * grad[i][0] * grad[j][0]));
+                    load_x.push((node_i, node_j, measure / 3.0 * grad[i][0]));
+                    load_y.push((node_i, node_j, measure / 3.0 * grad[i][1]));
+                    for a in 0..2 {
+                        for b in 0..2 {
+                            let (row, column) = (unknown[2 * node_i + a], unknown[2 * node_j + b]);
+                            if row == usize::MAX || column == usize::MAX || row < column {
+                                continue;
+                            }
+                            // σ(u):ε(v) = λ div u div v + 2γ ε(u):ε(v)
+                            let mut value = lambda * grad[i][a] * grad[j][b] + shear * grad[i][b] * grad[j][a];
+                            if a == b {
+                                value += shear * (grad[i][0] * grad[j][0] + grad[i][1] * grad[j][1])
+                                    - rho_v2 * grad[i][0] * grad[j][0];
+                            }
+                            stiffness.push(Triplet::new(row, column, measure * value));
+                        }
+                    }
+                }
+            }
+        }
+        let failed = Error::StiffnessNotPositiveDefinite { unknowns };
+        let matrix = SparseColMat::<usize, f64>::try_new_from_triplets(unknowns, unknowns, &stiffness)
+            .map_err(|_| failed.clone())?;
+        let factor = matrix.sp_cholesky(Side::Lower).map_err(|_| failed)?;
+        Ok(Elasticity {
+            inertia: NodeMatrix::assemble(nodes, &inertia),
+            thermal_load_x: NodeMatrix::assemble(nodes, &load_x),
+            thermal_load_y: NodeMatrix::assemble(nodes, &load_y),
+            factor,
+            unknown,
+            unknowns,
+        })
+    }
+
+    /// Displacements under nodal loads, [N/m per metre of width]: `loads` and result are [`Fields`].
+    pub fn solve(&self, loads: &Fields) -> Fields {
+        let mut reduced = Mat::zeros(self.unknowns, loads.ncols());
+        for field in 0..loads.ncols() {
+            for (dof, &unknown) in self.unknown.iter().enumerate() {
+                if unknown != usize::MAX {
+                    reduced[(unknown, field)] = loads[(dof, field)];
+                }
+            }
+        }
+        self.factor.solve_in_place(reduced.as_mut());
+        Mat::from_fn(loads.nrows(), loads.ncols(), |dof, field| match self.unknown[dof] {
+            usize::MAX => 0.0,
+            unknown => reduced[(unknown, field)],
+        })
+    }
+
+    /// The fields of unit loads at the surface of the given columns, along x₁ for all of them, then along x₂.
+    pub fn unit_load_fields(&self, mesh: &Mesh, columns: std::ops::Range<usize>) -> Fields {
+        let n = columns.len();
+        let mut loads = Mat::zeros(2 * mesh.nodes(), 2 * n);
+        for (i, column) in columns.enumerate() {
+            let node = mesh.node(column, 0);
+            loads[(2 * node, i)] = 1.0;
+            loads[(2 * node + 1, n + i)] = 1.0;
+        }
+        self.solve(&loads)
+    }
+}

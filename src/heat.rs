@@ -1,0 +1,279 @@
+//! The temperature field (19), (23): transient, carried through the columns of the mesh, conducted in depth.
+//!
+//! Per column, P1 in depth with consistent mass M and stiffness K:
+//! M (θ − θⁿ)/Δt + |V|/Δx M (θ − θ_upstream) + κ K θ = e_surface q/(ρ c_p), θ = 0 at the bottom.
+//! In the eigenbasis K φ = λ M φ, φᵀ M φ = 1, a column is a set of independent scalars
+//! a = (aⁿ/Δt + |V|/Δx a_upstream + φ(0) q/(ρ c_p)) / (1/Δt + |V|/Δx + κ λ), so its surface temperature is linear in
+//! the surface flux q, and the surface condition (23) is one scalar equation a column.
+
+use crate::error::{Error, Result};
+use crate::friction;
+use crate::parameters::Parameters;
+use crate::transport::Upwind;
+use nalgebra::{Cholesky, DMatrix, SymmetricEigen};
+
+/// Eigenbasis of the depth operator, m = rows − 1 modes.
+#[derive(Debug, Clone)]
+pub struct DepthBasis {
+    /// λ, ascending, [1/m²].
+    pub eigenvalues: Vec<f64>,
+    /// Value of each mode at the surface, φ(0), [m^-½].
+    pub surface: Vec<f64>,
+    /// Integral of each mode over the depth, ∫φ, [m^½].
+    pub integral: Vec<f64>,
+    /// Modes at the rows, `(row, mode)`, rows × m, the last row (bottom) zero.
+    pub modes: DMatrix<f64>,
+    /// Values of the modes' stiffness rows at the bottom: heat flux through it per mode, [m^-3/2].
+    pub bottom_flux: Vec<f64>,
+}
+
+impl DepthBasis {
+    /// Basis on the given depths [m], ascending from 0.
+    ///
+    /// # Errors
+    /// [`Error::DepthBasis`].
+    pub fn new(depth: &[f64]) -> Result<DepthBasis> {
+        let m = depth.len() - 1;
+        let failed = Error::DepthBasis { unknowns: m };
+        let mut mass = DMatrix::zeros(m + 1, m + 1);
+        let mut stiffness = DMatrix::zeros(m + 1, m + 1);
+        for cell in 0..m {
+            let h = depth[cell + 1] - depth[cell];
+            for (i, j) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
+                let same = i == j;
+                mass[(cell + i, cell + j)] += if same { h / 3.0 } else { h / 6.0 };
+                stiffness[(cell + i, cell + j)] += if same { 1.0 / h } else { -1.0 / h };
+            }
+        }
+        let free = |matrix: &DMatrix<f64>| matrix.view((0, 0), (m, m)).into_owned();
+        let cholesky = Cholesky::new(free(&mass)).ok_or(failed.clone())?;
+        let l = cholesky.l();
+        let half = l.solve_lower_triangular(&free(&stiffness)).ok_or(failed.clone())?;
+        let symmetric = l.solve_lower_triangular(&half.transpose()).ok_or(failed.clone())?;
+        let symmetric = (&symmetric + symmetric.transpose()) * 0.5;
+        let eigen = SymmetricEigen::try_new(symmetric, f64::EPSILON, 10_000).ok_or(failed.clone())?;
+        let vectors = l
+            .transpose()
+            .solve_upper_triangular(&eigen.eigenvectors)
+            .ok_or(failed)?;
+
+        let mut order: Vec<usize> = (0..m).collect();
+        order.sort_by(|&a, &b| eigen.eigenvalues[a].total_cmp(&eigen.eigenvalues[b]));
+        let modes = DMatrix::from_fn(
+            m + 1,
+            m,
+            |row, mode| if row < m { vectors[(row, order[mode])] } else { 0.0 },
+        );
+        let weight: Vec<f64> = mass.column_sum().iter().copied().collect();
+        let per_mode = |f: &dyn Fn(usize) -> f64| (0..m).map(f).collect::<Vec<f64>>();
+        Ok(DepthBasis {
+            // The Rayleigh quotient is a sum of squares: also the smallest of eigenvalues that span ten decades is
+            // accurate and positive.
+            eigenvalues: per_mode(&|mode| {
+                (0..m)
+                    .map(|c| (modes[(c + 1, mode)] - modes[(c, mode)]).powi(2) / (depth[c + 1] - depth[c]))
+                    .sum()
+            }),
+            surface: per_mode(&|mode| modes[(0, mode)]),
+            integral: per_mode(&|mode| (0..=m).map(|row| weight[row] * modes[(row, mode)]).sum()),
+            bottom_flux: per_mode(&|mode| modes[(m - 1, mode)] / (depth[m] - depth[m - 1])),
+            modes,
+        })
+    }
+
+    /// Number of modes.
+    pub fn len(&self) -> usize {
+        self.eigenvalues.len()
+    }
+
+    /// Never: a depth has at least one cell.
+    pub fn is_empty(&self) -> bool {
+        self.eigenvalues.is_empty()
+    }
+
+    /// Surface value of a column given by its modal amplitudes.
+    pub fn surface_value(&self, amplitudes: &[f64]) -> f64 {
+        amplitudes.iter().zip(&self.surface).map(|(a, s)| a * s).sum()
+    }
+
+    /// Value at a row of a column given by its modal amplitudes.
+    pub fn value(&self, amplitudes: &[f64], row: usize) -> f64 {
+        (0..self.len())
+            .map(|mode| amplitudes[mode] * self.modes[(row, mode)])
+            .sum()
+    }
+
+    /// Integral over the depth of a column given by its modal amplitudes.
+    pub fn content(&self, amplitudes: &[f64]) -> f64 {
+        amplitudes.iter().zip(&self.integral).map(|(a, s)| a * s).sum()
+    }
+}
+
+/// What heats and cools one column's surface, at the rail temperature θ (rise):
+/// q = ᾱ [ μ(θ) P − H θ ], the condition (23) with P = p |φ(s) s| and H = k ρ c_p |s| p + p / r; the wheel is at ambient.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct SurfaceExchange {
+    /// P: friction power per area and friction coefficient, [W/m²].
+    pub friction: f64,
+    /// k ρ c_p |s| p: heat carried off by debris per kelvin, [W/(m² K)].
+    pub debris: f64,
+    /// p / r: heat conducted into the wheel per kelvin, [W/(m² K)].
+    pub conduction: f64,
+}
+
+impl SurfaceExchange {
+    /// The exchange under pressure `pressure` [Pa] and slip velocity `slip` [m/s].
+    pub fn new(parameters: &Parameters, pressure: f64, slip: f64) -> SurfaceExchange {
+        let saturation = friction::saturation(slip, parameters.slip_regularisation);
+        SurfaceExchange {
+            friction: pressure * (saturation * slip).abs(),
+            debris: parameters.wear_coefficient * parameters.volumetric_heat_capacity() * slip.abs() * pressure,
+            conduction: pressure / parameters.contact_thermal_resistance,
+        }
+    }
+}
+
+/// Absolute temperature and scale at which the friction law is evaluated.
+#[derive(Debug, Clone, Copy)]
+pub struct FrictionState<'a> {
+    /// The law.
+    pub parameters: &'a Parameters,
+    /// Ambient temperature, [K].
+    pub ambient: f64,
+    /// Factor on μ.
+    pub scale: f64,
+}
+
+impl FrictionState<'_> {
+    /// μ at a temperature rise [K], and dμ/dθ [1/K].
+    pub fn coefficient(&self, rise: f64) -> (f64, f64) {
+        let (mu, slope) = friction::coefficient(self.parameters, self.ambient + rise);
+        (self.scale * mu, self.scale * slope)
+    }
+}
+
+/// Limit of the Newton steps of one column's surface condition.
+const NEWTON_STEPS: usize = 60;
+
+/// One implicit time step of the march.
+pub struct HeatMarch<'a> {
+    /// Eigenbasis of the depth operator.
+    pub basis: &'a DepthBasis,
+    /// Columns from inflow to outflow.
+    pub transport: Upwind<'a>,
+    /// First column of the contact window; the exchange slice starts there.
+    pub first_contact: usize,
+    /// Step Δt, [s]; infinite for the steady field.
+    pub duration: f64,
+    /// Friction law.
+    pub friction: FrictionState<'a>,
+}
+
+impl HeatMarch<'_> {
+    /// From the field `before` to the field `after` (columns × modes, modal amplitudes, column by column) under the
+    /// exchange at the contact nodes. `flux` gets q at the contact nodes, [W/m²], `scratch` holds one value a mode.
+    ///
+    /// # Errors
+    /// [`Error::SurfaceHeatNotConverged`].
+    pub fn advance(
+        &self,
+        before: &[f64],
+        exchange: &[SurfaceExchange],
+        after: &mut [f64],
+        flux: &mut [f64],
+        scratch: &mut [f64],
+    ) -> Result<()> {
+        let parameters = self.friction.parameters;
+        let (m, capacity) = (self.basis.len(), parameters.volumetric_heat_capacity());
+        let storage = 1.0 / self.duration;
+        let inflow = self.transport.inflow();
+        after[inflow * m..(inflow + 1) * m].fill(0.0);
+        let mut spacing = f64::NAN;
+        let mut response = 0.0;
+        for column in self.transport.columns() {
+            let advection = self.transport.speed() / column.spacing;
+            // The denominators are those of the last column where the spacing is the same (all over the window).
+            if (column.spacing - spacing).abs() > 1e-9 * column.spacing || spacing.is_nan() {
+                spacing = column.spacing;
+                response = 0.0;
+                for (mode, inverse) in scratch.iter_mut().enumerate() {
+                    let decay = parameters.thermal_diffusivity * self.basis.eigenvalues[mode];
+                    *inverse = 1.0 / (storage + advection + decay);
+                    response += self.basis.surface[mode] * self.basis.surface[mode] * *inverse;
+                }
+                response /= capacity;
+            }
+            let (own, upstream) = split_columns(after, column.index, column.upstream, m);
+            let old = &before[column.index * m..(column.index + 1) * m];
+            let mut unheated = 0.0;
+            for mode in 0..m {
+                own[mode] = (storage * old[mode] + advection * upstream[mode]) * scratch[mode];
+                unheated += self.basis.surface[mode] * own[mode];
+            }
+            let contact = column.index.wrapping_sub(self.first_contact);
+            let Some(&exchange) = exchange.get(contact) else {
+                continue;
+            };
+            if exchange.conduction == 0.0 && exchange.friction == 0.0 {
+                flux[contact] = 0.0;
+                continue;
+            }
+            let q = self.surface_flux(&exchange, unheated, response, column.index)?;
+            flux[contact] = q;
+            let q = q / capacity;
+            for mode in 0..m {
+                own[mode] += q * self.basis.surface[mode] * scratch[mode];
+            }
+        }
+        Ok(())
+    }
+
+    /// The flux q that satisfies (23) where θ = `unheated` + `response` q: Newton with a bracket.
+    fn surface_flux(&self, exchange: &SurfaceExchange, unheated: f64, response: f64, column: usize) -> Result<f64> {
+        let parameters = self.friction.parameters;
+        let gain = response * parameters.heat_partition;
+        let loss = exchange.debris + exchange.conduction;
+        let damping = 1.0 + gain * loss;
+        // Without friction θ is unheated / damping, with the largest μ it is the upper end.
+        let largest = self.friction.scale * friction::largest_coefficient(parameters);
+        let mut low = unheated / damping;
+        let mut high = low + gain * largest * exchange.friction / damping;
+        let tolerance = 1e-14 * (low.abs() + high.abs() + 1.0);
+        let mut theta = high;
+        let mut residual = 0.0;
+        for _ in 0..NEWTON_STEPS {
+            let (mu, slope) = self.friction.coefficient(theta);
+            residual = damping * theta - unheated - gain * mu * exchange.friction;
+            if residual.abs() <= tolerance * damping || high - low <= tolerance {
+                return Ok(parameters.heat_partition * (mu * exchange.friction - loss * theta));
+            }
+            if residual > 0.0 {
+                high = theta;
+            } else {
+                low = theta;
+            }
+            let newton = theta - residual / (damping - gain * slope * exchange.friction);
+            theta = if newton > low && newton < high {
+                newton
+            } else {
+                0.5 * (low + high)
+            };
+        }
+        Err(Error::SurfaceHeatNotConverged {
+            position: self.transport.position(column),
+            iterations: NEWTON_STEPS,
+            residual,
+        })
+    }
+}
+
+/// Two different columns of a field, the first mutable.
+fn split_columns(field: &mut [f64], own: usize, other: usize, m: usize) -> (&mut [f64], &[f64]) {
+    if own < other {
+        let (left, right) = field.split_at_mut(other * m);
+        (&mut left[own * m..(own + 1) * m], &right[..m])
+    } else {
+        let (left, right) = field.split_at_mut(own * m);
+        (&mut right[..m], &left[other * m..(other + 1) * m])
+    }
+}

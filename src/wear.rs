@@ -1,0 +1,24 @@
+//! Archard wear (11), (24) with storage: ∂W/∂t − V ∂W/∂x₁ = k |s| p, the march of the heat without conduction.
+
+use crate::transport::Upwind;
+
+/// One implicit time step: the wear depth `after` at all columns, [m], from `before`, under the wear rate
+/// k |s| p at the contact nodes [m/s], the first of which is the column `first_contact`.
+pub fn advance(
+    transport: &Upwind,
+    duration: f64,
+    first_contact: usize,
+    rate: &[f64],
+    before: &[f64],
+    after: &mut [f64],
+) {
+    let storage = 1.0 / duration;
+    after[transport.inflow()] = 0.0;
+    for column in transport.columns() {
+        let advection = transport.speed() / column.spacing;
+        let contact = column.index.wrapping_sub(first_contact);
+        let worn = rate.get(contact).copied().unwrap_or(0.0);
+        after[column.index] =
+            (storage * before[column.index] + advection * after[column.upstream] + worn) / (storage + advection);
+    }
+}
