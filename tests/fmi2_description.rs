@@ -41,7 +41,10 @@ fn elements() -> Vec<Element> {
             _ => continue,
         };
         path.push(tag.name().as_ref().to_owned());
-        elements.push(Element { path: path[1..].join("/"), attributes: attributes(tag) });
+        elements.push(Element {
+            path: path[1..].join("/"),
+            attributes: attributes(tag),
+        });
         if empty {
             path.pop();
         }
@@ -77,7 +80,10 @@ fn unknowns(part: &str) -> Vec<(usize, Vec<usize>)> {
         .iter()
         .filter(|element| element.path == path)
         .map(|element| {
-            let dependencies = element.attributes["dependencies"].split_whitespace().map(parse).collect();
+            let dependencies = element.attributes["dependencies"]
+                .split_whitespace()
+                .map(parse)
+                .collect();
             (parse(&element.attributes["index"]), dependencies)
         })
         .collect()
@@ -105,9 +111,16 @@ fn the_guid_is_well_formed_and_follows_the_content() {
 fn header_and_capability_flags_are_as_specified() {
     let elements = elements();
     let root = &elements[0].attributes;
-    assert_eq!((root["fmiVersion"].as_str(), root["modelName"].as_str()), ("2.0", "WheelRailContact"));
+    assert_eq!(
+        (root["fmiVersion"].as_str(), root["modelName"].as_str()),
+        ("2.0", "WheelRailContact")
+    );
     assert_eq!(root["variableNamingConvention"], "structured");
-    let flags = &elements.iter().find(|element| element.path == "CoSimulation").expect("CoSimulation").attributes;
+    let flags = &elements
+        .iter()
+        .find(|element| element.path == "CoSimulation")
+        .expect("CoSimulation")
+        .attributes;
     assert_eq!(flags["modelIdentifier"], "wheelrail");
     for name in [
         "canHandleVariableCommunicationStepSize",
@@ -127,7 +140,9 @@ fn header_and_capability_flags_are_as_specified() {
     ] {
         assert_eq!(flags[name], "false", "{name}");
     }
-    assert!(elements.iter().all(|element| !element.attributes.contains_key("canHandleMultipleSetPerTimeInstant")));
+    assert!(elements
+        .iter()
+        .all(|element| !element.attributes.contains_key("canHandleMultipleSetPerTimeInstant")));
     assert!(elements.iter().all(|element| element.path != "ModelExchange"));
 }
 
@@ -135,7 +150,11 @@ fn header_and_capability_flags_are_as_specified() {
 fn causality_variability_and_initial_go_together() {
     for variable in scalar_variables() {
         let initial = variable.get("initial").map(String::as_str);
-        let key = (variable["causality"].as_str(), variable["variability"].as_str(), initial);
+        let key = (
+            variable["causality"].as_str(),
+            variable["variability"].as_str(),
+            initial,
+        );
         let legal = [
             ("input", "continuous", None),
             ("output", "continuous", Some("calculated")),
@@ -162,7 +181,10 @@ fn start_values_lie_within_their_range_and_nominals_are_positive() {
             assert!(minimum.is_none_or(|minimum| start >= minimum), "{variable:?}");
             assert!(maximum.is_none_or(|maximum| start <= maximum), "{variable:?}");
         }
-        assert!(number(&variable, "nominal").is_none_or(|nominal| nominal > 0.0), "{variable:?}");
+        assert!(
+            number(&variable, "nominal").is_none_or(|nominal| nominal > 0.0),
+            "{variable:?}"
+        );
     }
 }
 
@@ -236,16 +258,25 @@ fn names_are_structured_and_descriptions_are_one_sentence() {
     for variable in scalar_variables() {
         let name = &variable["name"];
         let legal = |c: char| c.is_ascii_alphanumeric() || "_.[]".contains(c);
-        assert!(name.chars().all(legal) && name.starts_with(|c: char| c.is_ascii_lowercase()), "{name}");
+        assert!(
+            name.chars().all(legal) && name.starts_with(|c: char| c.is_ascii_lowercase()),
+            "{name}"
+        );
         let description = &variable["description"];
-        assert!(!description.is_empty() && !description.contains(". ") && !description.ends_with('.'), "{name}");
+        assert!(
+            !description.is_empty() && !description.contains(". ") && !description.ends_with('.'),
+            "{name}"
+        );
     }
 }
 
 #[test]
 fn the_default_experiment_stops_after_its_start() {
     let elements = elements();
-    let experiment = elements.iter().find(|element| element.path == "DefaultExperiment").expect("an experiment");
+    let experiment = elements
+        .iter()
+        .find(|element| element.path == "DefaultExperiment")
+        .expect("an experiment");
     let value = |name| number(&experiment.attributes, name).expect(name);
     assert!(value("stopTime") > value("startTime"));
     assert!(value("stepSize") > 0.0);
@@ -254,7 +285,9 @@ fn the_default_experiment_stops_after_its_start() {
 #[test]
 fn log_categories_are_the_specified_ones() {
     let elements = elements();
-    let categories = elements.iter().filter(|element| element.path == "LogCategories/Category");
+    let categories = elements
+        .iter()
+        .filter(|element| element.path == "LogCategories/Category");
     let names: Vec<_> = categories.map(|element| element.attributes["name"].as_str()).collect();
     assert_eq!(names, ["logStatusError", "logStatusWarning", "logSolver", "logEvents"]);
 }
@@ -267,15 +300,21 @@ fn the_model_structure_is_complete_and_in_order() {
         (1..).zip(&variables).filter(wanted).map(|(index, _)| index).collect()
     };
     let outputs = indices(&["output"]);
-    for (part, allowed) in [("Outputs", indices(&["input"])), ("InitialUnknowns", indices(&["input", "parameter"]))] {
+    for (part, allowed) in [
+        ("Outputs", indices(&["input"])),
+        ("InitialUnknowns", indices(&["input", "parameter"])),
+    ] {
         let unknowns = unknowns(part);
         let listed: Vec<usize> = unknowns.iter().map(|(index, _)| *index).collect();
         assert_eq!(listed, outputs, "{part}: every output, ascending");
         for (index, dependencies) in unknowns {
             assert!(dependencies.is_sorted(), "{part} {index}");
-            assert!(dependencies.iter().all(|dependency| allowed.contains(dependency)), "{part} {index}");
-            let is_total = ["worn_volume", "friction_energy", "distance"]
-                .contains(&variables[index - 1]["name"].as_str());
+            assert!(
+                dependencies.iter().all(|dependency| allowed.contains(dependency)),
+                "{part} {index}"
+            );
+            let is_total =
+                ["worn_volume", "friction_energy", "distance"].contains(&variables[index - 1]["name"].as_str());
             assert_eq!(dependencies.is_empty(), is_total, "{part} {index}");
         }
     }

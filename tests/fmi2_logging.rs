@@ -21,9 +21,7 @@ fn good_life(client: &Client) {
 fn set_debug_logging(client: &Client, on: bool, categories: &[&CStr]) -> c_int {
     let pointers: Vec<*const c_char> = categories.iter().map(|name| name.as_ptr()).collect();
     // SAFETY: valid strings.
-    unsafe {
-        (client.api.set_debug_logging)(client.component, c_int::from(on), pointers.len(), pointers.as_ptr())
-    }
+    unsafe { (client.api.set_debug_logging)(client.component, c_int::from(on), pointers.len(), pointers.as_ptr()) }
 }
 
 fn categories(messages: &[Message]) -> Vec<&str> {
@@ -49,8 +47,14 @@ fn the_reason_of_a_failed_call_is_told_until_it_is_switched_off() {
     client.expect(ERROR, client.step(0.0, 1.0));
     let messages = client.journal.take();
     assert_eq!(messages.len(), 2);
-    assert_eq!((messages[0].status, messages[0].category.as_str()), (DISCARD, "logStatusWarning"));
-    assert_eq!((messages[1].status, messages[1].category.as_str()), (ERROR, "logStatusError"));
+    assert_eq!(
+        (messages[0].status, messages[0].category.as_str()),
+        (DISCARD, "logStatusWarning")
+    );
+    assert_eq!(
+        (messages[1].status, messages[1].category.as_str()),
+        (ERROR, "logStatusError")
+    );
     client.expect(OK, set_debug_logging(&client, false, &[]));
     client.expect(ERROR, client.step(0.0, 1.0));
     assert_eq!(client.journal.take(), []);
@@ -83,7 +87,10 @@ fn categories_are_switched_one_by_one() {
     client.expect(OK, set_debug_logging(&client, true, &[]));
     good_life(&client);
     client.expect(ERROR, client.step(0.0, 1.0));
-    assert_eq!(categories(&client.journal.take()), ["logEvents", "logSolver", "logStatusError"]);
+    assert_eq!(
+        categories(&client.journal.take()),
+        ["logEvents", "logSolver", "logStatusError"]
+    );
 }
 
 #[test]
@@ -106,10 +113,15 @@ fn a_message_is_never_a_format_and_has_no_trailing_newline() {
         client.expect(ERROR, set_debug_logging(&client, true, &[name]));
     }
     let messages = client.journal.take();
-    assert!(messages.iter().all(|message| message.format == "%s" && message.instance_name == "wheel"));
+    assert!(messages
+        .iter()
+        .all(|message| message.format == "%s" && message.instance_name == "wheel"));
     assert!(messages.iter().all(|message| !message.text.ends_with('\n')));
     assert!(messages[0].text.contains("%s%n%d"), "{messages:?}");
-    assert!(messages[1].text.contains("##r1##"), "# starts a variable's name: {messages:?}");
+    assert!(
+        messages[1].text.contains("##r1##"),
+        "# starts a variable's name: {messages:?}"
+    );
 }
 
 #[test]
@@ -123,7 +135,13 @@ fn the_logger_may_call_back_into_the_instance() {
         component: Cell<*mut c_void>,
         seen: Cell<usize>,
     }
-    unsafe extern "C" fn logger(environment: *mut c_void, _: *const c_char, _: c_int, _: *const c_char, _: *const c_char) {
+    unsafe extern "C" fn logger(
+        environment: *mut c_void,
+        _: *const c_char,
+        _: c_int,
+        _: *const c_char,
+        _: *const c_char,
+    ) {
         // SAFETY: the environment of the test below; the instance is not borrowed while the logger runs.
         unsafe {
             let environment = &*environment.cast::<Environment>();
@@ -133,8 +151,11 @@ fn the_logger_may_call_back_into_the_instance() {
         }
     }
     type Short = unsafe extern "C" fn(*mut c_void, *const c_char, c_int, *const c_char, *const c_char);
-    let environment =
-        Environment { api: Api::load(), component: Cell::new(std::ptr::null_mut()), seen: Cell::new(0) };
+    let environment = Environment {
+        api: Api::load(),
+        component: Cell::new(std::ptr::null_mut()),
+        seen: Cell::new(0),
+    };
     let callbacks = CallbackFunctions {
         // SAFETY: arguments beyond the fifth are not looked at.
         logger: Some(unsafe { std::mem::transmute::<Short, LoggerCallback>(logger as Short) }),
@@ -146,8 +167,7 @@ fn the_logger_may_call_back_into_the_instance() {
     let (api, guid) = (&environment.api, common::guid());
     // SAFETY: valid pointers; one live instance.
     unsafe {
-        let component =
-            (api.instantiate)(c"a".as_ptr(), 1, guid.as_ptr(), std::ptr::null(), &callbacks, 0, 0);
+        let component = (api.instantiate)(c"a".as_ptr(), 1, guid.as_ptr(), std::ptr::null(), &callbacks, 0, 0);
         environment.component.set(component);
         assert_eq!((api.setup_experiment)(component, 0, 0.0, 0.0, 0, 0.0), OK);
         assert_eq!((api.enter_initialization)(component), OK);

@@ -18,7 +18,10 @@ fn a_panic_becomes_an_error_with_a_message() {
     let handle = client.save();
     client.expect(ERROR, client.terminate());
     let message = client.last_message();
-    assert!(message.contains("fmi2Terminate: internal error: deliberate panic"), "{message}");
+    assert!(
+        message.contains("fmi2Terminate: internal error: deliberate panic"),
+        "{message}"
+    );
     client.expect(ERROR, client.step(0.0, 1e-3));
     assert!(client.last_message().contains("state error"));
     bystander.expect(OK, bystander.step(0.0, 1e-3));

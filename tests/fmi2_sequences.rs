@@ -8,7 +8,7 @@ mod common;
 use common::{Api, Client, Handle, DISCARD, ERROR, OK, WARNING};
 use proptest::collection::vec;
 use proptest::prelude::*;
-use std::ffi::{c_int, c_char};
+use std::ffi::{c_char, c_int};
 use std::ptr::{null, null_mut};
 use wheelrail::fmi2::variables::variables;
 
@@ -43,7 +43,11 @@ enum Call {
 }
 
 fn any_reference() -> impl Strategy<Value = u32> {
-    let known: Vec<u32> = variables().iter().map(|row| row.reference).filter(|reference| *reference < 4000).collect();
+    let known: Vec<u32> = variables()
+        .iter()
+        .map(|row| row.reference)
+        .filter(|reference| *reference < 4000)
+        .collect();
     let all: Vec<u32> = variables().iter().map(|row| row.reference).collect();
     prop_oneof![6 => prop::sample::select(known), 2 => prop::sample::select(all), 1 => any::<u32>()]
 }
@@ -124,17 +128,35 @@ impl Master<'_> {
                 }
                 Call::SetReals(pairs) => {
                     let (references, values): (Vec<u32>, Vec<f64>) = pairs.iter().copied().unzip();
-                    vec![(api.set_real)(c, references.as_ptr(), references.len(), values.as_ptr())]
+                    vec![(api.set_real)(
+                        c,
+                        references.as_ptr(),
+                        references.len(),
+                        values.as_ptr(),
+                    )]
                 }
                 Call::GetIntegers(references) => {
                     let mut values = vec![0; references.len()];
-                    vec![(api.get_integer)(c, references.as_ptr(), references.len(), values.as_mut_ptr())]
+                    vec![(api.get_integer)(
+                        c,
+                        references.as_ptr(),
+                        references.len(),
+                        values.as_mut_ptr(),
+                    )]
                 }
                 Call::SetIntegers(pairs) => {
                     // Large meshes are slow to build, and test nothing more here.
-                    let (references, values): (Vec<u32>, Vec<c_int>) =
-                        pairs.iter().copied().map(|(reference, value)| (reference, value.min(30).max(-1))).unzip();
-                    vec![(api.set_integer)(c, references.as_ptr(), references.len(), values.as_ptr())]
+                    let (references, values): (Vec<u32>, Vec<c_int>) = pairs
+                        .iter()
+                        .copied()
+                        .map(|(reference, value)| (reference, value.min(30).max(-1)))
+                        .unzip();
+                    vec![(api.set_integer)(
+                        c,
+                        references.as_ptr(),
+                        references.len(),
+                        values.as_ptr(),
+                    )]
                 }
                 Call::OtherTypes(reference) => vec![
                     (api.get_boolean)(c, reference, 1, &mut 0),
@@ -150,13 +172,25 @@ impl Master<'_> {
                     let orders: Vec<c_int> = rates.iter().map(|rate| rate.1).collect();
                     let values: Vec<f64> = rates.iter().map(|rate| rate.2).collect();
                     let n = rates.len();
-                    vec![(api.set_input_derivatives)(c, references.as_ptr(), n, orders.as_ptr(), values.as_ptr())]
+                    vec![(api.set_input_derivatives)(
+                        c,
+                        references.as_ptr(),
+                        n,
+                        orders.as_ptr(),
+                        values.as_ptr(),
+                    )]
                 }
                 Call::OutputRates(rates) => {
                     let (references, orders): (Vec<u32>, Vec<c_int>) = rates.iter().copied().unzip();
                     let mut values = vec![0.0; rates.len()];
                     let (n, values) = (rates.len(), values.as_mut_ptr());
-                    vec![(api.get_output_derivatives)(c, references.as_ptr(), n, orders.as_ptr(), values)]
+                    vec![(api.get_output_derivatives)(
+                        c,
+                        references.as_ptr(),
+                        n,
+                        orders.as_ptr(),
+                        values,
+                    )]
                 }
                 Call::Direction(unknowns, knowns) => {
                     let (references, direction): (Vec<u32>, Vec<f64>) = knowns.iter().copied().unzip();
@@ -211,9 +245,20 @@ impl Master<'_> {
                     (api.get_string_status)(c, *kind, &mut null()),
                 ],
                 Call::Logging(on, name) => {
-                    let names = [c"logSolver", c"logEvents", c"logStatusError", c"logStatusWarning", c"%s#"];
+                    let names = [
+                        c"logSolver",
+                        c"logEvents",
+                        c"logStatusError",
+                        c"logStatusWarning",
+                        c"%s#",
+                    ];
                     let names: Vec<_> = name.iter().map(|name| names[*name].as_ptr()).collect();
-                    vec![(api.set_debug_logging)(c, c_int::from(*on), names.len(), names.as_ptr())]
+                    vec![(api.set_debug_logging)(
+                        c,
+                        c_int::from(*on),
+                        names.len(),
+                        names.as_ptr(),
+                    )]
                 }
             }
         }
@@ -232,7 +277,10 @@ fn master(api: &Api, begin: u8) -> Master<'_> {
         client.expect(OK, client.set(&[("creepage", 0.003)]));
         client.expect(OK, client.exit());
     }
-    Master { client, slots: [null_mut(); 4] }
+    Master {
+        client,
+        slots: [null_mut(); 4],
+    }
 }
 
 proptest! {

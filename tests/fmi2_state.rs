@@ -14,7 +14,10 @@ fn drive(client: &Client, from: u32) -> Vec<Vec<u64>> {
     (from..from + 10)
         .map(|step| {
             let t = 0.01 * f64::from(step);
-            client.expect(OK, client.set(&[("normal_load", 6e4 + 2e4 * (20.0 * t).sin()), ("creepage", 0.1 * t)]));
+            client.expect(
+                OK,
+                client.set(&[("normal_load", 6e4 + 2e4 * (20.0 * t).sin()), ("creepage", 0.1 * t)]),
+            );
             client.expect(OK, client.set_rates(&[("normal_load", 1, 4e5 * (20.0 * t).cos())]));
             client.expect(OK, client.step(t, 0.01));
             client.outputs()
@@ -155,7 +158,11 @@ fn a_serialized_state_continues_in_another_instance_with_the_same_bits() {
     let bytes = client.serialize(client.save());
     let expected = drive(&client, 10);
     for running in [false, true] {
-        let other = if running { Client::running(&api, &[]) } else { Client::initializing(&api) };
+        let other = if running {
+            Client::running(&api, &[])
+        } else {
+            Client::initializing(&api)
+        };
         let mut handle = null_mut();
         other.expect(OK, other.deserialize(&bytes, &mut handle));
         other.expect(OK, other.restore(handle));
@@ -218,7 +225,9 @@ fn empty_noisy_and_foreign_bytes_are_refused() {
         let noise: Vec<u8> = (0..length)
             .map(|_| {
                 // Knuth's MMIX generator.
-                seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+                seed = seed
+                    .wrapping_mul(6_364_136_223_846_793_005)
+                    .wrapping_add(1_442_695_040_888_963_407);
                 (seed >> 56) as u8
             })
             .collect();

@@ -29,6 +29,11 @@ fn a_hundred_loads_leave_nothing_behind() {
     let (pages, tasks) = (resident_pages(), threads());
     (0..100).for_each(|_| cycle());
     // 4 MiB of slack for the allocator; one leaked library or instance would be several hundred.
-    assert!(resident_pages() < pages + 1024, "{} pages before, {} after", pages, resident_pages());
+    assert!(
+        resident_pages() < pages + 1024,
+        "{} pages before, {} after",
+        pages,
+        resident_pages()
+    );
     assert_eq!(threads(), tasks, "the library has no threads");
 }

@@ -17,7 +17,10 @@ fn expect_discard(client: &Client, name: &str, value: f64) {
     client.expect(DISCARD, client.set(&[(name, value)]));
     let message = client.last_message();
     let value = value.to_string();
-    assert!(message.starts_with("fmi2SetReal: ") && message.contains("allowed is"), "{message}");
+    assert!(
+        message.starts_with("fmi2SetReal: ") && message.contains("allowed is"),
+        "{message}"
+    );
     assert!(message.contains(name) && message.contains(&value), "{message}");
     assert_eq!(client.get(name).to_bits(), before.to_bits());
 }
@@ -27,7 +30,12 @@ fn real_values_outside_their_range_are_discarded_in_initialization() {
     let api = Api::load();
     let client = Client::initializing(&api);
     for row in variables() {
-        let Kind::Real { minimum: Some(minimum), maximum: Some(maximum), .. } = row.kind else {
+        let Kind::Real {
+            minimum: Some(minimum),
+            maximum: Some(maximum),
+            ..
+        } = row.kind
+        else {
             continue;
         };
         if matches!(row.causality, Causality::Input | Causality::Parameter) {
@@ -45,7 +53,14 @@ fn real_values_outside_their_range_are_discarded_in_initialization() {
 fn inputs_outside_their_range_are_discarded_while_running() {
     let api = Api::load();
     let client = Client::running(&api, &[("largest_load", 1e5)]);
-    for name in ["wheel_speed", "normal_load", "creepage", "vehicle_speed", "friction_scale", "ambient_temperature"] {
+    for name in [
+        "wheel_speed",
+        "normal_load",
+        "creepage",
+        "vehicle_speed",
+        "friction_scale",
+        "ambient_temperature",
+    ] {
         for value in NOT_FINITE {
             expect_discard(&client, name, value);
         }
@@ -79,15 +94,24 @@ fn integer_values_outside_their_range_are_discarded() {
     let api = Api::load();
     let client = Client::initializing(&api);
     for row in variables() {
-        let (Kind::Integer { minimum: Some(minimum), maximum: Some(maximum), .. }, Causality::Parameter) =
-            (row.kind, row.causality)
+        let (
+            Kind::Integer {
+                minimum: Some(minimum),
+                maximum: Some(maximum),
+                ..
+            },
+            Causality::Parameter,
+        ) = (row.kind, row.causality)
         else {
             continue;
         };
         for value in [minimum - 1, maximum + 1, i32::MIN, i32::MAX] {
             client.expect(DISCARD, client.set_integers(&[(&row.name, value)]));
             let message = client.last_message();
-            assert!(message.contains(&row.name) && message.contains(&value.to_string()), "{message}");
+            assert!(
+                message.contains(&row.name) && message.contains(&value.to_string()),
+                "{message}"
+            );
         }
     }
     client.expect(OK, client.exit());
@@ -98,12 +122,17 @@ fn a_vector_is_set_as_a_whole_or_not_at_all() {
     let api = Api::load();
     let client = Client::initializing(&api);
     let before = client.get("wheel_speed");
-    client.expect(DISCARD, client.set(&[("wheel_speed", 1.0), ("friction_cold", 0.3), ("normal_load", f64::NAN)]));
+    client.expect(
+        DISCARD,
+        client.set(&[("wheel_speed", 1.0), ("friction_cold", 0.3), ("normal_load", f64::NAN)]),
+    );
     assert_eq!((client.get("wheel_speed"), client.get("friction_cold")), (before, 0.45));
     client.expect(DISCARD, client.set_integers(&[("friction_law", 1), ("control", 3)]));
     let mut value = 0;
     // SAFETY: one element.
-    client.expect(OK, unsafe { (api.get_integer)(client.component, &reference("friction_law"), 1, &mut value) });
+    client.expect(OK, unsafe {
+        (api.get_integer)(client.component, &reference("friction_law"), 1, &mut value)
+    });
     assert_eq!(value, 2);
     // A larger load is allowed together with a larger largest load, in either order.
     client.expect(OK, client.set(&[("normal_load", 1.5e5), ("largest_load", 2e5)]));
@@ -135,7 +164,12 @@ fn only_inputs_and_tunable_parameters_are_set_while_running() {
 #[test]
 fn outputs_and_locals_are_never_set() {
     let api = Api::load();
-    for name in ["traction_force", "profile.pressure[31]", "depth.z[1]", "solver.residual"] {
+    for name in [
+        "traction_force",
+        "profile.pressure[31]",
+        "depth.z[1]",
+        "solver.residual",
+    ] {
         let client = Client::initializing(&api);
         client.expect(ERROR, client.set(&[(name, 0.0)]));
         assert!(client.last_message().contains(name));
@@ -150,7 +184,10 @@ fn a_combination_that_cannot_be_is_an_error_at_the_end_of_the_initialization() {
         (&[("friction_temperature_hot", 323.0)], "friction_temperature_hot"),
         (&[("largest_load", 5e4)], "normal_load"),
         (&[("largest_load", 1e7)], "largest_load"),
-        (&[("strip_half_length", 0.1), ("largest_load", 1e6), ("normal_load", 1e5)], "strip_half_length"),
+        (
+            &[("strip_half_length", 0.1), ("largest_load", 1e6), ("normal_load", 1e5)],
+            "strip_half_length",
+        ),
         (&[("wheel_radius", 5.0)], "rolling speed"),
     ];
     for (values, name) in cases {
@@ -161,11 +198,17 @@ fn a_combination_that_cannot_be_is_an_error_at_the_end_of_the_initialization() {
         client.expect(OK, client.set(values));
         client.expect(ERROR, client.exit());
         let message = client.last_message();
-        assert!(message.starts_with("fmi2ExitInitializationMode: ") && message.contains(name), "{message}");
+        assert!(
+            message.starts_with("fmi2ExitInitializationMode: ") && message.contains(name),
+            "{message}"
+        );
     }
     // The points of a table must ascend, where the table is used.
     let client = Client::initializing(&api);
-    client.expect(OK, client.set_integers(&[("friction_law", 4), ("friction_table_points", 3)]));
+    client.expect(
+        OK,
+        client.set_integers(&[("friction_law", 4), ("friction_table_points", 3)]),
+    );
     client.expect(OK, client.set(&[("friction_table.temperature[3]", 300.0)]));
     client.expect(ERROR, client.exit());
     assert!(client.last_message().contains("friction_table.temperature"));
@@ -210,7 +253,13 @@ fn a_lifted_wheel_is_no_error() {
     for step in 0..5 {
         client.expect(OK, client.step(0.01 * f64::from(step), 0.01));
     }
-    for name in ["traction_force", "friction_torque", "friction_power", "contact_length", "peak_pressure"] {
+    for name in [
+        "traction_force",
+        "friction_torque",
+        "friction_power",
+        "contact_length",
+        "peak_pressure",
+    ] {
         assert_eq!(client.get(name), 0.0, "{name}");
     }
 }
@@ -218,7 +267,10 @@ fn a_lifted_wheel_is_no_error() {
 #[test]
 fn reset_brings_back_the_start_values() {
     let api = Api::load();
-    let client = Client::running(&api, &[("friction_cold", 0.3), ("normal_load", 1e4), ("creepage", 0.01)]);
+    let client = Client::running(
+        &api,
+        &[("friction_cold", 0.3), ("normal_load", 1e4), ("creepage", 0.01)],
+    );
     client.expect(OK, client.step(0.0, 0.1));
     client.expect(OK, client.reset());
     client.expect(OK, client.setup(0.0, None));
@@ -230,7 +282,10 @@ fn reset_brings_back_the_start_values() {
     }
     client.expect(OK, client.exit());
     assert_eq!(client.get("worn_volume"), 0.0);
-    assert!(matches!(find("contact_nodes").kind, Kind::Integer { start: Some(61), .. }));
+    assert!(matches!(
+        find("contact_nodes").kind,
+        Kind::Integer { start: Some(61), .. }
+    ));
     let fresh = Client::new(&api);
     fresh.expect(OK, fresh.setup(0.0, None));
     fresh.expect(OK, fresh.enter());
