@@ -149,7 +149,7 @@ impl Master<'_> {
                     let (references, values): (Vec<u32>, Vec<c_int>) = pairs
                         .iter()
                         .copied()
-                        .map(|(reference, value)| (reference, value.min(30).max(-1)))
+                        .map(|(reference, value)| (reference, value.clamp(-1, 30)))
                         .unzip();
                     vec![(api.set_integer)(
                         c,
