@@ -6,6 +6,7 @@ pub mod elasticity;
 pub mod error;
 pub mod friction;
 pub mod heat;
+pub mod mechanics;
 pub mod mesh;
 pub mod normal;
 pub mod parameters;

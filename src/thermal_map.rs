@@ -93,21 +93,22 @@ impl ThermalMap {
 
     /// The displacement of the field into `displacement` (2n).
     pub fn apply(&self, amplitudes: &[f64], displacement: &mut [f64]) {
-        let m = self.weights.nrows();
-        displacement.fill(0.0);
-        for (column, &(start, kept)) in amplitudes.chunks_exact(m).zip(&self.blocks) {
-            for k in 0..kept {
-                let weights = &self.weights.as_slice()[k * m..(k + 1) * m];
-                let moment: f64 = column.iter().zip(weights).map(|(a, w)| a * w).sum();
-                if moment != 0.0 {
-                    let rows = self.gains.nrows();
-                    let gain = &self.gains.as_slice()[(start + k) * rows..(start + k + 1) * rows];
-                    for (u, g) in displacement.iter_mut().zip(gain) {
-                        *u += g * moment;
+        dense::vectorised(
+            #[inline(always)]
+            || {
+                let (m, rows) = (self.weights.nrows(), self.gains.nrows());
+                displacement.fill(0.0);
+                for (column, &(start, kept)) in amplitudes.chunks_exact(m).zip(&self.blocks) {
+                    for k in 0..kept {
+                        let moment = dense::dot(column, &self.weights.as_slice()[k * m..(k + 1) * m]);
+                        if moment != 0.0 {
+                            let gain = &self.gains.as_slice()[(start + k) * rows..(start + k + 1) * rows];
+                            dense::add_multiple(gain, moment, displacement);
+                        }
                     }
                 }
-            }
-        }
+            },
+        );
     }
 }
 

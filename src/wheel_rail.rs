@@ -128,18 +128,8 @@ impl Model {
     pub fn accepts(&self, state: &State) -> bool {
         let expected = Fields::new(&self.rail);
         let fields = &state.fields;
-        let pairs = [
-            (&fields.temperature, &expected.temperature),
-            (&fields.wear, &expected.wear),
-            (&fields.pressure, &expected.pressure),
-            (&fields.shear, &expected.shear),
-            (&fields.slip, &expected.slip),
-            (&fields.friction, &expected.friction),
-            (&fields.heat_flux, &expected.heat_flux),
-        ];
-        pairs
-            .iter()
-            .all(|(own, expected)| own.len() == expected.len() && own.iter().all(|v| v.is_finite()))
+        let mut pairs = fields.vectors().into_iter().zip(expected.vectors());
+        pairs.all(|(own, expected)| own.len() == expected.len() && own.iter().all(|v| v.is_finite()))
             && OUTPUTS.iter().all(|signal| (signal.get)(&state.outputs).is_finite())
             && fields.penetration.is_finite()
             && state.time.is_finite()
@@ -301,9 +291,7 @@ impl Model {
                 sticking += 1.0;
             }
         }
-        let peak_rise = (0..rail.mesh.columns())
-            .map(|column| fields.surface_temperature(rail, column))
-            .fold(0.0, f64::max);
+        let peak_rise = fields.surface_temperature.iter().fold(0.0, |m: f64, t| t.max(m));
         let ambient = inputs.ambient_temperature;
         let load = force * total;
         let traction_force = -force * shear;
