@@ -10,7 +10,7 @@ use crate::mesh::Mesh;
 use crate::normal::Constraint;
 use crate::parameters::{Control, Parameters};
 use crate::signals::{Inputs, Motion};
-use crate::thermal_map::ThermalMap;
+use crate::thermal_map::{self, ThermalMap};
 use crate::transport::Upwind;
 use crate::wear;
 use serde::{Deserialize, Serialize};
@@ -51,7 +51,13 @@ impl Rail {
         let scales = Scales::new(parameters);
         let (compliance, thermal) = compliance::build(&mesh, parameters, &scales)?;
         let basis = DepthBasis::new(&mesh.depth)?;
-        let thermal_map = ThermalMap::new(&mesh, &basis, &thermal);
+        let thermal_map = ThermalMap::new(
+            &mesh,
+            &basis,
+            &thermal,
+            parameters.thermal_diffusivity,
+            thermal_map::TOLERANCE,
+        );
         let r0 = parameters.wheel_radius;
         let profile = (0..mesh.contact_nodes)
             .map(|i| {

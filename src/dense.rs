@@ -114,7 +114,7 @@ pub fn multiply(a: &[f64], n: usize, x: &[f64], out: &mut [f64]) {
         #[inline(always)]
         || {
             out[..n].fill(0.0);
-            for (column, &x) in a[..n * n].chunks_exact(n).zip(x) {
+            for (column, &x) in a[..n * n].chunks_exact(n.max(1)).zip(x) {
                 add_multiple(column, x, &mut out[..n]);
             }
         },
