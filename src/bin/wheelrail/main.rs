@@ -1,0 +1,37 @@
+//! The command line `wheelrail`.
+
+mod describe;
+mod pack;
+
+use clap::{Parser, Subcommand};
+use std::process::ExitCode;
+
+/// Thermoelastic wheel-rail rolling contact: pack the FMU, describe its variables.
+#[derive(Parser)]
+#[command(version)]
+struct Arguments {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    /// Build the archive WheelRailContact.fmu.
+    Pack(pack::Pack),
+    /// List inputs, outputs, parameters and locals.
+    Describe(describe::Describe),
+}
+
+fn main() -> ExitCode {
+    let result: Result<(), Box<dyn std::error::Error>> = match Arguments::parse().command {
+        Command::Pack(command) => command.run().map_err(Into::into),
+        Command::Describe(command) => command.run().map_err(Into::into),
+    };
+    match result {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("wheelrail: {error}");
+            ExitCode::FAILURE
+        }
+    }
+}
