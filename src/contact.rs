@@ -5,7 +5,7 @@ use crate::compliance::{self, RollingCompliance, Scales};
 use crate::dense;
 use crate::error::{Error, Result};
 use crate::heat::{DepthBasis, FrictionState, HeatMarch, Heated, SurfaceExchange};
-use crate::mechanics::{Mechanics, MechanicsProblem, Tractions};
+use crate::mechanics::{Mechanics, MechanicsProblem, ProblemTangent, Tractions};
 use crate::mesh::Mesh;
 use crate::normal::Constraint;
 use crate::parameters::{Control, Parameters};
@@ -151,9 +151,8 @@ impl Fields {
         ]
     }
 
-    /// Overwrites these fields with others of the same sizes, without allocating.
-    pub fn copy_from(&mut self, other: &Fields) {
-        let own = [
+    fn vectors_mut(&mut self) -> [&mut Vec<f64>; 9] {
+        [
             &mut self.temperature,
             &mut self.surface_temperature,
             &mut self.thermal_displacement,
@@ -163,11 +162,23 @@ impl Fields {
             &mut self.slip,
             &mut self.friction,
             &mut self.heat_flux,
-        ];
-        for (own, other) in own.into_iter().zip(other.vectors()) {
+        ]
+    }
+
+    /// Overwrites these fields with others of the same sizes, without allocating.
+    pub fn copy_from(&mut self, other: &Fields) {
+        for (own, other) in self.vectors_mut().into_iter().zip(other.vectors()) {
             own.copy_from_slice(other);
         }
         self.penetration = other.penetration;
+    }
+
+    /// Adds a multiple of other fields of the same sizes.
+    pub fn add_multiple(&mut self, factor: f64, other: &Fields) {
+        for (own, other) in self.vectors_mut().into_iter().zip(other.vectors()) {
+            dense::add_multiple(other, factor, own);
+        }
+        self.penetration += factor * other.penetration;
     }
 
     /// Modal amplitudes of one column.
@@ -273,7 +284,7 @@ impl Contact<'_> {
         })
     }
 
-    fn friction_state(&self) -> FrictionState<'_> {
+    pub(crate) fn friction_state(&self) -> FrictionState<'_> {
         FrictionState {
             parameters: self.parameters,
             ambient: self.conditions.inputs.ambient_temperature,
@@ -281,7 +292,7 @@ impl Contact<'_> {
         }
     }
 
-    fn constraint(&self) -> Constraint {
+    pub(crate) fn constraint(&self) -> Constraint {
         match self.parameters.control {
             Control::Load => Constraint::Total(
                 self.rail
@@ -304,6 +315,13 @@ impl Contact<'_> {
             fields.penetration = 0.0;
             return Ok(0.0);
         }
+        self.update_mechanics_data(fields, scratch);
+        let (problem, mut tractions, mechanics) = self.mechanics_problem(fields, scratch);
+        mechanics.solve(&problem, &mut tractions)
+    }
+
+    /// Friction coefficient, profile and displacement for given temperature, wear and inertia.
+    fn update_mechanics_data(&self, fields: &mut Fields, scratch: &mut Scratch) {
         let n = self.rail.mesh.contact_nodes;
         let window = self.window();
         let friction = self.friction_state();
@@ -319,41 +337,91 @@ impl Contact<'_> {
             let wear = fields.wear[window.start + node] / self.rail.scales.displacement;
             *profile = self.rail.profile[node] - wear + fields.thermal_displacement[n + node];
         }
-        let motion = self.conditions.motion;
-        let rho_v2 = self.parameters.density * motion.rolling_speed.powi(2);
+        let rho_v2 = self.parameters.density * self.conditions.motion.rolling_speed.powi(2);
+        self.add_inertia(
+            rho_v2,
+            &fields.pressure,
+            &fields.shear,
+            &mut scratch.displacement,
+            &mut scratch.profile,
+        );
+    }
+
+    /// Adds the displacement along x₁ and upward that the convective inertia of the given tractions causes.
+    pub(crate) fn add_inertia(
+        &self,
+        rho_v2: f64,
+        pressure: &[f64],
+        shear: &[f64],
+        along: &mut [f64],
+        upward: &mut [f64],
+    ) {
         let inertia = &self.rail.compliance.inertia;
-        let (pressure, shear) = (&fields.pressure, &fields.shear);
-        dense::multiply_add(&inertia.normal_normal, pressure, -rho_v2, &mut scratch.profile);
-        dense::multiply_add(&inertia.normal_tangential, shear, rho_v2, &mut scratch.profile);
-        dense::multiply_add(&inertia.tangential_normal, pressure, -rho_v2, &mut scratch.displacement);
-        dense::multiply_add(&inertia.tangential_tangential, shear, rho_v2, &mut scratch.displacement);
+        dense::multiply_add(&inertia.normal_normal, pressure, -rho_v2, upward);
+        dense::multiply_add(&inertia.normal_tangential, shear, rho_v2, upward);
+        dense::multiply_add(&inertia.tangential_normal, pressure, -rho_v2, along);
+        dense::multiply_add(&inertia.tangential_tangential, shear, rho_v2, along);
+    }
+
+    /// The mechanics problem over the data of [`Contact::update_mechanics_data`].
+    fn mechanics_problem<'s>(
+        &'s self,
+        fields: &'s mut Fields,
+        scratch: &'s mut Scratch,
+    ) -> (MechanicsProblem<'s>, Tractions<'s>, &'s mut Mechanics) {
+        let motion = self.conditions.motion;
         let problem = MechanicsProblem {
             compliance: &self.rail.compliance.at_rest,
             profile: &scratch.profile,
             displacement: &scratch.displacement,
             friction: &fields.friction,
-            constraint,
+            constraint: self.constraint(),
             normal_solver: self.parameters.normal_solver,
             rigid_slip: motion.rigid_slip,
-            strain_speed: motion.rolling_speed * self.rail.scales.displacement / self.rail.mesh.contact_spacing(),
+            strain_speed: motion.rolling_speed * self.strain_scale(),
             regularisation: self.parameters.slip_regularisation,
         };
-        let mut tractions = Tractions {
+        let tractions = Tractions {
             pressure: &mut fields.pressure,
             shear: &mut fields.shear,
             slip: &mut fields.slip,
             penetration: &mut fields.penetration,
         };
-        scratch.mechanics.solve(&problem, &mut tractions)
+        (problem, tractions, &mut scratch.mechanics)
+    }
+
+    /// Strain of a scaled displacement over the node spacing.
+    pub(crate) fn strain_scale(&self) -> f64 {
+        self.rail.scales.displacement / self.rail.mesh.contact_spacing()
+    }
+
+    /// Factorises the mechanics at `fields`, which are at rest.
+    pub(crate) fn linearise_mechanics(&self, fields: &mut Fields, scratch: &mut Scratch) -> Result<()> {
+        scratch.mechanics.start_step();
+        self.update_mechanics_data(fields, scratch);
+        let (problem, mut tractions, mechanics) = self.mechanics_problem(fields, scratch);
+        mechanics.linearise(&problem, &mut tractions)
+    }
+
+    /// Change of the tractions in `tangent` with the data of the problem at `fields` ([`Mechanics::tangent`]).
+    pub(crate) fn mechanics_tangent(
+        &self,
+        fields: &mut Fields,
+        scratch: &mut Scratch,
+        change: &ProblemTangent,
+        tangent: &mut Tractions,
+    ) {
+        let (problem, _, mechanics) = self.mechanics_problem(fields, scratch);
+        mechanics.tangent(&problem, change, tangent);
     }
 
     /// Columns of the contact window.
-    fn window(&self) -> std::ops::Range<usize> {
+    pub(crate) fn window(&self) -> std::ops::Range<usize> {
         let mesh = &self.rail.mesh;
         mesh.first_contact..mesh.first_contact + mesh.contact_nodes
     }
 
-    fn upwind(&self) -> Upwind<'_> {
+    pub(crate) fn upwind(&self) -> Upwind<'_> {
         Upwind::new(&self.rail.mesh.x, self.conditions.motion.rolling_speed)
     }
 

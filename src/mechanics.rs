@@ -8,6 +8,7 @@
 use crate::compliance::Compliance;
 use crate::dense;
 use crate::error::{Error, Result};
+use crate::friction::{saturation, saturation_slope};
 use crate::normal::{ActiveSet, Constraint, NormalProblem, Pschenichnyj};
 use crate::parameters::NormalSolver;
 use crate::tangential::{Tangential, TangentialProblem};
@@ -58,6 +59,8 @@ struct Response {
     nodes: Vec<usize>,
     forward: bool,
     load_given: bool,
+    /// Whether the pressure follows the shear, or stays as in the paper's alternation.
+    follows: bool,
     /// ∂p/∂τ.
     pressure: Vec<f64>,
     /// ∂(u₁ − u₁ of the node ahead)/∂τ.
@@ -92,6 +95,7 @@ impl Mechanics {
                 nodes: Vec::with_capacity(nodes),
                 forward: true,
                 load_given: true,
+                follows: true,
                 pressure: vec![0.0; nodes * nodes],
                 strain: vec![0.0; nodes * nodes],
             },
@@ -161,12 +165,16 @@ impl Mechanics {
         self.nodes.extend((1..n - 1).filter(|&i| tractions.pressure[i] > 0.0));
         let forward = problem.strain_speed >= 0.0;
         let load_given = matches!(problem.constraint, Constraint::Total(_));
-        let response = &self.response;
-        if response.nodes != self.nodes || response.forward != forward || response.load_given != load_given {
-            self.update_response(problem, forward, load_given);
-            return Ok(true);
+        let follows = problem.normal_solver == NormalSolver::ActiveSet && self.active_set.active() == self.nodes;
+        let response = &mut self.response;
+        let known = response.nodes == self.nodes
+            && (response.forward, response.load_given, response.follows) == (forward, load_given, follows);
+        if !known {
+            response.nodes.clone_from(&self.nodes);
+            (response.forward, response.load_given, response.follows) = (forward, load_given, follows);
+            self.update_response(problem.compliance);
         }
-        Ok(false)
+        Ok(!known)
     }
 
     /// (30) for given pressure and its response. Returns the largest change of the shear.
@@ -217,27 +225,23 @@ impl Mechanics {
 
     /// ∂p/∂τ = Π C_nt with Π = C_AA⁻¹, under a given load Π = C_AA⁻¹ − C_AA⁻¹1 1ᵀC_AA⁻¹ / (1ᵀC_AA⁻¹1), and the strain of
     /// C_tt − C_tn ∂p/∂τ. With the paper's method ∂p/∂τ is left out.
-    fn update_response(&mut self, problem: &MechanicsProblem, forward: bool, load_given: bool) {
+    fn update_response(&mut self, compliance: &Compliance) {
         self.tangential.forget();
-        let (compliance, nodes) = (problem.compliance, &self.nodes);
+        let nodes = &self.nodes;
         let m = nodes.len();
         let response = &mut self.response;
-        response.nodes.clone_from(nodes);
-        response.forward = forward;
-        response.load_given = load_given;
-        let follows = problem.normal_solver == NormalSolver::ActiveSet && self.active_set.active() == nodes.as_slice();
         let (inverse, unit) = self.active_set.inverse();
         let unit_sum: f64 = unit.iter().sum();
         for (column, &loaded) in nodes.iter().enumerate() {
             let range = column * m..(column + 1) * m;
             let (pressure, strain) = (&mut response.pressure[range.clone()], &mut response.strain[range]);
             pressure.fill(0.0);
-            if follows {
+            if response.follows {
                 for (row, &node) in nodes.iter().enumerate() {
                     self.pressure[row] = compliance.normal_tangential[(node, loaded)];
                 }
                 dense::multiply(inverse, m, &self.pressure, pressure);
-                if load_given {
+                if response.load_given {
                     let total = pressure.iter().sum::<f64>() / unit_sum;
                     dense::add_multiple(unit, -total, pressure);
                 }
@@ -255,9 +259,140 @@ impl Mechanics {
                 }
             }
             for (strain, &node) in strain.iter_mut().zip(nodes) {
-                *strain = self.displacement[node] - self.displacement[node_ahead(node, forward)];
+                *strain = self.displacement[node] - self.displacement[node_ahead(node, response.forward)];
             }
         }
+    }
+}
+
+/// Change of a [`MechanicsProblem`]'s data in one direction, n contact nodes.
+#[derive(Debug, Clone, Copy)]
+pub struct ProblemTangent<'a> {
+    /// Of the profile.
+    pub profile: &'a [f64],
+    /// Of the displacement along x₁.
+    pub displacement: &'a [f64],
+    /// Of μ.
+    pub friction: &'a [f64],
+    /// Of Σp; without effect where the penetration is given.
+    pub total: f64,
+    /// Of ω r₀ − V, [m/s].
+    pub rigid_slip: f64,
+    /// Of the strain speed's magnitude, [m/s].
+    pub strain_speed: f64,
+}
+
+impl Mechanics {
+    /// Solves from tractions at rest and factorises there, for [`Mechanics::tangent`].
+    ///
+    /// # Errors
+    /// As [`Mechanics::solve`].
+    pub fn linearise(&mut self, problem: &MechanicsProblem, tractions: &mut Tractions) -> Result<()> {
+        let problem = MechanicsProblem {
+            normal_solver: NormalSolver::ActiveSet,
+            ..*problem
+        };
+        self.solve(&problem, tractions)?;
+        let singular = Error::MechanicsNotConverged {
+            iterations: 0,
+            residual: f64::NAN,
+            tolerance: TOLERANCE,
+        };
+        let m = self.nodes.len();
+        let friction = &self.friction[..m];
+        let tangential = TangentialProblem {
+            pressure: &self.pressure[..m],
+            strain: &self.strain[..m],
+            pressure_response: &self.response.pressure,
+            strain_response: &self.response.strain,
+            friction,
+            rigid_slip: problem.rigid_slip,
+            strain_speed: problem.strain_speed.abs(),
+            regularisation: problem.regularisation,
+        };
+        if self.tangential.linearise(&tangential) {
+            Ok(())
+        } else {
+            Err(singular)
+        }
+    }
+
+    /// Change of the tractions with the data of the problem at the point of [`Mechanics::linearise`], at an unchanged
+    /// active set: the implicit function theorem on (37) and (30).
+    pub fn tangent(&mut self, problem: &MechanicsProblem, change: &ProblemTangent, tractions: &mut Tractions) {
+        let m = self.nodes.len();
+        let compliance = problem.compliance;
+        let forward = problem.strain_speed >= 0.0;
+        let speed = problem.strain_speed.abs();
+        // Pressure at unchanged shear.
+        for (row, &node) in self.nodes.iter().enumerate() {
+            self.friction[row] = change.profile[node];
+        }
+        let (inverse, unit) = self.active_set.inverse();
+        dense::multiply(inverse, m, &self.friction, &mut self.pressure);
+        let load_given = self.response.load_given;
+        if load_given {
+            let lift = (change.total - self.pressure[..m].iter().sum::<f64>()) / unit.iter().sum::<f64>();
+            dense::add_multiple(unit, lift, &mut self.pressure[..m]);
+        }
+        // Strain at unchanged shear.
+        tractions.pressure.fill(0.0);
+        for (row, &node) in self.nodes.iter().enumerate() {
+            tractions.pressure[node] = self.pressure[row];
+        }
+        self.displacement.copy_from_slice(change.displacement);
+        dense::multiply_add(
+            &compliance.tangential_normal,
+            tractions.pressure,
+            -1.0,
+            &mut self.displacement,
+        );
+        // (1 + μ p φ′ ∂s/∂τ + μ φ ∂p/∂τ) dτ = −(dμ p φ + μ φ dp + μ p φ′ ds) with dp, ds at unchanged shear.
+        let point = self.tangential.point();
+        for (row, &node) in self.nodes.iter().enumerate() {
+            let strain = self.displacement[node] - self.displacement[node_ahead(node, forward)];
+            // |V|/Δx (u₁ − u₁ ahead) is s less the rigid slip.
+            let stretched = if speed > 0.0 {
+                (point.slip[row] - problem.rigid_slip) / speed
+            } else {
+                0.0
+            };
+            self.strain[row] = change.rigid_slip + change.strain_speed * stretched + speed * strain;
+            let (phi, slope) = (
+                saturation(point.slip[row], problem.regularisation),
+                saturation_slope(point.slip[row], problem.regularisation),
+            );
+            self.shear[row] = -(change.friction[node] * point.pressure[row] * phi
+                + problem.friction[node] * phi * self.pressure[row]
+                + problem.friction[node] * point.pressure[row] * slope * self.strain[row]);
+        }
+        self.tangential.solve_linear(&mut self.shear[..m]);
+
+        dense::multiply(&self.response.pressure, m, &self.shear, &mut self.friction);
+        dense::add_multiple(&self.friction[..m], 1.0, &mut self.pressure[..m]);
+        dense::multiply(&self.response.strain, m, &self.shear, &mut self.friction);
+        dense::add_multiple(&self.friction[..m], speed, &mut self.strain[..m]);
+        tractions.pressure.fill(0.0);
+        tractions.shear.fill(0.0);
+        tractions.slip.fill(0.0);
+        for (row, &node) in self.nodes.iter().enumerate() {
+            tractions.pressure[node] = self.pressure[row];
+            tractions.shear[node] = self.shear[row];
+            tractions.slip[node] = self.strain[row];
+        }
+        // δ from any closed node: dδ = (C dp − db) there.
+        *tractions.penetration = match (load_given, self.nodes.first()) {
+            (true, Some(&node)) => {
+                self.profile.copy_from_slice(change.profile);
+                dense::multiply_add(&compliance.normal_tangential, tractions.shear, 1.0, &mut self.profile);
+                for profile in &mut self.profile {
+                    *profile = -*profile;
+                }
+                dense::multiply_add(&compliance.normal_normal, tractions.pressure, 1.0, &mut self.profile);
+                self.profile[node]
+            }
+            _ => 0.0,
+        };
     }
 }
 

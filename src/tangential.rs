@@ -32,6 +32,15 @@ pub struct TangentialProblem<'a> {
     pub regularisation: f64,
 }
 
+/// Where the last solve ended, on the nodes of its problem.
+#[derive(Debug, Clone, Copy)]
+pub struct Point<'a> {
+    /// Pressure, scaled.
+    pub pressure: &'a [f64],
+    /// Slip velocity, [m/s].
+    pub slip: &'a [f64],
+}
+
 /// Newton steps at one regularisation.
 const NEWTON_STEPS: usize = 60;
 /// Halvings of one step in the line search.
@@ -86,6 +95,24 @@ impl Tangential {
     /// Slip velocities of the last solve, [m/s], on the nodes of its problem.
     pub fn slip(&self) -> &[f64] {
         &self.slip
+    }
+
+    /// Pressure and slip at the point of the last solve.
+    pub fn point(&self) -> Point<'_> {
+        Point {
+            pressure: &self.pressure,
+            slip: &self.slip,
+        }
+    }
+
+    /// Factorises at the point of the last solve. False where the matrix is singular.
+    pub fn linearise(&mut self, problem: &TangentialProblem) -> bool {
+        self.factorise(problem, problem.regularisation, problem.pressure.len())
+    }
+
+    /// Solves with the matrix of [`Tangential::linearise`], in place.
+    pub fn solve_linear(&self, values: &mut [f64]) {
+        dense::lu_solve(&self.factor, values.len(), &self.pivots, values);
     }
 
     /// Changes `shear` (m, on the nodes of the problem) to the solution. Returns the largest change.
