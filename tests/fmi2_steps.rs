@@ -285,3 +285,42 @@ fn directional_derivatives_are_linear_in_the_direction() {
     client.expect(ERROR, status);
     assert!(client.last_message().contains("dvKnown of creepage"));
 }
+
+/// The model's own tests compare over many operating points; this one compares through the interface.
+#[test]
+fn directional_derivatives_are_the_differences_of_a_rolled_back_step() {
+    let api = Api::load();
+    let start = [("creepage", 5e-4), ("normal_load", 6e4)];
+    let client = Client::running(&api, &start);
+    for step in 0..3 {
+        client.expect(OK, client.step(0.01 * f64::from(step), 0.01));
+    }
+    let handle = client.save();
+    let outputs = ["traction_force", "peak_pressure", "friction_power", "wear_rate"];
+    let step = |name: &str, value: f64| {
+        client.expect(OK, client.restore(handle));
+        client.expect(OK, client.set(&[(name, value)]));
+        client.expect(OK, client.step(0.03, 0.01));
+        outputs.map(|output| client.get(output))
+    };
+    for (name, value) in start {
+        let small = 1e-4 * value;
+        let (above, below) = (step(name, value + small), step(name, value - small));
+        step(name, value);
+        for (row, output) in outputs.into_iter().enumerate() {
+            let (unknown, known, mut derivative) = (reference(output), reference(name), f64::NAN);
+            // SAFETY: one element each.
+            let status = unsafe {
+                (api.directional_derivative)(client.component, &unknown, 1, &known, 1, &1.0, &mut derivative)
+            };
+            client.expect(OK, status);
+            let difference = (above[row] - below[row]) / (2.0 * small);
+            // The differences' own error is of the order of the square of the relative change, and the solvers' 1e-10 over it.
+            let error = (derivative - difference).abs() / difference.abs();
+            assert!(
+                error < 1e-3,
+                "d {output} / d {name} = {derivative}, by differences {difference}"
+            );
+        }
+    }
+}
