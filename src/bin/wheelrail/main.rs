@@ -1,30 +1,45 @@
 //! The command line `wheelrail`.
 
+mod describe;
+mod pack;
 mod simulate;
 mod verify;
 
 use clap::{Parser, Subcommand};
 use std::process::ExitCode;
 
-/// Thermoelastic wheel–rail rolling contact with temperature-dependent friction, heat and wear.
+/// Thermoelastic wheel-rail rolling contact: pack the FMU, describe its variables, simulate natively, verify.
 #[derive(Parser)]
 #[command(version)]
-struct Cli {
+struct Arguments {
     #[command(subcommand)]
     command: Command,
 }
 
 #[derive(Subcommand)]
 enum Command {
-    /// Simulate a scenario natively, without FMI, and write all outputs as CSV
-    Simulate(simulate::Arguments),
-    /// Compare the model with closed forms, identities and published figures
-    Verify,
+    /// Build the archive WheelRailContact.fmu.
+    Pack(pack::Pack),
+    /// List inputs, outputs, parameters and locals.
+    Describe(describe::Describe),
+    /// Simulate a scenario natively, without FMI, and write inputs and outputs as CSV.
+    Simulate(simulate::Simulate),
+    /// Compare the model with closed forms, identities and published figures.
+    Verify(verify::Verify),
 }
 
 fn main() -> ExitCode {
-    match Cli::parse().command {
-        Command::Simulate(arguments) => simulate::run(&arguments),
-        Command::Verify => verify::run(),
+    let result: Result<(), Box<dyn std::error::Error>> = match Arguments::parse().command {
+        Command::Pack(command) => command.run().map_err(Into::into),
+        Command::Describe(command) => command.run().map_err(Into::into),
+        Command::Simulate(command) => command.run().map_err(Into::into),
+        Command::Verify(command) => command.run().map_err(Into::into),
+    };
+    match result {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("wheelrail: {error}");
+            ExitCode::FAILURE
+        }
     }
 }

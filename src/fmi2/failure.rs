@@ -1,0 +1,208 @@
+//! What can go wrong in a call, and who is to blame: that decides the status.
+
+use super::modes::Mode;
+use super::state::Corruption;
+use super::types::Status;
+use crate::error::Error;
+
+/// Why a call did not return fmi2OK. The message names the variable or argument, its value and what is allowed; the
+/// name of the function is put before it where it is logged.
+#[derive(Debug, thiserror::Error)]
+pub enum Failure {
+    /// A value that cannot be; nothing was set.
+    #[error("{0}")]
+    Value(Error),
+    /// A rate of change of an input that cannot be; nothing was set.
+    #[error("the time derivative of {name} = {value}: allowed is any finite value")]
+    Rate {
+        /// The input.
+        name: &'static str,
+        /// The refused value.
+        value: f64,
+    },
+    /// Only the first time derivative of an input has an effect.
+    #[error("the time derivative of order {order} of {name} is not used: inputs are interpolated to order 1")]
+    HigherOrder {
+        /// The input.
+        name: &'static str,
+        /// The order.
+        order: i32,
+    },
+    /// A status that this component does not have.
+    #[error("status kind {kind} cannot be retrieved: there are fmi2LastSuccessfulTime (2, Real) and fmi2Terminated (3, Boolean); steps are not asynchronous")]
+    StatusKind {
+        /// The status kind.
+        kind: i32,
+    },
+    /// A step that came only part of its way.
+    #[error("the step stopped at t = {reached} s, {committed} s after its start, and the last committed state stands: {error}")]
+    Interrupted {
+        /// Time reached, [s].
+        reached: f64,
+        /// Part of the step that was committed, [s].
+        committed: f64,
+        /// Why it stopped.
+        error: Error,
+    },
+    /// A step that could not be begun, with the last committed state standing.
+    #[error("the step from t = {time} s failed, and the last committed state stands: {error}")]
+    Step {
+        /// Time of the last communication point, [s].
+        time: f64,
+        /// Why it failed.
+        error: Error,
+    },
+    /// The model refuses the combination of parameters and inputs, or cannot solve for it.
+    #[error("{0}")]
+    Model(Error),
+    /// A call that the state machine does not allow.
+    #[error("not allowed in state {mode}; allowed in {allowed}")]
+    NotAllowed {
+        /// The instance's state.
+        mode: Mode,
+        /// The states in which the call is allowed.
+        allowed: String,
+    },
+    /// fmi2EnterInitializationMode before fmi2SetupExperiment.
+    #[error("fmi2SetupExperiment must be called before")]
+    NoExperiment,
+    /// A pointer that must not be null.
+    #[error("argument {argument} is a null pointer")]
+    NullPointer {
+        /// The argument.
+        argument: &'static str,
+    },
+    /// A pointer that cannot be one of its type.
+    #[error("argument {argument} is not aligned for its type")]
+    Misaligned {
+        /// The argument.
+        argument: &'static str,
+    },
+    /// More elements than memory can hold.
+    #[error("{count} elements of argument {argument} do not fit into memory")]
+    Count {
+        /// The argument.
+        argument: &'static str,
+        /// The number of elements.
+        count: usize,
+    },
+    /// A value reference that no variable of the type has.
+    #[error("value reference {reference} is not that of {expected}")]
+    UnknownReference {
+        /// The value reference.
+        reference: u32,
+        /// What it should be.
+        expected: &'static str,
+    },
+    /// A variable that cannot be set now.
+    #[error("{name} (value reference {reference}) cannot be set in state {mode}; {settable}")]
+    NotSettable {
+        /// The variable.
+        name: String,
+        /// Its value reference.
+        reference: u32,
+        /// The instance's state.
+        mode: Mode,
+        /// What can be set.
+        settable: &'static str,
+    },
+    /// Derivative order 0 or below.
+    #[error("order {order} of the time derivative of {name}: allowed is 1 and above")]
+    Order {
+        /// The variable.
+        name: &'static str,
+        /// The order.
+        order: i32,
+    },
+    /// A direction that is not finite.
+    #[error("dvKnown of {name} = {value}: allowed is any finite value")]
+    Direction {
+        /// The input.
+        name: &'static str,
+        /// The refused value.
+        value: f64,
+    },
+    /// A start time that is not finite.
+    #[error("startTime = {value} s: allowed is any finite value")]
+    StartTime {
+        /// The refused value.
+        value: f64,
+    },
+    /// A stop time before the start time or not a number.
+    #[error("stopTime = {value} s: allowed is startTime = {start} s and above")]
+    StopTime {
+        /// The refused value.
+        value: f64,
+        /// The start time, [s].
+        start: f64,
+    },
+    /// A step size that is not a positive finite number.
+    #[error("communicationStepSize = {value} s: allowed is any finite value above 0")]
+    StepSize {
+        /// The refused value.
+        value: f64,
+    },
+    /// A communication point other than the one where the last step ended.
+    #[error("currentCommunicationPoint = {value} s: the last communication point was t = {expected} s")]
+    CommunicationPoint {
+        /// The refused value.
+        value: f64,
+        /// Where the last step ended, [s].
+        expected: f64,
+    },
+    /// A step beyond the stop time of the experiment.
+    #[error("the step from t = {time} s by {size} s ends beyond stopTime = {stop} s")]
+    BeyondStop {
+        /// Communication point, [s].
+        time: f64,
+        /// Step size, [s].
+        size: f64,
+        /// Stop time, [s].
+        stop: f64,
+    },
+    /// A log category that is not declared.
+    #[error("there is no log category {name:?}; declared are logStatusError, logStatusWarning, logSolver, logEvents")]
+    UnknownCategory {
+        /// The category.
+        name: String,
+    },
+    /// There are no outputs: the error came before the initialisation.
+    #[error("nothing has been computed: the error came before the end of the initialisation")]
+    NothingComputed,
+    /// A state that this instance has not saved, or has freed.
+    #[error("FMUstate {address:#x} is not a saved state of this instance")]
+    UnknownState {
+        /// The address.
+        address: usize,
+    },
+    /// A buffer of the wrong size.
+    #[error("size = {given}: the serialized state has {needed} bytes")]
+    BufferSize {
+        /// Size of the buffer.
+        given: usize,
+        /// Size of the serialised state.
+        needed: usize,
+    },
+    /// Bytes that are no serialised state of this instance.
+    #[error("the serialized state is refused: {0}")]
+    Corrupt(#[from] Corruption),
+    /// A defect of this library.
+    #[error("internal error: {message}; only fmi2SetFMUstate, fmi2Reset and fmi2FreeInstance lead on")]
+    Panic {
+        /// What the panic said.
+        message: String,
+    },
+}
+
+impl Failure {
+    /// The status that follows: a value or a step that stopped half-way is discarded, everything else is an error.
+    pub fn status(&self) -> Status {
+        match self {
+            Failure::HigherOrder { .. } => Status::WARNING,
+            Failure::Value(_) | Failure::Rate { .. } | Failure::StatusKind { .. } | Failure::Interrupted { .. } => {
+                Status::DISCARD
+            }
+            _ => Status::ERROR,
+        }
+    }
+}
