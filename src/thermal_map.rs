@@ -12,7 +12,7 @@ use crate::mesh::Mesh;
 use nalgebra::{DMatrix, SymmetricEigen};
 
 /// Dropped share of the displacement, relative to the largest column's, for fields of bounded modal energy.
-const TOLERANCE: f64 = 1e-9;
+pub const TOLERANCE: f64 = 1e-9;
 
 /// Maps modal amplitudes (columns × modes) to the 2n scaled displacements, along x₁ first.
 #[derive(Debug, Clone)]

@@ -23,6 +23,10 @@ enum Command {
     /// List inputs, outputs, parameters and locals.
     Describe(describe::Describe),
     /// Simulate a scenario natively, without FMI, and write inputs and outputs as CSV.
+    ///
+    /// The scenario is a table with a header: a column `time` [s], ascending, and a column for each input that changes,
+    /// in SI units. Between its rows the inputs are interpolated linearly; other inputs keep their start values. Lines
+    /// that begin with # are comments.
     Simulate(simulate::Simulate),
     /// Compare the model with closed forms, identities and published figures.
     Verify(verify::Verify),

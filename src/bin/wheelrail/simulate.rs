@@ -11,12 +11,7 @@ use wheelrail::signals::{InputSignal, Inputs, INPUTS, OUTPUTS};
 use wheelrail::wheel_rail::{Model, State};
 
 /// Options of `simulate`.
-///
-/// The scenario is a table with a header: a column `time` [s], ascending, and a column for each input that changes,
-/// in SI units. Between its rows the inputs are interpolated linearly; other inputs keep their start values. Lines
-/// that begin with # are comments.
 #[derive(Args)]
-#[command(verbatim_doc_comment)]
 pub struct Simulate {
     /// The scenario: time and inputs, linear between the rows.
     #[arg(value_name = "SCENARIO.csv")]
