@@ -19,7 +19,7 @@ fn run(p: &Parameters, i: &Inputs, dt: f64, steps: usize) -> (Model, State) {
         t2,
         t3.elapsed() / steps as u32,
         it as f64 / steps as f64,
-        m.rail().thermal_map.moments()
+        m.rail().thermal_map.size().1
     );
     (m, s)
 }

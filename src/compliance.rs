@@ -75,34 +75,6 @@ impl Compliance {
     }
 }
 
-impl RollingCompliance {
-    /// C(V) for ρV² = `rho_v2` into `moving`. All matrices are n × n.
-    pub fn at_speed(&self, rho_v2: f64, moving: &mut Compliance) {
-        let combine = |rest: &DMatrix<f64>, inertia: &DMatrix<f64>, out: &mut DMatrix<f64>| {
-            for ((out, rest), inertia) in out.iter_mut().zip(rest.iter()).zip(inertia.iter()) {
-                *out = rest + rho_v2 * inertia;
-            }
-        };
-        let (rest, inertia) = (&self.at_rest, &self.inertia);
-        combine(&rest.normal_normal, &inertia.normal_normal, &mut moving.normal_normal);
-        combine(
-            &rest.normal_tangential,
-            &inertia.normal_tangential,
-            &mut moving.normal_tangential,
-        );
-        combine(
-            &rest.tangential_normal,
-            &inertia.tangential_normal,
-            &mut moving.tangential_normal,
-        );
-        combine(
-            &rest.tangential_tangential,
-            &inertia.tangential_tangential,
-            &mut moving.tangential_tangential,
-        );
-    }
-}
-
 /// The unit-load fields at the contact nodes and what follows from them: compliance and thermal displacement.
 ///
 /// # Errors

@@ -6,6 +6,7 @@
 //! a = (aⁿ/Δt + |V|/Δx a_upstream + φ(0) q/(ρ c_p)) / (1/Δt + |V|/Δx + κ λ), so its surface temperature is linear in
 //! the surface flux q, and the surface condition (23) is one scalar equation a column.
 
+use crate::dense;
 use crate::error::{Error, Result};
 use crate::friction;
 use crate::parameters::Parameters;
@@ -131,6 +132,11 @@ impl SurfaceExchange {
             conduction: pressure / parameters.contact_thermal_resistance,
         }
     }
+
+    /// Whether the surface is free, so that no heat crosses it.
+    fn is_open(&self) -> bool {
+        self.conduction == 0.0 && self.friction == 0.0
+    }
 }
 
 /// Absolute temperature and scale at which the friction law is evaluated.
@@ -169,9 +175,19 @@ pub struct HeatMarch<'a> {
     pub friction: FrictionState<'a>,
 }
 
+/// What the march computes.
+pub struct Heated<'a> {
+    /// Modal amplitudes, columns × modes, column by column.
+    pub temperature: &'a mut [f64],
+    /// Temperature rise at the surface of the columns, [K].
+    pub surface: &'a mut [f64],
+    /// Heat flux into the rail at the contact nodes, [W/m²].
+    pub flux: &'a mut [f64],
+}
+
 impl HeatMarch<'_> {
-    /// From the field `before` to the field `after` (columns × modes, modal amplitudes, column by column) under the
-    /// exchange at the contact nodes. `flux` gets q at the contact nodes, [W/m²], `scratch` holds one value a mode.
+    /// From the modal amplitudes `before` to the field `after` under the exchange at the contact nodes. `scratch`
+    /// holds one value a mode.
     ///
     /// # Errors
     /// [`Error::SurfaceHeatNotConverged`].
@@ -179,15 +195,31 @@ impl HeatMarch<'_> {
         &self,
         before: &[f64],
         exchange: &[SurfaceExchange],
-        after: &mut [f64],
-        flux: &mut [f64],
+        after: &mut Heated,
+        scratch: &mut [f64],
+    ) -> Result<()> {
+        dense::vectorised(
+            #[inline(always)]
+            || self.advance_kernel(before, exchange, after, scratch),
+        )
+    }
+
+    #[inline(always)]
+    fn advance_kernel(
+        &self,
+        before: &[f64],
+        exchange: &[SurfaceExchange],
+        after: &mut Heated,
         scratch: &mut [f64],
     ) -> Result<()> {
         let parameters = self.friction.parameters;
         let (m, capacity) = (self.basis.len(), parameters.volumetric_heat_capacity());
         let storage = 1.0 / self.duration;
         let inflow = self.transport.inflow();
-        after[inflow * m..(inflow + 1) * m].fill(0.0);
+        after.temperature[inflow * m..(inflow + 1) * m].fill(0.0);
+        after.surface[inflow] = 0.0;
+        let surface = &self.basis.surface[..m];
+        let inverse = &mut scratch[..m];
         let mut spacing = f64::NAN;
         let mut response = 0.0;
         for column in self.transport.columns() {
@@ -195,34 +227,31 @@ impl HeatMarch<'_> {
             // The denominators are those of the last column where the spacing is the same (all over the window).
             if (column.spacing - spacing).abs() > 1e-9 * column.spacing || spacing.is_nan() {
                 spacing = column.spacing;
-                response = 0.0;
-                for (mode, inverse) in scratch.iter_mut().enumerate() {
-                    let decay = parameters.thermal_diffusivity * self.basis.eigenvalues[mode];
-                    *inverse = 1.0 / (storage + advection + decay);
-                    response += self.basis.surface[mode] * self.basis.surface[mode] * *inverse;
+                for (inverse, eigenvalue) in inverse.iter_mut().zip(&self.basis.eigenvalues) {
+                    *inverse = 1.0 / (storage + advection + parameters.thermal_diffusivity * eigenvalue);
                 }
-                response /= capacity;
+                response = surface.iter().zip(&*inverse).map(|(s, i)| s * s * i).sum::<f64>() / capacity;
             }
-            let (own, upstream) = split_columns(after, column.index, column.upstream, m);
+            let (own, upstream) = split_columns(after.temperature, column.index, column.upstream, m);
             let old = &before[column.index * m..(column.index + 1) * m];
-            let mut unheated = 0.0;
             for mode in 0..m {
-                own[mode] = (storage * old[mode] + advection * upstream[mode]) * scratch[mode];
-                unheated += self.basis.surface[mode] * own[mode];
+                own[mode] = (storage * old[mode] + advection * upstream[mode]) * inverse[mode];
             }
+            let unheated = dense::dot(own, surface);
+            after.surface[column.index] = unheated;
             let contact = column.index.wrapping_sub(self.first_contact);
-            let Some(&exchange) = exchange.get(contact) else {
+            let Some(exchange) = exchange.get(contact) else {
                 continue;
             };
-            if exchange.conduction == 0.0 && exchange.friction == 0.0 {
-                flux[contact] = 0.0;
+            if exchange.is_open() {
+                after.flux[contact] = 0.0;
                 continue;
             }
-            let q = self.surface_flux(&exchange, unheated, response, column.index)?;
-            flux[contact] = q;
-            let q = q / capacity;
+            let q = self.surface_flux(exchange, unheated, response, column.index)?;
+            after.flux[contact] = q;
+            after.surface[column.index] += response * q;
             for mode in 0..m {
-                own[mode] += q * self.basis.surface[mode] * scratch[mode];
+                own[mode] += q / capacity * surface[mode] * inverse[mode];
             }
         }
         Ok(())

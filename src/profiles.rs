@@ -36,7 +36,7 @@ impl Profiles {
         let mesh = &rail.mesh;
         let n = mesh.contact_nodes;
         let surface: Vec<f64> = (0..n)
-            .map(|node| ambient + fields.surface_temperature(rail, mesh.contact_column(node)))
+            .map(|node| ambient + fields.surface_temperature[mesh.contact_column(node)])
             .collect();
         let sample = |values: &[f64]| -> Vec<f64> {
             (0..PROFILE_POINTS)

@@ -1,198 +1,262 @@
-//! The friction problem (30): Newton for the shear traction at given pressure.
+//! The friction problem (30): Newton for the shear traction.
 //!
 //! Find τ with τ + μ p φ(s) = 0 on the nodes under pressure, where the slip velocity is
-//! s = (ω r₀ − V) − V ∂u₁/∂x₁ and u₁ = C_tt τ + (what pressure and heat cause). The derivative is taken upwind, from the
-//! leading side. Tractions and displacements are scaled, speeds are in m/s.
+//! s = (ω r₀ − V) − V ∂u₁/∂x₁. The derivative is taken upwind, from the leading side, so that
+//! s = (ω r₀ − V) + |V|/Δx (u₁ − u₁ of the node ahead); the bracket is called strain here.
+//!
+//! The problem is posed around the tractions of the sweep before: pressure and strain there are given, and how both
+//! respond to a change of τ (see [`crate::mechanics::Response`]). Tractions and displacements are scaled, speeds in m/s.
 
-use crate::compliance::Compliance;
 use crate::dense;
 use crate::error::{Error, Result};
 use crate::friction::{saturation, saturation_slope};
 
-/// The data of one problem with n nodes.
+/// The data of one problem on the m nodes under pressure.
 #[derive(Debug, Clone, Copy)]
 pub struct TangentialProblem<'a> {
-    /// The compliance; C_tt is used.
-    pub compliance: &'a Compliance,
-    /// u₁ caused by pressure and heat, n.
-    pub free_displacement: &'a [f64],
-    /// μ p, n; the problem is solved where it is positive.
-    pub bound: &'a [f64],
+    /// p at the shear the solve starts from, m.
+    pub pressure: &'a [f64],
+    /// Strain at the shear the solve starts from, m.
+    pub strain: &'a [f64],
+    /// ∂p/∂τ, m × m.
+    pub pressure_response: &'a [f64],
+    /// ∂strain/∂τ, m × m.
+    pub strain_response: &'a [f64],
+    /// μ, m.
+    pub friction: &'a [f64],
     /// ω r₀ − V, [m/s].
     pub rigid_slip: f64,
-    /// V times the displacement scale over the node spacing, [m/s]; its sign gives the leading side.
+    /// |V| times the displacement scale over the node spacing, [m/s].
     pub strain_speed: f64,
     /// ε, [m/s].
     pub regularisation: f64,
 }
 
+/// Where the last solve ended, on the nodes of its problem.
+#[derive(Debug, Clone, Copy)]
+pub struct Point<'a> {
+    /// Pressure, scaled.
+    pub pressure: &'a [f64],
+    /// Slip velocity, [m/s].
+    pub slip: &'a [f64],
+}
+
 /// Newton steps at one regularisation.
-const NEWTON_STEPS: usize = 40;
+const NEWTON_STEPS: usize = 60;
 /// Halvings of one step in the line search.
 const HALVINGS: usize = 12;
-/// Largest number of decades of continuation in ε.
-const CONTINUATION_DECADES: i32 = 8;
-/// Newton step at which the iteration stops, relative to the largest bound; the next one would be its square.
+/// Half-decades of continuation in ε.
+const CONTINUATION: i32 = 10;
+/// Newton step at which the iteration stops, relative to the largest pressure.
 const TOLERANCE: f64 = 1e-11;
+/// A factorisation is kept while each step is shorter than this share of the one before.
+const SLOW_CONTRACTION: f64 = 0.1;
 
-/// Scratch of the Newton method.
+/// Scratch of the Newton method, and its last factorised matrix.
 #[derive(Debug, Clone)]
 pub struct Tangential {
-    nodes: Vec<usize>,
-    displacement: Vec<f64>,
+    /// Change of the shear since the start of the solve.
+    change: Vec<f64>,
+    pressure: Vec<f64>,
+    strain: Vec<f64>,
+    slip: Vec<f64>,
     residual: Vec<f64>,
     step: Vec<f64>,
     trial: Vec<f64>,
-    jacobian: Vec<f64>,
+    factor: Vec<f64>,
     pivots: Vec<usize>,
-    start: Vec<f64>,
+    /// Whether `factor` may still be used.
+    factored: bool,
 }
 
 impl Tangential {
     /// Scratch for problems with up to `nodes` nodes.
     pub fn new(nodes: usize) -> Tangential {
         Tangential {
-            nodes: Vec::with_capacity(nodes),
-            displacement: vec![0.0; nodes],
+            change: vec![0.0; nodes],
+            pressure: vec![0.0; nodes],
+            strain: vec![0.0; nodes],
+            slip: vec![0.0; nodes],
             residual: vec![0.0; nodes],
             step: vec![0.0; nodes],
             trial: vec![0.0; nodes],
-            jacobian: vec![0.0; nodes * nodes],
+            factor: vec![0.0; nodes * nodes],
             pivots: vec![0; nodes],
-            start: vec![0.0; nodes],
+            factored: false,
         }
     }
 
-    /// Solves from `shear`; `slip` gets s of the solution, 0 outside the contact. Returns the number of Newton steps.
+    /// Forgets the factorised matrix: at the start of a step, so that it does not depend on the steps before, and
+    /// when the nodes under pressure change.
+    pub fn forget(&mut self) {
+        self.factored = false;
+    }
+
+    /// Slip velocities of the last solve, [m/s], on the nodes of its problem.
+    pub fn slip(&self) -> &[f64] {
+        &self.slip
+    }
+
+    /// Pressure and slip at the point of the last solve.
+    pub fn point(&self) -> Point<'_> {
+        Point {
+            pressure: &self.pressure,
+            slip: &self.slip,
+        }
+    }
+
+    /// Factorises at the point of the last solve. False where the matrix is singular.
+    pub fn linearise(&mut self, problem: &TangentialProblem) -> bool {
+        self.factorise(problem, problem.regularisation, problem.pressure.len())
+    }
+
+    /// Solves with the matrix of [`Tangential::linearise`], in place.
+    pub fn solve_linear(&self, values: &mut [f64]) {
+        dense::lu_solve(&self.factor, values.len(), &self.pivots, values);
+    }
+
+    /// Changes `shear` (m, on the nodes of the problem) to the solution. Returns the largest change.
     ///
     /// # Errors
     /// [`Error::TangentialNotConverged`].
-    pub fn solve(&mut self, problem: &TangentialProblem, shear: &mut [f64], slip: &mut [f64]) -> Result<usize> {
-        self.nodes.clear();
-        self.nodes.extend((0..shear.len()).filter(|&i| problem.bound[i] > 0.0));
-        for (shear, &bound) in shear.iter_mut().zip(problem.bound) {
-            *shear = shear.clamp(-bound.max(0.0), bound.max(0.0));
+    pub fn solve(&mut self, problem: &TangentialProblem, shear: &mut [f64]) -> Result<f64> {
+        let m = shear.len();
+        self.change[..m].fill(0.0);
+        let mut last = self.newton(problem, problem.regularisation, shear);
+        if last.is_err() {
+            // From a large ε, where the law is nearly linear, down to the one asked for.
+            self.change[..m].fill(0.0);
+            let mut iterations = last.unwrap_or_else(|steps| steps);
+            for half_decades in (0..=CONTINUATION).rev() {
+                self.forget();
+                let regularisation = problem.regularisation * 10.0_f64.powf(0.5 * f64::from(half_decades));
+                last = self.newton(problem, regularisation, shear);
+                iterations += last.unwrap_or_else(|steps| steps);
+            }
+            self.forget();
+            last = last.map_err(|_| iterations);
         }
-        self.start.copy_from_slice(shear);
-        let mut iterations = 0;
-        match self.newton(problem, problem.regularisation, shear, slip) {
-            Ok(steps) => return Ok(steps),
-            Err(steps) => iterations += steps,
+        match last {
+            Ok(_) => {
+                for (shear, change) in shear.iter_mut().zip(&self.change) {
+                    *shear += change;
+                }
+                Ok(largest(&self.change[..m]))
+            }
+            Err(iterations) => Err(Error::TangentialNotConverged {
+                iterations,
+                residual: largest(&self.residual[..m]) / largest(&problem.pressure[..m]),
+                tolerance: TOLERANCE,
+            }),
         }
-        // From a large ε, where the law is nearly linear, down to the one asked for.
-        shear.copy_from_slice(&self.start);
-        let mut last = Ok(0);
-        for decade in (0..=CONTINUATION_DECADES).rev() {
-            let regularisation = problem.regularisation * 10.0_f64.powf(0.5 * f64::from(decade));
-            last = self.newton(problem, regularisation, shear, slip);
-            iterations += last.unwrap_or_else(|steps| steps);
-        }
-        let bound = problem.bound.iter().fold(f64::MIN_POSITIVE, |m, &b| b.max(m));
-        last.map(|_| iterations).map_err(|_| Error::TangentialNotConverged {
-            iterations,
-            residual: self.step.iter().fold(0.0, |m: f64, d| d.abs().max(m)) / bound,
-            tolerance: TOLERANCE,
-        })
     }
 
-    /// Damped Newton at one ε. `Ok` or `Err` with the number of steps done.
+    /// Damped Newton at one ε, with the factorised matrix as long as it contracts fast. `Ok` or `Err` with the
+    /// number of steps.
     fn newton(
         &mut self,
         problem: &TangentialProblem,
         regularisation: f64,
-        shear: &mut [f64],
-        slip: &mut [f64],
+        shear: &[f64],
     ) -> std::result::Result<usize, usize> {
-        let bound = problem.bound.iter().fold(0.0, |m: f64, &b| b.max(m));
-        let mut norm = self.update_residual(problem, regularisation, shear, slip);
-        if bound == 0.0 {
-            return Ok(0);
-        }
+        let m = shear.len();
+        let tolerance = TOLERANCE * largest(problem.pressure);
+        let mut norm = self.update_residual(problem, regularisation, shear);
+        let mut last_length = f64::INFINITY;
         for steps in 1..=NEWTON_STEPS {
-            if !self.newton_step(problem, regularisation, slip) {
+            let fresh = !self.factored;
+            if fresh && !self.factorise(problem, regularisation, m) {
                 return Err(steps);
             }
-            let largest = self.step.iter().fold(0.0, |m: f64, d| d.abs().max(m));
-            let last = largest <= TOLERANCE * bound;
-            self.trial.copy_from_slice(shear);
-            let mut length = 1.0;
+            self.find_step(m);
+            let length = largest(&self.step[..m]);
+            if !fresh && !(length <= SLOW_CONTRACTION * last_length || length <= tolerance) {
+                self.factored = false;
+                continue;
+            }
+            let last = length <= tolerance;
+            self.trial[..m].copy_from_slice(&self.change[..m]);
+            let mut damping = 1.0;
             for halving in 0..=HALVINGS {
-                for (&i, step) in self.nodes.iter().zip(&self.step) {
-                    shear[i] = self.trial[i] + length * step;
+                for ((change, trial), step) in self.change.iter_mut().zip(&self.trial).zip(&self.step[..m]) {
+                    *change = trial + damping * step;
                 }
-                let trial = self.update_residual(problem, regularisation, shear, slip);
+                let trial = self.update_residual(problem, regularisation, shear);
                 // The last step is within round-off of the residual: it is not asked to fall.
-                if last || trial < (1.0 - 0.1 * length) * norm {
+                if last || trial <= (1.0 - 0.1 * damping) * norm {
                     norm = trial;
                     break;
                 }
-                if halving == HALVINGS {
-                    return Err(steps);
+                if halving == HALVINGS || !fresh {
+                    if fresh {
+                        return Err(steps);
+                    }
+                    // An old matrix may point uphill: factorise at the point before.
+                    self.change[..m].copy_from_slice(&self.trial[..m]);
+                    norm = self.update_residual(problem, regularisation, shear);
+                    self.factored = false;
+                    break;
                 }
-                length *= 0.5;
+                damping *= 0.5;
             }
             if last {
                 return Ok(steps);
             }
+            last_length = if damping < 1.0 {
+                self.factored = false;
+                f64::INFINITY
+            } else {
+                length
+            };
         }
         Err(NEWTON_STEPS)
     }
 
-    /// Slip and residual τ + μ p φ(s) on the nodes; returns the residual's 2-norm.
-    fn update_residual(
-        &mut self,
-        problem: &TangentialProblem,
-        regularisation: f64,
-        shear: &[f64],
-        slip: &mut [f64],
-    ) -> f64 {
-        self.displacement.copy_from_slice(problem.free_displacement);
-        dense::multiply_add(
-            &problem.compliance.tangential_tangential,
-            shear,
-            1.0,
-            &mut self.displacement,
-        );
-        slip.fill(0.0);
+    /// Pressure, slip and residual τ + μ p φ(s) after `self.change`; returns the residual's 2-norm.
+    fn update_residual(&mut self, problem: &TangentialProblem, regularisation: f64, shear: &[f64]) -> f64 {
+        let m = shear.len();
+        dense::multiply(problem.pressure_response, m, &self.change, &mut self.pressure);
+        dense::multiply(problem.strain_response, m, &self.change, &mut self.strain);
         let mut square = 0.0;
-        for (row, &i) in self.nodes.iter().enumerate() {
-            let ahead = leading_neighbour(i, problem.strain_speed);
-            let strain = self.displacement[i] - self.displacement[ahead];
-            slip[i] = problem.rigid_slip + problem.strain_speed.abs() * strain;
-            self.residual[row] = shear[i] + problem.bound[i] * saturation(slip[i], regularisation);
-            square += self.residual[row] * self.residual[row];
+        for i in 0..m {
+            self.pressure[i] = (problem.pressure[i] + self.pressure[i]).max(0.0);
+            self.slip[i] = problem.rigid_slip + problem.strain_speed * (problem.strain[i] + self.strain[i]);
+            let bound = problem.friction[i] * self.pressure[i];
+            self.residual[i] = shear[i] + self.change[i] + bound * saturation(self.slip[i], regularisation);
+            square += self.residual[i] * self.residual[i];
         }
         square.sqrt()
     }
 
-    /// Solves (1 + μ p φ′(s) ∂s/∂τ) Δτ = −residual into `self.step`. False where the matrix is singular.
-    fn newton_step(&mut self, problem: &TangentialProblem, regularisation: f64, slip: &[f64]) -> bool {
-        let m = self.nodes.len();
-        let compliance = &problem.compliance.tangential_tangential;
-        self.step.fill(0.0);
-        for (row, &i) in self.nodes.iter().enumerate() {
-            let ahead = leading_neighbour(i, problem.strain_speed);
-            let stiffening = problem.bound[i] * saturation_slope(slip[i], regularisation) * problem.strain_speed.abs();
-            for (column, &j) in self.nodes.iter().enumerate() {
-                self.jacobian[column * m + row] = stiffening * (compliance[(i, j)] - compliance[(ahead, j)]);
+    /// Factorises 1 + μ p φ′(s) ∂s/∂τ + μ φ(s) ∂p/∂τ at the present point. False where it is singular.
+    fn factorise(&mut self, problem: &TangentialProblem, regularisation: f64, m: usize) -> bool {
+        for i in 0..m {
+            let slope = saturation_slope(self.slip[i], regularisation) * problem.strain_speed;
+            self.trial[i] = problem.friction[i] * self.pressure[i] * slope;
+            self.step[i] = problem.friction[i] * saturation(self.slip[i], regularisation);
+        }
+        for column in 0..m {
+            let range = column * m..(column + 1) * m;
+            let strain = &problem.strain_response[range.clone()];
+            let pressure = &problem.pressure_response[range.clone()];
+            for (i, entry) in self.factor[range].iter_mut().enumerate() {
+                *entry = self.trial[i] * strain[i] + self.step[i] * pressure[i];
             }
-            self.jacobian[row * m + row] += 1.0;
-            self.step[row] = -self.residual[row];
+            self.factor[column * m + column] += 1.0;
         }
-        if !dense::lu(&mut self.jacobian[..m * m], m, &mut self.pivots) {
-            return false;
+        self.factored = dense::lu(&mut self.factor[..m * m], m, &mut self.pivots);
+        self.factored
+    }
+
+    /// Newton step −J⁻¹ residual.
+    fn find_step(&mut self, m: usize) {
+        for (step, residual) in self.step.iter_mut().zip(&self.residual[..m]) {
+            *step = -residual;
         }
-        dense::lu_solve(&self.jacobian, m, &self.pivots, &mut self.step[..m]);
-        self.step.iter().all(|step| step.is_finite())
+        dense::lu_solve(&self.factor, m, &self.pivots, &mut self.step[..m]);
     }
 }
 
-/// The next node on the leading side, towards +x₁ for V ≥ 0. Contact nodes always have one: a contact that reaches
-/// the end of the window is an error of [`crate::contact`].
-fn leading_neighbour(node: usize, speed: f64) -> usize {
-    if speed >= 0.0 {
-        node + 1
-    } else {
-        node - 1
-    }
+fn largest(values: &[f64]) -> f64 {
+    values.iter().fold(0.0, |m: f64, v| v.abs().max(m))
 }

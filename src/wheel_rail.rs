@@ -3,7 +3,9 @@
 use crate::contact::{Conditions, Contact, Fields, Rail, Scratch};
 use crate::error::{Error, Result};
 use crate::friction;
+use crate::outputs;
 use crate::parameters::Parameters;
+use crate::sensitivity::Linearisation;
 use crate::signals::{Inputs, Outputs, OUTPUTS};
 use serde::{Deserialize, Serialize};
 
@@ -120,7 +122,7 @@ impl Model {
             output_rates: Outputs::default(),
             convergence: Convergence::default(),
         };
-        state.outputs = self.instant_outputs(&state.fields, inputs);
+        state.outputs = outputs::instantaneous(&self.rail, &self.parameters, &state.fields, inputs);
         Ok(state)
     }
 
@@ -128,18 +130,8 @@ impl Model {
     pub fn accepts(&self, state: &State) -> bool {
         let expected = Fields::new(&self.rail);
         let fields = &state.fields;
-        let pairs = [
-            (&fields.temperature, &expected.temperature),
-            (&fields.wear, &expected.wear),
-            (&fields.pressure, &expected.pressure),
-            (&fields.shear, &expected.shear),
-            (&fields.slip, &expected.slip),
-            (&fields.friction, &expected.friction),
-            (&fields.heat_flux, &expected.heat_flux),
-        ];
-        pairs
-            .iter()
-            .all(|(own, expected)| own.len() == expected.len() && own.iter().all(|v| v.is_finite()))
+        let mut pairs = fields.vectors().into_iter().zip(expected.vectors());
+        pairs.all(|(own, expected)| own.len() == expected.len() && own.iter().all(|v| v.is_finite()))
             && OUTPUTS.iter().all(|signal| (signal.get)(&state.outputs).is_finite())
             && fields.penetration.is_finite()
             && state.time.is_finite()
@@ -215,7 +207,7 @@ impl Model {
         let contact = self.contact(inputs, duration);
         let convergence = contact.operator_split(&state.fields, trial, scratch)?;
 
-        let mut outputs = self.instant_outputs(trial, inputs);
+        let mut outputs = outputs::instantaneous(&self.rail, &self.parameters, trial, inputs);
         outputs.worn_volume = state.outputs.worn_volume + outputs.wear_rate * duration;
         outputs.friction_energy = state.outputs.friction_energy + outputs.friction_power * duration;
         outputs.distance = state.outputs.distance + contact.conditions.motion.rolling_speed.abs() * duration;
@@ -270,124 +262,24 @@ impl Model {
         2.0 * self.rail.mesh.window_half_width() / inputs.motion(&self.parameters).rolling_speed.abs()
     }
 
-    /// The outputs that follow from the fields and the inputs; the totals are 0.
-    fn instant_outputs(&self, fields: &Fields, inputs: &Inputs) -> Outputs {
-        let (rail, parameters) = (&self.rail, &self.parameters);
-        let motion = inputs.motion(parameters);
-        let (spacing, scale) = (rail.mesh.contact_spacing(), rail.scales.pressure);
-        let force = parameters.contact_width * spacing * scale;
-        let n = rail.mesh.contact_nodes;
-
-        let (mut total, mut moment, mut shear, mut weighted) = (0.0, 0.0, 0.0, 0.0);
-        let (mut friction_power, mut wear, mut heat) = (0.0, 0.0, 0.0);
-        let (mut peak_pressure, mut peak_shear) = (0.0_f64, 0.0_f64);
-        let (mut contact_nodes, mut sticking) = (0.0, 0.0);
-        for node in 0..n {
-            heat += fields.heat_flux[node];
-            let (p, tau, slip) = (fields.pressure[node], fields.shear[node], fields.slip[node]);
-            if p <= 0.0 {
-                continue;
-            }
-            total += p;
-            moment += p * rail.mesh.contact_position(node);
-            shear += tau;
-            weighted += p * fields.friction[node];
-            friction_power += (tau * slip).abs();
-            wear += p * slip.abs();
-            peak_pressure = peak_pressure.max(p);
-            peak_shear = peak_shear.max(tau.abs());
-            contact_nodes += 1.0;
-            if friction::saturation(slip, parameters.slip_regularisation).abs() < friction::STICK_SATURATION {
-                sticking += 1.0;
-            }
-        }
-        let peak_rise = (0..rail.mesh.columns())
-            .map(|column| fields.surface_temperature(rail, column))
-            .fold(0.0, f64::max);
-        let ambient = inputs.ambient_temperature;
-        let load = force * total;
-        let traction_force = -force * shear;
-        let per_total = |value: f64| if total > 0.0 { value / total } else { 0.0 };
-        let offset = per_total(moment);
-        let cold = friction::coefficient(parameters, ambient + peak_rise).0 * inputs.friction_scale;
-        Outputs {
-            traction_force,
-            friction_torque: -(traction_force * parameters.wheel_radius + load * offset),
-            peak_temperature: ambient + peak_rise,
-            traction_coefficient: -per_total(shear),
-            slip_creepage: creepage(motion.rolling_speed, motion.rigid_slip),
-            penetration: fields.penetration * rail.scales.displacement,
-            contact_length: self.contact_length(fields),
-            contact_offset: offset,
-            peak_pressure: peak_pressure * scale,
-            peak_shear: peak_shear * scale,
-            stick_fraction: if contact_nodes > 0.0 {
-                sticking / contact_nodes
-            } else {
-                0.0
-            },
-            friction_coefficient: if total > 0.0 { weighted / total } else { cold },
-            friction_power: force * friction_power,
-            rail_heat_flow: parameters.contact_width * spacing * heat,
-            wear_depth: self.wear_left_behind(fields, motion.rolling_speed),
-            wear_rate: force * parameters.wear_coefficient * wear,
-            worn_volume: 0.0,
-            friction_energy: 0.0,
-            distance: 0.0,
-        }
-    }
-
-    /// Distance between the ends of the contact. At an end the pressure falls like the root of the distance, so its
-    /// square is linear there and its zero is found between the nodes.
-    fn contact_length(&self, fields: &Fields) -> f64 {
-        let p = &fields.pressure;
-        let beyond = |last: usize, inner: Option<usize>| {
-            let (edge, inside) = (p[last], inner.map_or(0.0, |i| p[i]));
-            if inside > edge {
-                (edge * edge / (inside * inside - edge * edge)).min(1.0)
-            } else {
-                0.5
-            }
-        };
-        let first = p.iter().position(|&p| p > 0.0);
-        let last = p.iter().rposition(|&p| p > 0.0);
-        match (first, last) {
-            (Some(first), Some(last)) => {
-                let nodes = (last - first) as f64;
-                let inner = |i| if first < last { Some(i) } else { None };
-                (nodes + beyond(first, inner(first + 1)) + beyond(last, inner(last.wrapping_sub(1))))
-                    * self.rail.mesh.contact_spacing()
-            }
-            _ => 0.0,
-        }
-    }
-
-    /// Wear depth at the end of the window where material leaves it; at rest the deepest, [m].
-    fn wear_left_behind(&self, fields: &Fields, rolling_speed: f64) -> f64 {
-        let mesh = &self.rail.mesh;
-        let window = &fields.wear[mesh.first_contact..mesh.first_contact + mesh.contact_nodes];
-        if rolling_speed > 0.0 {
-            window[0]
-        } else if rolling_speed < 0.0 {
-            window[window.len() - 1]
-        } else {
-            window.iter().fold(0.0, |m, &w| w.max(m))
-        }
-    }
-
     /// Rates of change of the outputs at the communication point, per second: over the last sub-step.
     pub fn output_rates(&self, state: &State) -> Outputs {
         state.output_rates
     }
 
-    /// d(output)/d(each input) at the communication point: one entry per row of [`OUTPUTS`], whose fields hold the
+    /// Derivatives of the outputs with respect to the inputs at the communication point, from the linearised discrete
+    /// equations of the last sub-step ([`crate::sensitivity`]): one entry per row of [`OUTPUTS`], whose fields hold the
     /// derivatives with respect to the inputs.
+    ///
+    /// Held fixed are temperature, wear and totals at the beginning of that sub-step and its length; after
+    /// initialisation, where no time has passed yet, temperature and wear themselves.
     ///
     /// # Errors
     /// A linear system that could not be solved.
     pub fn output_sensitivities(&self, workspace: &mut Workspace, state: &State) -> Result<Vec<Inputs>> {
-        let _ = (workspace, state);
-        Ok(vec![Inputs::ZERO; OUTPUTS.len()])
+        let Workspace { scratch, trial } = workspace;
+        trial.copy_from(&state.fields);
+        Linearisation::new(self.contact(&state.inputs, state.duration), trial, scratch)?.output_sensitivities()
     }
 
     /// How the last step converged.
@@ -398,17 +290,5 @@ impl Model {
     /// Profiles for plotting.
     pub fn profiles(&self, state: &State) -> Profiles {
         Profiles::new(&self.rail, &state.fields, state.inputs.ambient_temperature)
-    }
-}
-
-/// (ω r₀ − V)/V. Near rest the divisor is held at 1 mm/s, so that it stays finite.
-fn creepage(rolling_speed: f64, rigid_slip: f64) -> f64 {
-    let floor = 1e-3_f64;
-    if rolling_speed.abs() >= floor {
-        rigid_slip / rolling_speed
-    } else if rolling_speed < 0.0 {
-        -rigid_slip / floor
-    } else {
-        rigid_slip / floor
     }
 }

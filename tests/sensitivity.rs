@@ -1,0 +1,113 @@
+//! The output sensitivities are the derivatives of a step: compared with central differences of the step itself, rolled
+//! back to the same state, over operating points in stick, partial slip and sliding.
+
+use proptest::prelude::*;
+use wheelrail::parameters::{FrictionLaw, Parameters, SlipSource};
+use wheelrail::signals::{Inputs, INPUTS, OUTPUTS};
+use wheelrail::wheel_rail::{Model, State, Workspace};
+
+const STEP: f64 = 1e-3;
+
+fn settled(model: &Model, workspace: &mut Workspace, inputs: &Inputs) -> State {
+    let mut state = model.initial_state(workspace, inputs).unwrap();
+    for _ in 0..20 {
+        model.step(workspace, &mut state, inputs, &Inputs::ZERO, STEP).unwrap();
+    }
+    state
+}
+
+/// Central difference of all outputs with respect to one input over a step from `state`, and whether the outputs are
+/// smooth between the two ends: forward and backward differences agree, so that no node joined or left the contact and
+/// no corner of the friction law was crossed.
+fn difference(model: &Model, workspace: &mut Workspace, state: &State, inputs: &Inputs, input: usize) -> (Vec<f64>, Vec<bool>) {
+    let signal = &INPUTS[input];
+    let nominal = match signal.name {
+        "creepage" => 1e-3,
+        "wheel_speed" | "vehicle_speed" if model.parameters().slip_source == SlipSource::VehicleSpeed => 1e-2,
+        _ => signal.nominal,
+    };
+    let mut run = |change: f64| {
+        let mut moved = *inputs;
+        (signal.set)(&mut moved, (signal.get)(inputs) + change);
+        let mut state = state.clone();
+        model.step(workspace, &mut state, &moved, &Inputs::ZERO, STEP).unwrap();
+        state
+    };
+    let h = 1e-4 * nominal;
+    let (here, ahead, behind) = (run(0.0), run(h), run(-h));
+    let same_set = |a: &State, b: &State| {
+        a.fields.pressure.iter().zip(&b.fields.pressure).all(|(a, b)| (*a > 0.0) == (*b > 0.0))
+    };
+    let smooth_set = same_set(&here, &ahead) && same_set(&here, &behind);
+    let mut smooth = Vec::new();
+    let mut derivative = Vec::new();
+    for output in OUTPUTS {
+        let (c, a, b) = ((output.get)(&here.outputs), (output.get)(&ahead.outputs), (output.get)(&behind.outputs));
+        let (forward, backward) = ((a - c) / h, (c - b) / h);
+        smooth.push(smooth_set && (forward - backward).abs() <= 2e-3 * forward.abs().max(backward.abs()));
+        derivative.push((a - b) / (2.0 * h));
+    }
+    (derivative, smooth)
+}
+
+fn check(parameters: Parameters, inputs: Inputs) -> usize {
+    let model = Model::new(parameters).unwrap();
+    let mut workspace = model.workspace();
+    let before = settled(&model, &mut workspace, &inputs);
+    let mut state = before.clone();
+    model.step(&mut workspace, &mut state, &inputs, &Inputs::ZERO, STEP).unwrap();
+    let sensitivities = model.output_sensitivities(&mut workspace, &state).unwrap();
+    let mut compared = 0;
+    for (row, input) in INPUTS.iter().enumerate() {
+        let (differences, smooth) = difference(&model, &mut workspace, &before, &inputs, row);
+        for (index, output) in OUTPUTS.iter().enumerate() {
+            let exact = (input.get)(&sensitivities[index]);
+            let scale = output.nominal.max((output.get)(&state.outputs).abs()) / input.nominal;
+            if !smooth[index] {
+                continue;
+            }
+            // 1e-4 of the derivative; below, the split's tolerance 1e-9 over the relative step 1e-4 of a difference.
+            let tolerance = 1e-4 * exact.abs() + 2e-5 * scale;
+            compared += 1;
+            assert!(
+                (exact - differences[index]).abs() <= tolerance,
+                "d {} / d {}: {exact} against {} at {inputs:?}",
+                output.name,
+                input.name,
+                differences[index]
+            );
+        }
+    }
+    compared
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 12, ..ProptestConfig::default() })]
+    #[test]
+    fn sensitivities_are_the_derivatives_of_a_step(
+        creepage in prop_oneof![Just(0.0), -0.003..0.003, 0.005..0.2, -0.2..-0.005],
+        speed in 2.0..40.0,
+        load in 20e3..110e3,
+        scale in 0.3..1.2,
+        vehicle in any::<bool>(),
+        reverse in any::<bool>(),
+        law in prop_oneof![Just(FrictionLaw::Constant), Just(FrictionLaw::PiecewiseLinear), Just(FrictionLaw::FlowStress)],
+    ) {
+        let parameters = Parameters {
+            slip_source: if vehicle { SlipSource::VehicleSpeed } else { SlipSource::Creepage },
+            friction_law: law,
+            ..Parameters::default()
+        };
+        let direction = if reverse { -1.0 } else { 1.0 };
+        let inputs = Inputs {
+            wheel_speed: direction * speed * (1.0 + creepage) / parameters.wheel_radius,
+            vehicle_speed: direction * speed,
+            creepage,
+            normal_load: load,
+            friction_scale: scale,
+            ..Inputs::default()
+        };
+        // 114 pairs; the rest crosses a corner.
+        prop_assert!(check(parameters, inputs) >= 57);
+    }
+}
