@@ -19,7 +19,13 @@ fn settled(model: &Model, workspace: &mut Workspace, inputs: &Inputs) -> State {
 /// Central difference of all outputs with respect to one input over a step from `state`, and whether the outputs are
 /// smooth between the two ends: forward and backward differences agree, so that no node joined or left the contact and
 /// no corner of the friction law was crossed.
-fn difference(model: &Model, workspace: &mut Workspace, state: &State, inputs: &Inputs, input: usize) -> (Vec<f64>, Vec<bool>) {
+fn difference(
+    model: &Model,
+    workspace: &mut Workspace,
+    state: &State,
+    inputs: &Inputs,
+    input: usize,
+) -> (Vec<f64>, Vec<bool>) {
     let signal = &INPUTS[input];
     let nominal = match signal.name {
         "creepage" => 1e-3,
@@ -36,13 +42,21 @@ fn difference(model: &Model, workspace: &mut Workspace, state: &State, inputs: &
     let h = 1e-4 * nominal;
     let (here, ahead, behind) = (run(0.0), run(h), run(-h));
     let same_set = |a: &State, b: &State| {
-        a.fields.pressure.iter().zip(&b.fields.pressure).all(|(a, b)| (*a > 0.0) == (*b > 0.0))
+        a.fields
+            .pressure
+            .iter()
+            .zip(&b.fields.pressure)
+            .all(|(a, b)| (*a > 0.0) == (*b > 0.0))
     };
     let smooth_set = same_set(&here, &ahead) && same_set(&here, &behind);
     let mut smooth = Vec::new();
     let mut derivative = Vec::new();
     for output in OUTPUTS {
-        let (c, a, b) = ((output.get)(&here.outputs), (output.get)(&ahead.outputs), (output.get)(&behind.outputs));
+        let (c, a, b) = (
+            (output.get)(&here.outputs),
+            (output.get)(&ahead.outputs),
+            (output.get)(&behind.outputs),
+        );
         let (forward, backward) = ((a - c) / h, (c - b) / h);
         smooth.push(smooth_set && (forward - backward).abs() <= 2e-3 * forward.abs().max(backward.abs()));
         derivative.push((a - b) / (2.0 * h));
@@ -55,7 +69,9 @@ fn check(parameters: Parameters, inputs: Inputs) -> usize {
     let mut workspace = model.workspace();
     let before = settled(&model, &mut workspace, &inputs);
     let mut state = before.clone();
-    model.step(&mut workspace, &mut state, &inputs, &Inputs::ZERO, STEP).unwrap();
+    model
+        .step(&mut workspace, &mut state, &inputs, &Inputs::ZERO, STEP)
+        .unwrap();
     let sensitivities = model.output_sensitivities(&mut workspace, &state).unwrap();
     let mut compared = 0;
     for (row, input) in INPUTS.iter().enumerate() {

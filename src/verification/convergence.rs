@@ -6,7 +6,7 @@
 use super::Row;
 use crate::elasticity::{Elasticity, Fields};
 use crate::error::Result;
-use crate::heat::{DepthBasis, FrictionState, HeatMarch, SurfaceExchange};
+use crate::heat::{DepthBasis, FrictionState, HeatMarch, Heated, SurfaceExchange};
 use crate::mesh::Mesh;
 use crate::parameters::Parameters;
 use crate::transport::Upwind;
@@ -278,8 +278,11 @@ fn temperature_error(contact_nodes: usize, cells: usize, speed: f64) -> Result<f
     .advance(
         &before,
         &exchange,
-        &mut after,
-        &mut vec![0.0; contact_nodes],
+        &mut Heated {
+            temperature: &mut after,
+            surface: &mut vec![0.0; mesh.columns()],
+            flux: &mut vec![0.0; contact_nodes],
+        },
         &mut vec![0.0; basis.len()],
     )?;
 

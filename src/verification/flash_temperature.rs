@@ -3,7 +3,7 @@
 
 use super::Row;
 use crate::error::Result;
-use crate::heat::{DepthBasis, FrictionState, HeatMarch, SurfaceExchange};
+use crate::heat::{DepthBasis, FrictionState, HeatMarch, Heated, SurfaceExchange};
 use crate::mesh::Mesh;
 use crate::parameters::{FrictionLaw, Parameters};
 use crate::transport::Upwind;
@@ -71,7 +71,7 @@ fn marched_peak(parameters: &Parameters) -> Result<f64> {
         })
         .collect();
     let cold = vec![0.0; mesh.columns() * basis.len()];
-    let mut heated = cold.clone();
+    let (mut heated, mut surface) = (cold.clone(), vec![0.0; mesh.columns()]);
     HeatMarch {
         basis: &basis,
         transport: Upwind::new(&mesh.x, ROLLING_SPEED),
@@ -86,14 +86,14 @@ fn marched_peak(parameters: &Parameters) -> Result<f64> {
     .advance(
         &cold,
         &exchange,
-        &mut heated,
-        &mut vec![0.0; mesh.contact_nodes],
+        &mut Heated {
+            temperature: &mut heated,
+            surface: &mut surface,
+            flux: &mut vec![0.0; mesh.contact_nodes],
+        },
         &mut vec![0.0; basis.len()],
     )?;
-    Ok(heated
-        .chunks_exact(basis.len())
-        .map(|column| basis.surface_value(column))
-        .fold(0.0, f64::max))
+    Ok(surface.into_iter().fold(0.0, f64::max))
 }
 
 /// Largest value of the integral over the contact. With X = x/a and material entering at X = 1,

@@ -39,7 +39,7 @@ pub fn rows() -> Result<Vec<Row>> {
     let outputs = (&forward.state.outputs, &backward.state.outputs);
     let rail = forward.model.rail();
     let columns = rail.mesh.columns();
-    let surface = |run: &Run, column| run.state.fields.surface_temperature(run.model.rail(), column);
+    let surface = |run: &Run, column: usize| run.state.fields.surface_temperature[column];
     Ok(vec![
         row("pressure", &mut pairs().map(|(a, b)| (a.pressure, b.pressure))),
         row("shear traction", &mut pairs().map(|(a, b)| (a.shear, -b.shear))),

@@ -63,7 +63,7 @@ impl Run {
                 pressure: fields.pressure[i] * scale,
                 shear: fields.shear[i] * scale,
                 slip: fields.slip[i],
-                temperature: fields.surface_temperature(self.model.rail(), mesh.contact_column(i)),
+                temperature: fields.surface_temperature[mesh.contact_column(i)],
             })
             .collect()
     }
