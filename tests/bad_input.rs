@@ -169,6 +169,7 @@ fn combinations_that_cannot_be_are_refused() {
         (
             Parameters {
                 wheel_radius: 0.05,
+                largest_load: 1e6,
                 ..parameters()
             },
             "wheel_radius = 0.05",
