@@ -33,7 +33,10 @@ fn run(normal_solver: NormalSolver, control: Control) -> Run {
 #[test]
 fn active_set_and_linearisation_give_the_same_fields() {
     for control in [Control::Load, Control::Penetration] {
-        let (active, linearised) = (run(NormalSolver::ActiveSet, control), run(NormalSolver::Pschenichnyj, control));
+        let (active, linearised) = (
+            run(NormalSolver::ActiveSet, control),
+            run(NormalSolver::Pschenichnyj, control),
+        );
         let (a, b) = (&active.state.fields, &linearised.state.fields);
         for (name, a, b) in [
             ("pressure", &a.pressure, &b.pressure),
