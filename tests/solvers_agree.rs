@@ -1,9 +1,9 @@
 //! The two methods for the normal problem, primal–dual active set and Pschenichnyj's linearisation, give the same
 //! pressure to 1e-8 in the whole model: with friction, heat and wear, under load and under penetration.
 
-mod common;
+mod checks;
 
-use common::largest_difference;
+use checks::largest_difference;
 use wheelrail::parameters::{Control, NormalSolver, Parameters, SlipSource};
 use wheelrail::signals::Inputs;
 use wheelrail::verification::Run;

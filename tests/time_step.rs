@@ -1,7 +1,7 @@
 //! What the communication step does to the results: nothing once settled, first order while the inputs change, nothing at
 //! all where a step fails.
 
-mod common;
+mod checks;
 
 use wheelrail::error::Error;
 use wheelrail::parameters::{Control, Parameters, SlipSource};
