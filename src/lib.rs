@@ -19,5 +19,6 @@ pub mod signals;
 pub mod tangential;
 pub mod thermal_map;
 pub mod transport;
+pub mod verification;
 pub mod wear;
 pub mod wheel_rail;

@@ -2,11 +2,13 @@
 
 mod describe;
 mod pack;
+mod simulate;
+mod verify;
 
 use clap::{Parser, Subcommand};
 use std::process::ExitCode;
 
-/// Thermoelastic wheel-rail rolling contact: pack the FMU, describe its variables.
+/// Thermoelastic wheel-rail rolling contact: pack the FMU, describe its variables, simulate natively, verify.
 #[derive(Parser)]
 #[command(version)]
 struct Arguments {
@@ -20,12 +22,22 @@ enum Command {
     Pack(pack::Pack),
     /// List inputs, outputs, parameters and locals.
     Describe(describe::Describe),
+    /// Simulate a scenario natively, without FMI, and write inputs and outputs as CSV.
+    ///
+    /// The scenario is a table with a header: a column `time` [s], ascending, and a column for each input that changes,
+    /// in SI units. Between its rows the inputs are interpolated linearly; other inputs keep their start values. Lines
+    /// that begin with # are comments.
+    Simulate(simulate::Simulate),
+    /// Compare the model with closed forms, identities and published figures.
+    Verify(verify::Verify),
 }
 
 fn main() -> ExitCode {
     let result: Result<(), Box<dyn std::error::Error>> = match Arguments::parse().command {
         Command::Pack(command) => command.run().map_err(Into::into),
         Command::Describe(command) => command.run().map_err(Into::into),
+        Command::Simulate(command) => command.run().map_err(Into::into),
+        Command::Verify(command) => command.run().map_err(Into::into),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

@@ -1,0 +1,44 @@
+"""Writes examples/braking.csv: a braking manoeuvre from 20 m/s with a wheel-slide episode.
+
+    python3 examples/braking.py > examples/braking.csv
+
+The vehicle rolls freely for 1 s (a rigid wheel on an elastic rail does so at a creepage of -0.16 %) and then slows down by
+0.9 m/s2. The brake holds the wheel at a creepage of -0.2 %. At 8 s it overdoes: within 0.8 s the wheel falls to 3 % of the
+rolling speed, stays there for 0.8 s, and is back 1.4 s after the slide protection let go. The load varies with the body's
+bounce (1.2 Hz, 6 %) and with the track (7 Hz, 4 %).
+"""
+
+import math
+import sys
+
+RADIUS = 0.46  # wheel radius, m
+FREE, BRAKED, SLIDING = -0.0016, -0.002, -0.97  # creepages
+DECELERATION = 0.9  # m/s2
+END = 22.0  # s
+ROW = 0.02  # s, a seventh of the shortest period
+
+
+def smooth(time, start, end):
+    """From 0 at start to 1 at end, with zero slope at both."""
+    s = min(max((time - start) / (end - start), 0.0), 1.0)
+    return s * s * (3.0 - 2.0 * s)
+
+
+def main():
+    write = sys.stdout.write
+    write("time,wheel_speed,vehicle_speed,normal_load\n")
+    for row in range(round(END / ROW) + 1):
+        time = row * ROW
+        speed = 20.0 - DECELERATION * max(time - 1.0, 0.0)
+        braking = smooth(time, 1.0, 2.0) * (1.0 - smooth(time, 21.0, 21.8))
+        slide = smooth(time, 8.0, 8.8) * (1.0 - smooth(time, 9.6, 11.0))
+        creepage = FREE + (BRAKED - FREE) * braking
+        creepage += (SLIDING - creepage) * slide
+        bounce = 0.06 * math.sin(2.0 * math.pi * 1.2 * time)
+        track = 0.04 * math.sin(2.0 * math.pi * 7.0 * time + 1.0)
+        load = 60e3 * (1.0 + bounce + track)
+        write(f"{time:.2f},{speed * (1.0 + creepage) / RADIUS:.9f},{speed:.9f},{load:.1f}\n")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,411 @@
+//! `wheelrail simulate`: a scenario from CSV through the model, without FMI.
+
+use clap::Args;
+use indicatif::{ProgressBar, ProgressStyle};
+use std::fs::File;
+use std::io;
+use std::path::{Path, PathBuf};
+use wheelrail::error::Error as ModelError;
+use wheelrail::parameters::Parameters;
+use wheelrail::signals::{InputSignal, Inputs, INPUTS, OUTPUTS};
+use wheelrail::wheel_rail::{Model, State};
+
+/// Options of `simulate`.
+#[derive(Args)]
+pub struct Simulate {
+    /// The scenario: time and inputs, linear between the rows.
+    #[arg(value_name = "SCENARIO.csv")]
+    scenario: PathBuf,
+    /// Where time, all inputs and all outputs go.
+    #[arg(short, long, value_name = "OUT.csv")]
+    output: PathBuf,
+    /// Communication step, [s].
+    #[arg(long, value_name = "SECONDS", default_value_t = 1e-3)]
+    step: f64,
+    /// A parameter, as thermal_expansion=0; `wheelrail describe` lists them. Repeatable.
+    #[arg(long = "set", value_name = "NAME=VALUE")]
+    set: Vec<String>,
+}
+
+/// Why a simulation stopped.
+#[derive(Debug, thiserror::Error)]
+pub enum Error {
+    /// A file that cannot be opened or written.
+    #[error("{path}: {source}")]
+    File {
+        /// The file.
+        path: PathBuf,
+        /// What the system says.
+        source: io::Error,
+    },
+    /// A table that is not CSV.
+    #[error("{path}: {source}")]
+    Csv {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong.
+        source: csv::Error,
+    },
+    /// A column that is no input.
+    #[error("{path}: column {column:?} is not an input; a scenario has time and any of {allowed}")]
+    UnknownColumn {
+        /// The file.
+        path: PathBuf,
+        /// The heading.
+        column: String,
+        /// What it may be.
+        allowed: String,
+    },
+    /// A heading that is there twice.
+    #[error("{path}: column {column:?} is there twice")]
+    TwoColumns {
+        /// The file.
+        path: PathBuf,
+        /// The heading.
+        column: String,
+    },
+    /// No column `time`.
+    #[error("{path}: there is no column \"time\"")]
+    NoTime {
+        /// The file.
+        path: PathBuf,
+    },
+    /// A cell that is not a number.
+    #[error("{path}, line {line}, column {column:?}: {text:?} is not a number")]
+    NotANumber {
+        /// The file.
+        path: PathBuf,
+        /// The line.
+        line: u64,
+        /// The heading.
+        column: String,
+        /// The cell.
+        text: String,
+    },
+    /// A time that is not finite or does not lie after the one before it.
+    #[error("{path}, line {line}, column \"time\": {value} is not after {before}")]
+    TimeNotAscending {
+        /// The file.
+        path: PathBuf,
+        /// The line.
+        line: u64,
+        /// The time.
+        value: f64,
+        /// The time of the row before.
+        before: f64,
+    },
+    /// A value that the model refuses.
+    #[error("{path}, line {line}: {source}")]
+    Refused {
+        /// The file.
+        path: PathBuf,
+        /// The line.
+        line: u64,
+        /// Which input and why.
+        source: ModelError,
+    },
+    /// Fewer than two rows.
+    #[error("{path}: a scenario needs at least two rows, this one has {rows}")]
+    TooShort {
+        /// The file.
+        path: PathBuf,
+        /// Its rows.
+        rows: usize,
+    },
+    /// A communication step that cannot be.
+    #[error("--step {step}: the communication step is a positive, finite number of seconds")]
+    Step {
+        /// What was given.
+        step: f64,
+    },
+    /// A `--set` without an equals sign.
+    #[error("--set {text:?}: expected name=value")]
+    NotAnAssignment {
+        /// What was given.
+        text: String,
+    },
+    /// A parameter that cannot be.
+    #[error("{0}")]
+    Parameter(ModelError),
+    /// The model cannot start.
+    #[error("at the start of the scenario: {0}")]
+    Start(ModelError),
+    /// The model cannot go on.
+    #[error("the step from {time} s over {step} s: {source}; {output} holds what was computed before")]
+    Interrupted {
+        /// Start of the step.
+        time: f64,
+        /// Its length.
+        step: f64,
+        /// The results.
+        output: PathBuf,
+        /// Why.
+        source: ModelError,
+    },
+}
+
+impl Simulate {
+    /// Runs the command.
+    pub fn run(&self) -> Result<(), Error> {
+        if !(self.step > 0.0 && self.step.is_finite()) {
+            return Err(Error::Step { step: self.step });
+        }
+        let parameters = self.parameters()?;
+        let scenario = Scenario::read(&self.scenario, &parameters)?;
+        let model = Model::new(parameters).map_err(Error::Parameter)?;
+        let mut table = Table::create(&self.output)?;
+
+        let mut workspace = model.workspace();
+        let mut inputs = scenario.at(scenario.start());
+        let mut state = model.initial_state(&mut workspace, &inputs).map_err(Error::Start)?;
+        table.write(scenario.start(), &inputs, &state)?;
+
+        // A remainder below a millionth of a step is rounding of the scenario's times.
+        let steps = (scenario.duration() / self.step - 1e-6).ceil().max(1.0) as u64;
+        let bar = progress(steps);
+        let mut time = scenario.start();
+        for number in 1..=steps {
+            let end = if number == steps {
+                scenario.end()
+            } else {
+                scenario.start() + number as f64 * self.step
+            };
+            let (step, next) = (end - time, scenario.at(end));
+            let rates = rates(&inputs, &next, step);
+            if let Err(interrupted) = model.step(&mut workspace, &mut state, &inputs, &rates, step) {
+                bar.abandon();
+                table.finish()?;
+                return Err(Error::Interrupted {
+                    time,
+                    step,
+                    output: self.output.clone(),
+                    source: interrupted.error,
+                });
+            }
+            (time, inputs) = (end, next);
+            table.write(time, &inputs, &state)?;
+            bar.inc(1);
+        }
+        bar.finish_and_clear();
+        table.finish()?;
+        eprintln!("{steps} steps to {time} s: {}", self.output.display());
+        Ok(())
+    }
+
+    fn parameters(&self) -> Result<Parameters, Error> {
+        let mut parameters = Parameters::default();
+        for text in &self.set {
+            let (name, value) = text
+                .split_once('=')
+                .ok_or_else(|| Error::NotAnAssignment { text: text.clone() })?;
+            parameters.set_by_name(name.trim(), value).map_err(Error::Parameter)?;
+        }
+        parameters.validate().map_err(Error::Parameter)?;
+        Ok(parameters)
+    }
+}
+
+fn progress(steps: u64) -> ProgressBar {
+    // The template is a constant: without it the bar would only look plainer.
+    let style = ProgressStyle::with_template("{bar:40} {pos}/{len} steps, {eta} left")
+        .unwrap_or_else(|_| ProgressStyle::default_bar());
+    ProgressBar::new(steps).with_style(style)
+}
+
+/// Rates that lead from one set of inputs to another in `time` [s].
+fn rates(from: &Inputs, to: &Inputs, time: f64) -> Inputs {
+    let mut rates = Inputs::ZERO;
+    for signal in INPUTS {
+        (signal.set)(&mut rates, ((signal.get)(to) - (signal.get)(from)) / time);
+    }
+    rates
+}
+
+/// Inputs at ascending times; never empty.
+struct Scenario {
+    times: Vec<f64>,
+    inputs: Vec<Inputs>,
+}
+
+impl Scenario {
+    /// Reads the table and checks each value against the parameters.
+    fn read(path: &Path, parameters: &Parameters) -> Result<Scenario, Error> {
+        let csv_error = |source| Error::Csv {
+            path: path.to_owned(),
+            source,
+        };
+        let file = File::open(path).map_err(|source| Error::File {
+            path: path.to_owned(),
+            source,
+        })?;
+        let mut reader = csv::ReaderBuilder::new()
+            .trim(csv::Trim::All)
+            .comment(Some(b'#'))
+            .from_reader(file);
+        let headings = reader.headers().map_err(csv_error)?.clone();
+        let columns = columns(path, &headings)?;
+
+        let mut scenario = Scenario {
+            times: Vec::new(),
+            inputs: Vec::new(),
+        };
+        for record in reader.records() {
+            let record = record.map_err(csv_error)?;
+            let line = record.position().map_or(0, csv::Position::line);
+            let mut inputs = Inputs::default();
+            let mut time = f64::NAN;
+            for ((heading, column), text) in headings.iter().zip(&columns).zip(&record) {
+                let value: f64 = text.parse().map_err(|_| Error::NotANumber {
+                    path: path.to_owned(),
+                    line,
+                    column: heading.to_owned(),
+                    text: text.to_owned(),
+                })?;
+                match column {
+                    Column::Time => time = value,
+                    Column::Input(signal) => (signal.set)(&mut inputs, value),
+                }
+            }
+            inputs.check(parameters).map_err(|source| Error::Refused {
+                path: path.to_owned(),
+                line,
+                source,
+            })?;
+            let before = scenario.times.last().copied().unwrap_or(f64::NEG_INFINITY);
+            if !(time > before && time.is_finite()) {
+                return Err(Error::TimeNotAscending {
+                    path: path.to_owned(),
+                    line,
+                    value: time,
+                    before,
+                });
+            }
+            scenario.times.push(time);
+            scenario.inputs.push(inputs);
+        }
+        match scenario.times.len() {
+            rows @ (0 | 1) => Err(Error::TooShort {
+                path: path.to_owned(),
+                rows,
+            }),
+            _ => Ok(scenario),
+        }
+    }
+
+    fn start(&self) -> f64 {
+        self.times[0]
+    }
+
+    fn end(&self) -> f64 {
+        self.times[self.times.len() - 1]
+    }
+
+    fn duration(&self) -> f64 {
+        self.end() - self.start()
+    }
+
+    /// The inputs at a time, linear between the rows.
+    fn at(&self, time: f64) -> Inputs {
+        let upper = self
+            .times
+            .partition_point(|&row| row < time)
+            .clamp(1, self.times.len() - 1);
+        let (before, after) = (self.times[upper - 1], self.times[upper]);
+        let weight = ((time - before) / (after - before)).clamp(0.0, 1.0);
+        let mut inputs = self.inputs[upper - 1];
+        for signal in INPUTS {
+            let (low, high) = ((signal.get)(&inputs), (signal.get)(&self.inputs[upper]));
+            // Both ends exact, so that a value at its limit stays within it.
+            (signal.set)(&mut inputs, low * (1.0 - weight) + high * weight);
+        }
+        inputs
+    }
+}
+
+/// What a column of the scenario holds.
+enum Column {
+    Time,
+    Input(&'static InputSignal),
+}
+
+fn columns(path: &Path, headings: &csv::StringRecord) -> Result<Vec<Column>, Error> {
+    let mut columns = Vec::with_capacity(headings.len());
+    for (index, heading) in headings.iter().enumerate() {
+        if headings.iter().take(index).any(|other| other == heading) {
+            return Err(Error::TwoColumns {
+                path: path.to_owned(),
+                column: heading.to_owned(),
+            });
+        }
+        let signal = INPUTS.iter().find(|signal| signal.name == heading);
+        columns.push(match (heading, signal) {
+            ("time", _) => Column::Time,
+            (_, Some(signal)) => Column::Input(signal),
+            _ => {
+                return Err(Error::UnknownColumn {
+                    path: path.to_owned(),
+                    column: heading.to_owned(),
+                    allowed: INPUTS.iter().map(|signal| signal.name).collect::<Vec<_>>().join(", "),
+                })
+            }
+        });
+    }
+    if columns.iter().any(|column| matches!(column, Column::Time)) {
+        Ok(columns)
+    } else {
+        Err(Error::NoTime { path: path.to_owned() })
+    }
+}
+
+/// The table of results.
+struct Table {
+    path: PathBuf,
+    writer: csv::Writer<File>,
+}
+
+impl Table {
+    fn create(path: &Path) -> Result<Table, Error> {
+        let file = File::create(path).map_err(|source| Error::File {
+            path: path.to_owned(),
+            source,
+        })?;
+        let mut table = Table {
+            path: path.to_owned(),
+            writer: csv::Writer::from_writer(file),
+        };
+        let inputs = INPUTS.iter().map(|signal| signal.name);
+        let outputs = OUTPUTS.iter().map(|signal| signal.name);
+        table.record(std::iter::once("time").chain(inputs).chain(outputs).map(str::to_owned))?;
+        Ok(table)
+    }
+
+    /// Numbers are the shortest that read back to the same value.
+    fn write(&mut self, time: f64, inputs: &Inputs, state: &State) -> Result<(), Error> {
+        let inputs = INPUTS.iter().map(|signal| (signal.get)(inputs));
+        let outputs = OUTPUTS.iter().map(|signal| (signal.get)(&state.outputs));
+        let values = std::iter::once(time).chain(inputs).chain(outputs);
+        self.record(values.map(shortest))
+    }
+
+    fn record(&mut self, cells: impl Iterator<Item = String>) -> Result<(), Error> {
+        self.writer.write_record(cells).map_err(|source| Error::Csv {
+            path: self.path.clone(),
+            source,
+        })
+    }
+
+    fn finish(&mut self) -> Result<(), Error> {
+        self.writer.flush().map_err(|source| Error::File {
+            path: self.path.clone(),
+            source,
+        })
+    }
+}
+
+fn shortest(value: f64) -> String {
+    if value == 0.0 || (1e-4..1e15).contains(&value.abs()) {
+        format!("{value}")
+    } else {
+        format!("{value:e}")
+    }
+}

@@ -1,0 +1,112 @@
+//! `wheelrail verify`: every check of the library as a table.
+
+use clap::Args;
+use std::io::{self, Write};
+use wheelrail::verification::{Row, CHECKS};
+
+/// Options of `verify`.
+#[derive(Args)]
+pub struct Verify {
+    /// Run only the checks whose heading contains this text.
+    #[arg(long, value_name = "TEXT", default_value = "")]
+    only: String,
+}
+
+/// Why the verification did not pass.
+#[derive(Debug, thiserror::Error)]
+pub enum Error {
+    /// Rows out of their tolerance, or checks that could not be computed.
+    #[error("{failed} of {total} rows fail")]
+    Failed {
+        /// Rows that fail.
+        failed: usize,
+        /// All rows.
+        total: usize,
+    },
+    /// No check's heading contains the text.
+    #[error("no check is named {only:?}; there are: {names}")]
+    NoSuchCheck {
+        /// What was asked for.
+        only: String,
+        /// The headings.
+        names: String,
+    },
+    /// Standard output.
+    #[error("standard output: {0}")]
+    Output(#[from] io::Error),
+}
+
+impl Verify {
+    /// Prints the rows of each check as it ends.
+    pub fn run(&self) -> Result<(), Error> {
+        let only = self.only.to_lowercase();
+        let chosen: Vec<_> = CHECKS
+            .iter()
+            .filter(|check| check.name.to_lowercase().contains(&only))
+            .collect();
+        if chosen.is_empty() {
+            return Err(Error::NoSuchCheck {
+                only: self.only.clone(),
+                names: CHECKS.iter().map(|check| check.name).collect::<Vec<_>>().join(", "),
+            });
+        }
+        let mut out = io::stdout().lock();
+        writeln!(
+            out,
+            "{:QUANTITY$} {:>13} {:>13} {:4} {:>10} {:>10}  {:4}  reference",
+            "quantity", "reference", "computed", "unit", "deviation", "tolerance", "pass"
+        )?;
+        let (mut total, mut failed) = (0, 0);
+        for check in chosen {
+            writeln!(out, "\n{}", check.name)?;
+            match (check.rows)() {
+                Ok(rows) => {
+                    total += rows.len();
+                    failed += rows.iter().filter(|row| !row.pass).count();
+                    for row in &rows {
+                        print(&mut out, row)?;
+                    }
+                }
+                Err(error) => {
+                    writeln!(out, "  could not be computed: {error}")?;
+                    total += 1;
+                    failed += 1;
+                }
+            }
+            out.flush()?;
+        }
+        writeln!(out, "\n{} of {total} rows pass", total - failed)?;
+        if failed > 0 {
+            return Err(Error::Failed { failed, total });
+        }
+        Ok(())
+    }
+}
+
+/// Width of the column of quantities.
+const QUANTITY: usize = 84;
+
+fn print(out: &mut impl Write, row: &Row) -> io::Result<()> {
+    writeln!(
+        out,
+        "  {:width$} {:>13} {:>13} {:4} {:>10} {:>10}  {:4}  {}",
+        row.quantity,
+        number(row.reference),
+        number(row.computed),
+        row.unit,
+        format!("{:.2e}", row.deviation),
+        format!("{:.1e}", row.tolerance),
+        if row.pass { "yes" } else { "NO" },
+        row.source,
+        width = QUANTITY - 2,
+    )
+}
+
+/// Six decimals, or an exponent where the number is very small or large.
+fn number(value: f64) -> String {
+    if value == 0.0 || (1e-3..1e6).contains(&value.abs()) {
+        format!("{value:.6}")
+    } else {
+        format!("{value:.5e}")
+    }
+}

@@ -1,0 +1,98 @@
+//! Carter's theory of the rolling line contact with constant μ (Carter 1926; Johnson, Contact Mechanics, section 8.3):
+//! a stick zone of length 2a(1 − ξ r₀/(μ a)) at the leading edge, and
+//! T/(μN) = 1 − (1 − ξ r₀/(μ a))² up to ξ = μ a/r₀, 1 beyond.
+//!
+//! Carter's bodies are alike, so that pressure moves no surface along x₁: the mixed compliances are switched off. The
+//! rigid wheel takes the part of its mirror image, which makes the creepage of two like bodies that of a rigid wheel.
+
+use super::{Row, Run};
+use crate::error::Result;
+use crate::friction;
+use crate::parameters::{FrictionLaw, Parameters};
+use crate::signals::Inputs;
+
+const SOURCE: &str = "Carter 1926; Johnson, Contact Mechanics, 8.3";
+/// 1 % of a is a node's share, the regularisation adds (2/π) ε/s: together below 0.02.
+const TRACTION_TOLERANCE: f64 = 0.02;
+/// Creepage at which the stick zone is measured.
+const STICK_CREEPAGE: f64 = 0.002;
+
+/// Constant μ, like bodies, no heat or wear in the gap.
+pub fn parameters() -> Parameters {
+    Parameters {
+        friction_law: FrictionLaw::Constant,
+        normal_tangential_coupling: false,
+        slip_regularisation: 1e-4,
+        thermal_expansion: 0.0,
+        wear_coefficient: 0.0,
+        ..Parameters::default()
+    }
+}
+
+/// c/a = 1 − ξ r₀/(μ a), at least 0: the half-length of the stick zone over that of the contact.
+fn stick_share(parameters: &Parameters, load: f64, creepage: f64) -> f64 {
+    let saturation = parameters.friction_cold * parameters.hertz_half_length(load) / parameters.wheel_radius;
+    (1.0 - creepage / saturation).max(0.0)
+}
+
+/// The creep curve, then length and position of the stick zone.
+///
+/// # Errors
+/// A solver that did not converge.
+pub fn rows() -> Result<Vec<Row>> {
+    let parameters = parameters();
+    let inputs = |creepage| Inputs {
+        creepage,
+        ..Inputs::default()
+    };
+    let load = inputs(0.0).normal_load;
+    let mut run = Run::new(&parameters, &inputs(0.0))?;
+    let mut rows = Vec::new();
+    for creepage in [0.0, 0.0005, 0.001, 0.002, 0.003, 0.004, 0.006, 0.01] {
+        let outputs = run.hold(&inputs(creepage), 1e-3, 1)?;
+        rows.push(Row::absolute(
+            format!("T/(mu N) at creepage {creepage}"),
+            "1",
+            1.0 - stick_share(&parameters, load, creepage).powi(2),
+            outputs.traction_coefficient / parameters.friction_cold,
+            TRACTION_TOLERANCE,
+            SOURCE,
+        ));
+    }
+    rows.extend(stick_zone(&mut run, &inputs(STICK_CREEPAGE))?);
+    Ok(rows)
+}
+
+/// The zone of sticking nodes, each with its tributary length: one zone, its length and its two ends.
+fn stick_zone(run: &mut Run, inputs: &Inputs) -> Result<Vec<Row>> {
+    run.hold(inputs, 1e-3, 1)?;
+    let parameters = run.model.parameters();
+    let spacing = run.model.rail().mesh.contact_spacing();
+    let half_length = parameters.hertz_half_length(inputs.normal_load);
+    let expected = 2.0 * half_length * stick_share(parameters, inputs.normal_load, inputs.creepage);
+
+    let nodes = run.contact_nodes();
+    let sticks: Vec<f64> = nodes
+        .iter()
+        .filter(|node| node.pressure > 0.0)
+        .filter(|node| {
+            friction::saturation(node.slip, parameters.slip_regularisation).abs() < friction::STICK_SATURATION
+        })
+        .map(|node| node.position)
+        .collect();
+    let rear = sticks.first().copied().unwrap_or(f64::NAN) - 0.5 * spacing;
+    let front = sticks.last().copied().unwrap_or(f64::NAN) + 0.5 * spacing;
+    let row = |quantity: &str, reference, computed| {
+        let quantity = format!("{quantity} at creepage {STICK_CREEPAGE}");
+        Row::absolute(quantity, "m", reference, computed, spacing, SOURCE)
+    };
+    Ok(vec![
+        row(
+            "length of the stick zone (number of nodes by spacing)",
+            expected,
+            sticks.len() as f64 * spacing,
+        ),
+        row("leading end of the stick zone", half_length, front),
+        row("trailing end of the stick zone", half_length - expected, rear),
+    ])
+}

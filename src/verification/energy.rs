@@ -1,0 +1,192 @@
+//! The discrete heat balance: what friction puts into the rail is stored, carried out of the window, conducted
+//! through the bottom, given to the wheel or carried off by debris,
+//! d/dt ∫ρc θ + |V| ∫ρc θ dz (outflow) + bottom = ᾱ b Σ Δx (|τ s| − k ρ c θ |s| p − θ p/r),
+//! to round-off of the sums, because the P1 test functions of a column add up to 1 and upwind differences telescope.
+
+use super::{Row, Run};
+use crate::contact::{Fields, Rail};
+use crate::error::Result;
+use crate::parameters::{FrictionLaw, Parameters, SlipSource};
+use crate::signals::Inputs;
+use crate::transport::Upwind;
+
+const SOURCE: &str = "identity of the discrete equations";
+/// The operator split rests at 1e-10 of the temperature, which moves μ, and so the friction power, by less.
+const TOLERANCE: f64 = 1e-10;
+
+/// Terms of the balance over one step, [W].
+#[derive(Debug, Clone, Copy, Default)]
+struct Balance {
+    stored: f64,
+    carried_out: f64,
+    bottom: f64,
+    conduction: f64,
+    debris: f64,
+    friction: f64,
+}
+
+impl Balance {
+    fn defect(&self) -> f64 {
+        let sum = self.stored + self.carried_out + self.bottom + self.conduction + self.debris;
+        ((sum - self.friction) / self.friction).abs()
+    }
+
+    /// Larger of the two in every term, relative to the friction.
+    fn largest(self, other: Balance) -> Balance {
+        let share = |term: f64| (term / other.friction).abs();
+        Balance {
+            stored: self.stored.max(share(other.stored)),
+            carried_out: self.carried_out.max(share(other.carried_out)),
+            bottom: self.bottom.max(share(other.bottom)),
+            conduction: self.conduction.max(share(other.conduction)),
+            debris: self.debris.max(share(other.debris)),
+            friction: 1.0,
+        }
+    }
+}
+
+/// Speed [m/s], wheel's circumferential speed [m/s] and load [N] of one step; changes below a fifth, so that the step
+/// is not divided.
+type Step = (f64, f64, f64);
+
+/// The largest defect of any step of a transient at speed, and of one where the strip is shallow, slow, and the heat
+/// reaches its bottom.
+///
+/// # Errors
+/// A solver that did not converge.
+pub fn rows() -> Result<Vec<Row>> {
+    let base = Parameters {
+        slip_source: SlipSource::VehicleSpeed,
+        friction_law: FrictionLaw::PiecewiseLinear,
+        // More than the default, so that debris take a visible share.
+        wear_coefficient: 5e-12,
+        ..Parameters::default()
+    };
+    let fast: Vec<Step> = (0..40)
+        .map(|i| {
+            let wave = (0.7 * f64::from(i)).sin();
+            (10.0 + wave, (10.0 + wave) * 1.05, 60e3 * (1.0 + 0.08 * wave))
+        })
+        .collect();
+    let shallow = Parameters {
+        strip_height: 0.05,
+        strip_half_length: 0.1,
+        contact_thermal_resistance: 1e6,
+        ..base.clone()
+    };
+    let unworn = Parameters {
+        wear_coefficient: 0.0,
+        ..shallow.clone()
+    };
+    let slow: Vec<Step> = (0..12)
+        .map(|i| {
+            let wave = (0.7 * f64::from(i)).sin();
+            let speed = -0.02 * (1.0 + 0.08 * wave);
+            (speed, 1.05 * speed, 30e3)
+        })
+        .collect();
+    let on_the_spot: Vec<Step> = vec![(0.0, 1e-3, 30e3); 12];
+
+    let mut rows = Vec::new();
+    for (name, parameters, steps, duration) in [
+        ("10 m/s, speed and load changing", &base, &fast, 1e-2),
+        ("-0.02 m/s, shallow strip", &shallow, &slow, 5.0),
+        (
+            "sliding on the spot, shallow strip, no wear",
+            &unworn,
+            &on_the_spot,
+            5.0,
+        ),
+    ] {
+        let (defect, shares) = largest_defect(parameters, steps, duration)?;
+        rows.push(Row::absolute(
+            format!("heat balance defect over friction heat, {name}"),
+            "1",
+            0.0,
+            defect,
+            TOLERANCE,
+            SOURCE,
+        ));
+        // The balance says something of a term only where the term is there.
+        let shallow = parameters.strip_height < 0.1;
+        let smallest = [
+            (shares.stored, true),
+            (shares.carried_out, steps[0].0 != 0.0),
+            (shares.bottom, shallow),
+            (shares.conduction, true),
+            (shares.debris, parameters.wear_coefficient > 0.0),
+        ]
+        .iter()
+        .filter(|(_, expected)| *expected)
+        .fold(f64::INFINITY, |m, (share, _)| share.min(m));
+        rows.push(Row::at_least(
+            format!("smallest share of a term at its largest, {name}"),
+            "1",
+            1e-5,
+            smallest,
+            "each term takes part",
+        ));
+    }
+    Ok(rows)
+}
+
+fn largest_defect(parameters: &Parameters, steps: &[Step], duration: f64) -> Result<(f64, Balance)> {
+    let inputs = |&(vehicle_speed, circumferential, normal_load): &Step| Inputs {
+        wheel_speed: circumferential / parameters.wheel_radius,
+        vehicle_speed,
+        normal_load,
+        ..Inputs::default()
+    };
+    let mut run = Run::new(parameters, &inputs(&steps[0]))?;
+    // The balance holds of each implicit step: one that was divided does not count.
+    let (mut defect, mut shares) = (0.0_f64, Balance::default());
+    for step in steps {
+        let before = run.state.fields.clone();
+        let inputs = inputs(step);
+        run.step(&inputs, duration)?;
+        let balance = balance(&run, &before, step.0, duration);
+        // f64::max would pass over NaN.
+        let divided = run.state.duration != duration;
+        let own = if divided { f64::NAN } else { balance.defect() };
+        defect = if own <= defect { defect } else { own };
+        shares = shares.largest(balance);
+    }
+    Ok((defect, shares))
+}
+
+fn balance(run: &Run, before: &Fields, speed: f64, duration: f64) -> Balance {
+    let (rail, parameters) = (run.model.rail(), run.model.parameters());
+    let after = &run.state.fields;
+    let capacity = parameters.volumetric_heat_capacity() * parameters.contact_width;
+    let mut balance = Balance::default();
+
+    let transport = Upwind::new(&rail.mesh.x, speed);
+    let bottom_cell = rail.mesh.depth[rail.mesh.rows() - 1] - rail.mesh.depth[rail.mesh.rows() - 2];
+    for column in transport.columns() {
+        let content = |fields: &Fields, index| rail.basis.content(fields.column(rail, index));
+        let lowest = |fields: &Fields, index| lowest_temperature(rail, fields, index);
+        let storage = (content(after, column.index) - content(before, column.index)) / duration;
+        balance.stored += capacity * column.spacing * storage;
+        // Reaction of the bottom: conduction out of the last cell less what its share of the mass takes up.
+        let rate = (lowest(after, column.index) - lowest(before, column.index)) / duration
+            + transport.speed() / column.spacing * (lowest(after, column.index) - lowest(after, column.upstream));
+        let conducted = parameters.thermal_diffusivity * lowest(after, column.index) / bottom_cell;
+        balance.bottom += capacity * column.spacing * (conducted - bottom_cell / 6.0 * rate);
+    }
+    let outflow = rail.basis.content(after.column(rail, transport.outflow()));
+    balance.carried_out = capacity * transport.speed() * outflow;
+
+    let area = parameters.heat_partition * parameters.contact_width * rail.mesh.contact_spacing();
+    for node in run.contact_nodes() {
+        let worn = parameters.wear_coefficient * node.slip.abs() * node.pressure;
+        balance.friction += area * (node.shear * node.slip).abs();
+        balance.debris += area * parameters.volumetric_heat_capacity() * worn * node.temperature;
+        balance.conduction += area * node.temperature * node.pressure / parameters.contact_thermal_resistance;
+    }
+    balance
+}
+
+/// Temperature rise at the row above the bottom.
+fn lowest_temperature(rail: &Rail, fields: &Fields, column: usize) -> f64 {
+    rail.basis.value(fields.column(rail, column), rail.mesh.rows() - 2)
+}

@@ -1,0 +1,163 @@
+//! What the model must reproduce, check by check, as rows that a test asserts and `wheelrail verify` prints.
+//!
+//! Each file holds one check: the claim, its formula and source, and the function that computes it. References are
+//! closed forms evaluated here, published figures, or identities of the discrete equations; a row says which.
+
+pub mod carter;
+pub mod convergence;
+pub mod energy;
+pub mod flash_temperature;
+pub mod hertz;
+pub mod locked_wheel;
+pub mod mirrored;
+pub mod paper_cases;
+pub mod power_balance;
+pub mod rigid_wheel;
+mod run;
+
+use crate::error::Result;
+pub use run::{ContactNode, Run};
+
+/// One compared quantity.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Row {
+    /// What is compared, with the conditions.
+    pub quantity: String,
+    /// Unit of reference and computed value.
+    pub unit: &'static str,
+    /// What it should be; of a bound, the bound.
+    pub reference: f64,
+    /// What the model gives.
+    pub computed: f64,
+    /// Distance of the two as the kind of row measures it: relative, absolute, or beyond a bound.
+    pub deviation: f64,
+    /// Largest deviation that passes.
+    pub tolerance: f64,
+    /// Whether the deviation is a number not above the tolerance.
+    pub pass: bool,
+    /// Where the reference comes from.
+    pub source: &'static str,
+}
+
+impl Row {
+    fn new(
+        quantity: impl Into<String>,
+        unit: &'static str,
+        [reference, computed, deviation, tolerance]: [f64; 4],
+        source: &'static str,
+    ) -> Row {
+        Row {
+            quantity: quantity.into(),
+            unit,
+            reference,
+            computed,
+            deviation,
+            tolerance,
+            pass: deviation <= tolerance,
+            source,
+        }
+    }
+
+    /// Deviation relative to the reference.
+    pub fn relative(
+        quantity: impl Into<String>,
+        unit: &'static str,
+        reference: f64,
+        computed: f64,
+        tolerance: f64,
+        source: &'static str,
+    ) -> Row {
+        let deviation = ((computed - reference) / reference).abs();
+        Row::new(quantity, unit, [reference, computed, deviation, tolerance], source)
+    }
+
+    /// Deviation in the unit of the quantity.
+    pub fn absolute(
+        quantity: impl Into<String>,
+        unit: &'static str,
+        reference: f64,
+        computed: f64,
+        tolerance: f64,
+        source: &'static str,
+    ) -> Row {
+        let deviation = (computed - reference).abs();
+        Row::new(quantity, unit, [reference, computed, deviation, tolerance], source)
+    }
+
+    /// A claim of size: the computed value does not exceed `bound`.
+    pub fn at_most(
+        quantity: impl Into<String>,
+        unit: &'static str,
+        bound: f64,
+        computed: f64,
+        source: &'static str,
+    ) -> Row {
+        // Not `max`, which would turn NaN into 0.
+        let deviation = if computed <= bound { 0.0 } else { computed - bound };
+        Row::new(quantity, unit, [bound, computed, deviation, 0.0], source)
+    }
+
+    /// A claim of size: the computed value is no less than `bound`.
+    pub fn at_least(
+        quantity: impl Into<String>,
+        unit: &'static str,
+        bound: f64,
+        computed: f64,
+        source: &'static str,
+    ) -> Row {
+        let deviation = if computed >= bound { 0.0 } else { bound - computed };
+        Row::new(quantity, unit, [bound, computed, deviation, 0.0], source)
+    }
+}
+
+/// A named group of rows.
+pub struct Check {
+    /// Heading.
+    pub name: &'static str,
+    /// Computes the rows.
+    pub rows: fn() -> Result<Vec<Row>>,
+}
+
+/// All checks in the order in which they build on each other.
+pub const CHECKS: &[Check] = &[
+    Check {
+        name: "Hertz line contact",
+        rows: hertz::rows,
+    },
+    Check {
+        name: "Carter's rolling contact",
+        rows: carter::rows,
+    },
+    Check {
+        name: "Rigid wheel on elastic rail",
+        rows: rigid_wheel::rows,
+    },
+    Check {
+        name: "Flash temperature",
+        rows: flash_temperature::rows,
+    },
+    Check {
+        name: "Heat balance",
+        rows: energy::rows,
+    },
+    Check {
+        name: "Power balance",
+        rows: power_balance::rows,
+    },
+    Check {
+        name: "Manufactured solutions",
+        rows: convergence::rows,
+    },
+    Check {
+        name: "Mirrored motion",
+        rows: mirrored::rows,
+    },
+    Check {
+        name: "The paper's cases",
+        rows: paper_cases::rows,
+    },
+    Check {
+        name: "Locked wheel",
+        rows: locked_wheel::rows,
+    },
+];

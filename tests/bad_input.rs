@@ -1,0 +1,249 @@
+//! Values that cannot be: the error names the variable, the value and what is allowed, and nothing else changes.
+
+use wheelrail::error::Error;
+use wheelrail::parameters::{FrictionLaw, Parameters, SlipSource, INTEGER_PARAMETERS, REAL_PARAMETERS};
+use wheelrail::signals::{Inputs, INPUTS};
+use wheelrail::verification::Run;
+use wheelrail::wheel_rail::Model;
+
+/// NaN, both infinities, and the next representable values outside a range.
+fn refused(minimum: f64, maximum: f64) -> [f64; 5] {
+    [
+        f64::NAN,
+        f64::INFINITY,
+        f64::NEG_INFINITY,
+        minimum.next_down(),
+        maximum.next_up(),
+    ]
+}
+
+/// The error names `name`, holds `value` (NaN included) and the range.
+fn assert_out_of_range(error: &Error, name: &str, value: f64, (minimum, maximum): (f64, f64)) {
+    match error {
+        Error::OutOfRange {
+            name: named,
+            value: held,
+            minimum: lower,
+            maximum: upper,
+            ..
+        } => {
+            assert_eq!(*named, name);
+            assert_eq!(held.to_bits(), value.to_bits(), "{name}");
+            assert_eq!((*lower, *upper), (minimum, maximum), "{name}");
+        }
+        other => panic!("{name} = {value}: {other:?}"),
+    }
+    let message = error.to_string();
+    for part in [
+        name.to_owned(),
+        value.to_string(),
+        minimum.to_string(),
+        maximum.to_string(),
+    ] {
+        assert!(message.contains(&part), "{message} lacks {part}");
+    }
+}
+
+#[test]
+fn every_input_out_of_its_range_is_refused_and_changes_nothing() {
+    let parameters = Parameters {
+        slip_source: SlipSource::VehicleSpeed,
+        contact_nodes: 21,
+        depth_nodes: 11,
+        ..Parameters::default()
+    };
+    let mut run = Run::new(&parameters, &Inputs::default()).unwrap();
+    run.hold(&Inputs::default(), 1e-3, 3).unwrap();
+    let before = run.state.clone();
+    for signal in INPUTS {
+        let range = signal.range(&parameters);
+        for value in refused(range.0, range.1) {
+            let mut inputs = Inputs::default();
+            (signal.set)(&mut inputs, value);
+            let error = run.step(&inputs, 1e-3).unwrap_err();
+            assert_out_of_range(&error, signal.name, value, range);
+            assert_eq!(run.state, before);
+            assert!(run.model.initial_state(&mut run.workspace, &inputs).is_err());
+
+            // The same value reached by a rate within the step.
+            let mut rates = Inputs::ZERO;
+            (signal.set)(&mut rates, (value - (signal.get)(&Inputs::default())) * 2e3);
+            let interrupted = run
+                .model
+                .step(&mut run.workspace, &mut run.state, &Inputs::default(), &rates, 1e-3)
+                .unwrap_err();
+            assert_eq!(interrupted.committed, 0.0);
+            assert_eq!(run.state, before);
+        }
+    }
+}
+
+#[test]
+fn a_rolling_speed_beyond_the_validity_is_refused() {
+    let parameters = Parameters {
+        contact_nodes: 21,
+        depth_nodes: 11,
+        ..Parameters::default()
+    };
+    let mut run = Run::new(&parameters, &Inputs::default()).unwrap();
+    let before = run.state.clone();
+    // Either input is allowed by itself; V = ω r₀/(1 + ξ) is not.
+    let inputs = Inputs {
+        wheel_speed: 100.0,
+        creepage: -0.9,
+        ..Inputs::default()
+    };
+    let error = run.step(&inputs, 1e-3).unwrap_err();
+    let message = error.to_string();
+    for part in ["rolling speed", "460", &parameters.largest_speed().to_string(), "m/s"] {
+        assert!(message.contains(part), "{message} lacks {part}");
+    }
+    assert_eq!(run.state, before);
+}
+
+#[test]
+fn every_parameter_out_of_its_range_is_refused() {
+    for entry in REAL_PARAMETERS {
+        for value in refused(entry.minimum, entry.maximum) {
+            let mut parameters = Parameters::default();
+            (entry.set)(&mut parameters, value);
+            let range = (entry.minimum, entry.maximum);
+            assert_out_of_range(&parameters.validate().unwrap_err(), entry.name, value, range);
+            assert!(Model::new(parameters).is_err());
+
+            let mut parameters = Parameters::default();
+            let error = parameters.set_by_name(entry.name, &format!("{value}")).unwrap_err();
+            assert_out_of_range(&error, entry.name, value, range);
+            assert_eq!(parameters, Parameters::default());
+        }
+    }
+    for entry in INTEGER_PARAMETERS {
+        for value in [entry.minimum - 1, entry.maximum + 1, i32::MIN, i32::MAX] {
+            let mut parameters = Parameters::default();
+            let error = parameters.set_by_name(entry.name, &value.to_string()).unwrap_err();
+            let range = (f64::from(entry.minimum), f64::from(entry.maximum));
+            assert_out_of_range(&error, entry.name, f64::from(value), range);
+            assert_eq!(parameters, Parameters::default());
+        }
+    }
+}
+
+#[test]
+fn names_and_numbers_that_are_none_are_refused() {
+    let mut parameters = Parameters::default();
+    let message = |result: Result<(), Error>| result.unwrap_err().to_string();
+    assert!(message(parameters.set_by_name("mass", "1")).contains("\"mass\""));
+    let text = message(parameters.set_by_name("density", "heavy"));
+    assert!(text.contains("density") && text.contains("\"heavy\""), "{text}");
+    assert!(message(parameters.set_by_name("contact_nodes", "61.5")).contains("an integer"));
+    assert_eq!(parameters, Parameters::default());
+    parameters.set_by_name("density", " 8e3 ").unwrap();
+    assert_eq!(parameters.density, 8e3);
+}
+
+/// Both values and what must hold between them are in the message.
+fn assert_combination(parameters: &Parameters, parts: &[&str]) {
+    let error = parameters.validate().unwrap_err();
+    assert!(matches!(error, Error::Combination { .. }), "{error:?}");
+    let message = error.to_string();
+    for part in parts {
+        assert!(message.contains(part), "{message} lacks {part}");
+    }
+    assert!(Model::new(parameters.clone()).is_err());
+}
+
+#[test]
+fn combinations_that_cannot_be_are_refused() {
+    let parameters = || Parameters::default();
+    assert_combination(
+        &Parameters {
+            friction_hot: 0.5,
+            ..parameters()
+        },
+        &["friction_hot = 0.5", "friction_cold = 0.45", "must not exceed"],
+    );
+    assert_combination(
+        &Parameters {
+            friction_temperature_hot: 320.0,
+            ..parameters()
+        },
+        &["friction_temperature_hot = 320", "friction_temperature_cold = 323.15"],
+    );
+    let mut table = Parameters {
+        friction_law: FrictionLaw::Table,
+        friction_table_points: 3,
+        ..parameters()
+    };
+    table.friction_table_temperature[..3].copy_from_slice(&[300.0, 400.0, 400.0]);
+    assert_combination(&table, &["friction_table.temperature = 400", "ascend"]);
+    for (changed, part) in [
+        (
+            Parameters {
+                wheel_radius: 0.05,
+                largest_load: 1e6,
+                ..parameters()
+            },
+            "wheel_radius = 0.05",
+        ),
+        (
+            Parameters {
+                strip_half_length: 0.1,
+                largest_load: 1e6,
+                ..parameters()
+            },
+            "strip_half_length = 0.1",
+        ),
+        (
+            Parameters {
+                largest_load: 5e6,
+                wheel_radius: 5.0,
+                strip_height: 0.05,
+                strip_half_length: 20.0,
+                ..parameters()
+            },
+            "strip_height = 0.05",
+        ),
+    ] {
+        assert_combination(&changed, &["largest_load", part]);
+    }
+}
+
+#[test]
+fn what_is_tuned_wrongly_is_refused_and_changes_nothing() {
+    let mut model = Model::new(Parameters {
+        contact_nodes: 21,
+        depth_nodes: 11,
+        ..Parameters::default()
+    })
+    .unwrap();
+    let before = model.parameters().clone();
+    for wrong in [
+        Parameters {
+            friction_cold: f64::NAN,
+            ..before.clone()
+        },
+        Parameters {
+            friction_hot: 0.46,
+            ..before.clone()
+        },
+        Parameters {
+            slip_regularisation: 0.0,
+            ..before.clone()
+        },
+    ] {
+        assert!(model.retune(&wrong).is_err());
+        assert_eq!(*model.parameters(), before);
+    }
+    // What is not tunable is passed over.
+    model
+        .retune(&Parameters {
+            friction_cold: 0.3,
+            density: 1e3,
+            ..before.clone()
+        })
+        .unwrap();
+    assert_eq!(
+        (model.parameters().friction_cold, model.parameters().density),
+        (0.3, before.density)
+    );
+}

@@ -1,0 +1,72 @@
+//! The compliance at speed V is carried to first order in V², C(V) ≈ C(0) + ρV² Zᵀ K₁ Z. The next term of the series is
+//! (ρV²)² Zᵀ K₁ S⁻¹ K₁ Z, so that the relative error is of order (V/c_R)⁴: 1e-6 at 100 m/s.
+
+use wheelrail::compliance::{self, Scales};
+use wheelrail::elasticity::Elasticity;
+use wheelrail::mesh::Mesh;
+use wheelrail::parameters::Parameters;
+
+/// Largest error of a block relative to its largest entry at speed V [m/s], against the refactorised form.
+fn error_at(speed: f64) -> f64 {
+    let parameters = Parameters {
+        contact_nodes: 31,
+        depth_nodes: 31,
+        ..Parameters::default()
+    };
+    let mesh = Mesh::new(&parameters);
+    let scales = Scales::new(&parameters);
+    let (rolling, _) = compliance::build(&mesh, &parameters, &scales).unwrap();
+    let rho_v2 = parameters.density * speed * speed;
+    let moving = Elasticity::new(&mesh, parameters.lame_lambda, parameters.shear_modulus, rho_v2).unwrap();
+
+    let n = mesh.contact_nodes;
+    let fields = moving.unit_load_fields(&mesh, mesh.first_contact..mesh.first_contact + n);
+    let traction = scales.pressure * mesh.contact_spacing() / scales.displacement;
+    let exact = |direction: usize, i: usize, load: usize| {
+        traction * fields[(2 * mesh.node(mesh.contact_column(i), 0) + direction, load)]
+    };
+    let (rest, inertia) = (&rolling.at_rest, &rolling.inertia);
+    let mut worst = 0.0_f64;
+    for (rest, inertia, direction, offset) in [
+        (&rest.normal_normal, &inertia.normal_normal, 1, n),
+        (&rest.normal_tangential, &inertia.normal_tangential, 1, 0),
+        (&rest.tangential_normal, &inertia.tangential_normal, 0, n),
+        (&rest.tangential_tangential, &inertia.tangential_tangential, 0, 0),
+    ] {
+        let mut error = 0.0_f64;
+        for i in 0..n {
+            for j in 0..n {
+                let first_order = rest[(i, j)] + rho_v2 * inertia[(i, j)];
+                error = error.max((first_order - exact(direction, i, offset + j)).abs());
+            }
+        }
+        assert!(error.is_finite());
+        worst = worst.max(error / rest.amax());
+    }
+    worst
+}
+
+#[test]
+fn the_error_of_the_compliance_is_of_fourth_order_in_the_speed() {
+    let parameters = Parameters::default();
+    let largest = parameters.largest_speed();
+    let fourth = |speed: f64| (speed / parameters.rayleigh_speed()).powi(4);
+    let (at_100, at_largest) = (error_at(100.0), error_at(largest));
+    // The series' constants are of order 1: the tangential compliance at the edge of the window has the largest, about 3.
+    assert!(at_100 < 5.0 * fourth(100.0), "{at_100:e} {:e}", fourth(100.0));
+    assert!(
+        at_largest < 5.0 * fourth(largest),
+        "{at_largest:e} {:e}",
+        fourth(largest)
+    );
+    let order = (at_largest / at_100).ln() / (largest / 100.0).ln();
+    assert!((order - 4.0).abs() < 0.1, "{order}");
+}
+
+#[test]
+fn beyond_the_rayleigh_speed_the_form_is_not_coercive() {
+    let parameters = Parameters::default();
+    let mesh = Mesh::new(&parameters);
+    let rho_v2 = parameters.density * (1.1 * parameters.rayleigh_speed()).powi(2);
+    assert!(Elasticity::new(&mesh, parameters.lame_lambda, parameters.shear_modulus, rho_v2).is_err());
+}

@@ -1,0 +1,87 @@
+//! The compressed map from temperature to displacement against the exact one, on fields that the heat march makes under
+//! random fluxes, speeds and times.
+
+mod checks;
+
+use checks::largest_difference;
+use proptest::prelude::*;
+use std::sync::OnceLock;
+use wheelrail::compliance::{self, Scales, ThermalDisplacement};
+use wheelrail::contact::Rail;
+use wheelrail::heat::{FrictionState, HeatMarch, Heated, SurfaceExchange};
+use wheelrail::parameters::{FrictionLaw, Parameters};
+use wheelrail::thermal_map::{exact_displacement, TOLERANCE};
+use wheelrail::transport::Upwind;
+
+fn parameters() -> Parameters {
+    Parameters {
+        friction_law: FrictionLaw::Constant,
+        friction_cold: 1.0,
+        ..Parameters::default()
+    }
+}
+
+fn rail() -> &'static (Rail, ThermalDisplacement) {
+    static RAIL: OnceLock<(Rail, ThermalDisplacement)> = OnceLock::new();
+    RAIL.get_or_init(|| {
+        let parameters = parameters();
+        let rail = Rail::new(&parameters).unwrap();
+        let (_, exact) = compliance::build(&rail.mesh, &parameters, &Scales::new(&parameters)).unwrap();
+        (rail, exact)
+    })
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(40))]
+    #[test]
+    fn the_compressed_map_is_the_exact_one_within_its_tolerance(
+        flux in prop::collection::vec(0.0..1e9, 61),
+        contact in 5_usize..30,
+        log_speed in -1.5..2.1,
+        backward in any::<bool>(),
+        log_step in -4.0..1.0,
+        steps in 1_usize..6,
+    ) {
+        let (rail, exact) = rail();
+        let parameters = parameters();
+        let speed = 10.0_f64.powf(log_speed) * if backward { -1.0 } else { 1.0 };
+        let exchange: Vec<SurfaceExchange> = flux
+            .iter()
+            .enumerate()
+            .map(|(node, &friction)| SurfaceExchange {
+                friction: if node.abs_diff(30) < contact { friction } else { 0.0 },
+                debris: 0.0,
+                conduction: 0.0,
+            })
+            .collect();
+        let march = HeatMarch {
+            basis: &rail.basis,
+            transport: Upwind::new(&rail.mesh.x, speed),
+            first_contact: rail.mesh.first_contact,
+            duration: 10.0_f64.powf(log_step),
+            friction: FrictionState { parameters: &parameters, ambient: 293.15, scale: 1.0 },
+        };
+        let size = rail.mesh.columns() * rail.basis.len();
+        let (mut before, mut after) = (vec![0.0; size], vec![0.0; size]);
+        for _ in 0..steps {
+            march.advance(
+                &before,
+                &exchange,
+                &mut Heated {
+                    temperature: &mut after,
+                    surface: &mut vec![0.0; rail.mesh.columns()],
+                    flux: &mut vec![0.0; 61],
+                },
+                &mut vec![0.0; rail.basis.len()],
+            ).unwrap();
+            std::mem::swap(&mut before, &mut after);
+        }
+        let expected = exact_displacement(&rail.mesh, &rail.basis, exact, &before);
+        let mut computed = vec![0.0; expected.len()];
+        rail.thermal_map.apply(&before, &mut computed);
+        // Each moment of each column keeps its gains down to TOLERANCE of the largest displacement that a unit of it
+        // makes in the middle of the window; what the columns drop adds up with random signs.
+        let error = largest_difference(&expected, &computed);
+        prop_assert!(error <= 10.0 * TOLERANCE, "{error:e}");
+    }
+}
