@@ -9,6 +9,7 @@ use crate::compliance::Compliance;
 use crate::dense;
 use crate::error::{Error, Result};
 use crate::friction::{saturation, saturation_slope};
+use crate::injection::{self, Solver};
 use crate::normal::{ActiveSet, Constraint, NormalProblem, Pschenichnyj};
 use crate::parameters::NormalSolver;
 use crate::tangential::{Tangential, TangentialProblem};
@@ -129,6 +130,7 @@ impl Mechanics {
             residual = change / largest;
             let first = *first.get_or_insert(residual);
             if residual <= tolerance && !set_changed {
+                injection::passes(Solver::Mechanics)?;
                 return Ok(first);
             }
         }
@@ -157,6 +159,10 @@ impl Mechanics {
             NormalSolver::ActiveSet => self.active_set.solve(&normal, tractions.pressure)?,
             NormalSolver::Pschenichnyj => self.pschenichnyj.solve(&normal, tractions.pressure)?,
         };
+        injection::passes(match problem.normal_solver {
+            NormalSolver::ActiveSet => Solver::ActiveSet,
+            NormalSolver::Pschenichnyj => Solver::Pschenichnyj,
+        })?;
         *tractions.penetration = solution.penetration;
 
         // The ends of the window have no neighbour; a contact that rests there is an error of the step.
@@ -221,6 +227,7 @@ impl Mechanics {
             tractions.shear[node] = self.shear[row];
             tractions.slip[node] = self.tangential.slip()[row];
         }
+        injection::passes(Solver::Tangential)?;
         Ok(change)
     }
 
