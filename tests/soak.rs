@@ -175,7 +175,7 @@ impl Scenario {
             }
             None => {
                 if self.random.chance(5e-3) {
-                    let (target, duration) = (self.random.between(15e3, 110e3), self.random.between(STEP, 0.1));
+                    let (target, duration) = (self.random.between(15e3, 98e3), self.random.between(STEP, 0.1));
                     self.load.to(target, duration);
                 }
                 None
@@ -245,7 +245,7 @@ fn simulate(steps: u64) {
     ]
     .map(column);
     let [traction, temperature, stick] = ["traction_force", "peak_temperature", "stick_fraction"].map(column);
-    let profile = |name: &str| (1..=61).map(|point| reference(&format!("profile.{name}[{point}]")));
+    let profile = |name: &'static str| (1..=61).map(move |point| reference(&format!("profile.{name}[{point}]")));
     let profiles: Vec<u32> = profile("pressure")
         .chain(profile("wear_depth"))
         .chain(profile("temperature"))
