@@ -303,6 +303,10 @@ impl Pschenichnyj {
             let slope = dot(&self.gradient, &self.direction);
             let bend = dot(&self.image, &self.direction);
             if residual <= LINEARISATION_TOLERANCE || slope >= 0.0 {
+                // The projected point: its zeros are exact, where shortened steps leave a trace of pressure.
+                for (p, d) in pressure.iter_mut().zip(&self.direction) {
+                    *p = (*p + d).max(0.0);
+                }
                 let penetration = match problem.constraint {
                     Constraint::Penetration(penetration) => penetration,
                     Constraint::Total(_) => multiplier,

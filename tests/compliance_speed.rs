@@ -54,7 +54,11 @@ fn the_error_of_the_compliance_is_of_fourth_order_in_the_speed() {
     let (at_100, at_largest) = (error_at(100.0), error_at(largest));
     // The series' constants are of order 1: the tangential compliance at the edge of the window has the largest, about 3.
     assert!(at_100 < 5.0 * fourth(100.0), "{at_100:e} {:e}", fourth(100.0));
-    assert!(at_largest < 5.0 * fourth(largest), "{at_largest:e} {:e}", fourth(largest));
+    assert!(
+        at_largest < 5.0 * fourth(largest),
+        "{at_largest:e} {:e}",
+        fourth(largest)
+    );
     let order = (at_largest / at_100).ln() / (largest / 100.0).ln();
     assert!((order - 4.0).abs() < 0.1, "{order}");
 }

@@ -1,8 +1,8 @@
 //! Manufactured solutions: each field approaches its exact one at the order of its scheme.
 
-mod common;
+mod checks;
 
 #[test]
 fn each_field_converges_at_its_order() {
-    common::assert_rows(wheelrail::verification::convergence::rows());
+    checks::assert_rows(wheelrail::verification::convergence::rows());
 }

@@ -1,8 +1,8 @@
 //! The locked wheel: less wear where friction falls with temperature, and a zone moved by thermal expansion.
 
-mod common;
+mod checks;
 
 #[test]
 fn wear_and_contact_zone_change_as_in_the_paper() {
-    common::assert_rows(wheelrail::verification::locked_wheel::rows());
+    checks::assert_rows(wheelrail::verification::locked_wheel::rows());
 }

@@ -1,8 +1,8 @@
 //! Mirrored motion gives mirrored fields to 1e-10.
 
-mod common;
+mod checks;
 
 #[test]
 fn mirrored_motion_gives_mirrored_fields() {
-    common::assert_rows(wheelrail::verification::mirrored::rows());
+    checks::assert_rows(wheelrail::verification::mirrored::rows());
 }

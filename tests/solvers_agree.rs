@@ -1,9 +1,9 @@
 //! The two methods for the normal problem, primal–dual active set and Pschenichnyj's linearisation, give the same
 //! pressure to 1e-8 in the whole model: with friction, heat and wear, under load and under penetration.
 
-mod common;
+mod checks;
 
-use common::largest_difference;
+use checks::largest_difference;
 use wheelrail::parameters::{Control, NormalSolver, Parameters, SlipSource};
 use wheelrail::signals::Inputs;
 use wheelrail::verification::Run;
@@ -33,7 +33,10 @@ fn run(normal_solver: NormalSolver, control: Control) -> Run {
 #[test]
 fn active_set_and_linearisation_give_the_same_fields() {
     for control in [Control::Load, Control::Penetration] {
-        let (active, linearised) = (run(NormalSolver::ActiveSet, control), run(NormalSolver::Pschenichnyj, control));
+        let (active, linearised) = (
+            run(NormalSolver::ActiveSet, control),
+            run(NormalSolver::Pschenichnyj, control),
+        );
         let (a, b) = (&active.state.fields, &linearised.state.fields);
         for (name, a, b) in [
             ("pressure", &a.pressure, &b.pressure),

@@ -1,14 +1,14 @@
 //! The compressed map from temperature to displacement against the exact one, on fields that the heat march makes under
 //! random fluxes, speeds and times.
 
-mod common;
+mod checks;
 
-use common::largest_difference;
+use checks::largest_difference;
 use proptest::prelude::*;
 use std::sync::OnceLock;
 use wheelrail::compliance::{self, Scales, ThermalDisplacement};
-use wheelrail::heat::{FrictionState, HeatMarch, Heated, SurfaceExchange};
 use wheelrail::contact::Rail;
+use wheelrail::heat::{FrictionState, HeatMarch, Heated, SurfaceExchange};
 use wheelrail::parameters::{FrictionLaw, Parameters};
 use wheelrail::thermal_map::{exact_displacement, TOLERANCE};
 use wheelrail::transport::Upwind;

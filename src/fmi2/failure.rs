@@ -37,9 +37,9 @@ pub enum Failure {
     /// A step that came only part of its way.
     #[error("the step stopped at t = {reached} s, {committed} s after its start, and the last committed state stands: {error}")]
     Interrupted {
-        /// Time reached, [s].
+        /// Time reached in s.
         reached: f64,
-        /// Part of the step that was committed, [s].
+        /// Part of the step that was committed in s.
         committed: f64,
         /// Why it stopped.
         error: Error,
@@ -47,7 +47,7 @@ pub enum Failure {
     /// A step that could not be begun, with the last committed state standing.
     #[error("the step from t = {time} s failed, and the last committed state stands: {error}")]
     Step {
-        /// Time of the last communication point, [s].
+        /// Time of the last communication point in s.
         time: f64,
         /// Why it failed.
         error: Error,
@@ -133,7 +133,7 @@ pub enum Failure {
     StopTime {
         /// The refused value.
         value: f64,
-        /// The start time, [s].
+        /// The start time in s.
         start: f64,
     },
     /// A step size that is not a positive finite number.
@@ -147,17 +147,17 @@ pub enum Failure {
     CommunicationPoint {
         /// The refused value.
         value: f64,
-        /// Where the last step ended, [s].
+        /// Where the last step ended in s.
         expected: f64,
     },
     /// A step beyond the stop time of the experiment.
     #[error("the step from t = {time} s by {size} s ends beyond stopTime = {stop} s")]
     BeyondStop {
-        /// Communication point, [s].
+        /// Communication point in s.
         time: f64,
-        /// Step size, [s].
+        /// Step size in s.
         size: f64,
-        /// Stop time, [s].
+        /// Stop time in s.
         stop: f64,
     },
     /// A log category that is not declared.

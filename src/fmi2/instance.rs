@@ -30,7 +30,7 @@ pub struct Instance {
     pub(super) inputs: Inputs,
     /// Rates of change of the inputs in the next step.
     pub(super) rates: Inputs,
-    /// The communication point, [s].
+    /// The communication point in s.
     pub(super) time: Real,
     /// Kept as long as the fixed parameters are the same, over fmi2Reset too.
     pub(super) built: Option<Built>,

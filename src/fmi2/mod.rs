@@ -1,7 +1,7 @@
 //! The FMI 2.0 co-simulation interface (standard 2.0.5): a thin layer over [`crate::wheel_rail`].
 //!
 //! Read in this order: [`types`] (the C types), [`variables`] (the one table of variables), [`modes`] (which call is
-//! allowed when), [`instance`] (what the calls do), [`stepping`] and [`saving`] (the rest of what they do),
+//! allowed when), [`instance`] (what the calls do), `stepping` and `saving` (the rest of what they do),
 //! [`state`] (the serialised form), [`failure`] (who is to blame, and the status that follows), [`logging`] and last
 //! [`functions`] (the exported functions: pointers, panic fence, status).
 //!

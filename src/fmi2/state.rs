@@ -25,9 +25,9 @@ const CHECKSUM: usize = 4;
 /// Times given by fmi2SetupExperiment.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Experiment {
-    /// Start time, [s].
+    /// Start time in s.
     pub start: f64,
-    /// Stop time, where one is defined, [s].
+    /// Stop time, where one is defined in s.
     pub stop: Option<f64>,
 }
 
@@ -44,7 +44,7 @@ pub struct Snapshot {
     pub inputs: Inputs,
     /// Their rates of change in the next step.
     pub rates: Inputs,
-    /// The communication point, [s].
+    /// The communication point in s.
     pub time: f64,
     /// Rail and contact, once computed.
     pub state: Option<State>,

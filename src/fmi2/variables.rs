@@ -39,7 +39,7 @@ pub struct ProfileColumn {
     pub values: fn(&Profiles) -> &[f64],
 }
 
-/// The profiles, one block of value references each, counted from [`FIRST_PROFILE_BLOCK`].
+/// The profiles, one block of value references each, counted from `FIRST_PROFILE_BLOCK`.
 #[rustfmt::skip]
 pub const PROFILES: [ProfileColumn; 8] = [
     ProfileColumn { name: "profile.x", unit: "m", display_unit: Some("mm"), nominal: 1e-2, points: PROFILE_POINTS,

@@ -52,6 +52,17 @@ pub fn rows() -> Result<Vec<Row>> {
             PRESSURE_TOLERANCE,
             SOURCE,
         ));
+        if percent == 50 {
+            // The approach of a line contact depends on the size of the body: no closed form for the strip.
+            rows.push(Row::relative(
+                "penetration at 50 % of the largest load",
+                "m",
+                0.101e-3,
+                outputs.penetration,
+                0.01,
+                "independent prototype, 61 nodes over 12 mm",
+            ));
+        }
     }
     Ok(rows)
 }

@@ -10,7 +10,7 @@ use crate::signals::Inputs;
 
 const SOURCE: &str = "T(w r0 - V) + V N e/r0";
 /// Each halves the spacing of the one before it.
-const NODES: [usize; 4] = [41, 81, 161, 321];
+const NODES: [usize; 4] = [31, 61, 121, 241];
 
 /// Relative defect of the balance at the default mesh and under refinement, and its order.
 ///

@@ -1,0 +1,116 @@
+//! Inputs and parameters within their ranges under which a step fails. Each ignored test reproduces one cause at its
+//! smallest; remove the mark with the cause.
+
+use wheelrail::parameters::{Parameters, SlipSource};
+use wheelrail::signals::Inputs;
+use wheelrail::verification::Run;
+
+fn parameters() -> Parameters {
+    Parameters {
+        slip_source: SlipSource::VehicleSpeed,
+        ..Parameters::default()
+    }
+}
+
+/// Vehicle speed, circumferential speed [m/s], load [N].
+fn inputs(vehicle_speed: f64, circumferential: f64, normal_load: f64) -> Inputs {
+    Inputs {
+        vehicle_speed,
+        wheel_speed: circumferential / parameters().wheel_radius,
+        normal_load,
+        ..Inputs::default()
+    }
+}
+
+/// Wear enters the gap by fixed-point iteration, which diverges where k|s|Δt, or k|s|Δx/V when rolling, exceeds the
+/// smallest eigenvalue of the compliance, some 1.5e-15 m/Pa on the default mesh.
+#[test]
+#[ignore = "SplitNotConverged: wear is explicit in the operator split"]
+fn a_wheel_spins_on_the_spot() {
+    let spinning = inputs(0.0, 1.0, 60e3);
+    let mut run = Run::new(&parameters(), &spinning).unwrap();
+    run.hold(&spinning, 1e-2, 1).unwrap();
+}
+
+#[test]
+#[ignore = "SplitNotConverged: wear is explicit in the operator split"]
+fn a_wheel_spins_at_walking_pace() {
+    let spinning = inputs(0.1, 5.1, 60e3);
+    let mut run = Run::new(&parameters(), &spinning).unwrap();
+    run.hold(&spinning, 1e-3, 1).unwrap();
+}
+
+#[test]
+#[ignore = "SplitNotConverged: wear is explicit in the operator split"]
+fn a_soft_rail_wears_at_speed() {
+    for (wear_coefficient, creepage) in [(1e-11, 1.0), (1e-10, 0.1), (1e-9, 0.01)] {
+        let parameters = Parameters {
+            wear_coefficient,
+            ..parameters()
+        };
+        let sliding = inputs(10.0, 10.0 * (1.0 + creepage), 60e3);
+        let mut run = Run::new(&parameters, &sliding).unwrap();
+        run.hold(&sliding, 1e-3, 1).unwrap();
+    }
+}
+
+#[test]
+#[ignore = "SplitNotConverged: the thermal bulge is explicit in the operator split"]
+fn a_rail_of_large_thermal_expansion_slides() {
+    for (thermal_expansion, creepage) in [(3e-4, 1.0), (1e-3, 0.1)] {
+        let parameters = Parameters {
+            thermal_expansion,
+            ..parameters()
+        };
+        let sliding = inputs(10.0, 10.0 * (1.0 + creepage), 60e3);
+        let mut run = Run::new(&parameters, &sliding).unwrap();
+        run.hold(&sliding, 1e-3, 1).unwrap();
+    }
+}
+
+/// The end of the ramp, 53 211.7 N − (53 211.7 N/Δt) Δt, is −7e-12 N by rounding and refused as a negative load.
+#[test]
+#[ignore = "OutOfRange: the end of a ramp to a limit misses it by rounding"]
+fn a_load_is_ramped_to_zero() {
+    for (load, duration) in [
+        (53_211.7, 1.1e-3),
+        (61_234.5, 7e-4),
+        (48_765.4, 1.3e-2),
+        (99_999.9, 3e-3),
+    ] {
+        let rolling = inputs(10.0, 10.0, load);
+        let mut run = Run::new(&parameters(), &rolling).unwrap();
+        let rates = Inputs {
+            normal_load: -load / duration,
+            ..Inputs::ZERO
+        };
+        run.model
+            .step(&mut run.workspace, &mut run.state, &rolling, &rates, duration)
+            .unwrap();
+        assert_eq!(run.state.outputs.traction_force, 0.0);
+    }
+}
+
+/// What round-off leaves of the larger tractions before is more than the tolerance of a load some 1e-9 times as large.
+#[test]
+#[ignore = "TangentialNotConverged: the residual is relative to a load that nearly vanishes"]
+fn a_load_nearly_vanishes() {
+    let rolling = inputs(10.0, 10.01, 60e3);
+    let mut run = Run::new(&parameters(), &rolling).unwrap();
+    run.hold(&rolling, 1e-3, 5).unwrap();
+    run.hold(&inputs(10.0, 10.01, 1e-6), 1e-3, 1).unwrap();
+}
+
+/// Coupling of pressure and shear times μ nears 1: 0.45 by the factor 6 and more.
+#[test]
+#[ignore = "TangentialNotConverged: a friction coefficient far above 1"]
+fn a_rail_is_extremely_rough() {
+    for (speed, circumferential, normal_load, friction_scale) in [(0.1, 0.0, 15e3, 6.0), (60.0, 60.6, 40e3, 6.0)] {
+        let rough = Inputs {
+            friction_scale,
+            ..inputs(speed, circumferential, normal_load)
+        };
+        let mut run = Run::new(&parameters(), &rough).unwrap();
+        run.hold(&rough, 1e-3, 5).unwrap();
+    }
+}
