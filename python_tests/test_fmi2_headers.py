@@ -124,8 +124,20 @@ def program(tmp_path_factory):
     source.write_text(PROGRAM)
     executable = folder / "headers"
     subprocess.run(
-        ["cc", "-std=c99", "-Wall", "-Werror", f"-I{HEADERS}", str(source), str(LIBRARY), "-o", str(executable),
-         f"-Wl,-rpath,{LIBRARY.parent}"], check=True)
+        [
+            "cc",
+            "-std=c99",
+            "-Wall",
+            "-Werror",
+            f"-I{HEADERS}",
+            str(source),
+            str(LIBRARY),
+            "-o",
+            str(executable),
+            f"-Wl,-rpath,{LIBRARY.parent}",
+        ],
+        check=True,
+    )
     return executable
 
 
@@ -148,8 +160,18 @@ def test_valgrind_is_clean(program):
     if shutil.which("valgrind") is None:
         pytest.skip("no valgrind")
     result = subprocess.run(
-        ["valgrind", "--quiet", "--error-exitcode=9", "--leak-check=full", "--errors-for-leak-kinds=definite",
-         program, guid()], capture_output=True, text=True)
+        [
+            "valgrind",
+            "--quiet",
+            "--error-exitcode=9",
+            "--leak-check=full",
+            "--errors-for-leak-kinds=definite",
+            program,
+            guid(),
+        ],
+        capture_output=True,
+        text=True,
+    )
     if "Unrecognised instruction" in result.stdout + result.stderr or "SIGILL" in result.stderr:
         pytest.skip("valgrind does not know the processor's vector instructions")
     assert result.returncode == 0, result.stdout + result.stderr
