@@ -17,12 +17,16 @@ use serde::{Deserialize, Serialize};
 
 /// Iterations of the operator split.
 const SPLITS: usize = 200;
-/// Change of surface temperature and wear between two iterations, relative to the largest temperature (at least 1 K) and
-/// to the displacement scale, at which the split rests (η).
+/// Error of surface temperature and wear at which the split rests (η), relative to the largest temperature (at least 1 K)
+/// and to the displacement scale.
 const TOLERANCE: f64 = 1e-9;
-/// Change of the shear relative to the peak pressure at which the split rests. It is looser, because it enters the
-/// next iteration through the inertia alone, reduced by (V/c_R)² ≤ 2.5e-3, and through what TOLERANCE watches.
-const SHEAR_TOLERANCE: f64 = 1e-6;
+/// Error of the shear at which the split rests, relative to the peak pressure.
+const SHEAR_TOLERANCE: f64 = 1e-8;
+/// Tolerance of the mechanics in the first iteration, and in the further ones relative to the last change.
+const FIRST_MECHANICS_TOLERANCE: f64 = 1e-7;
+const MECHANICS_TOLERANCE: f64 = 1e-2;
+/// The error of an iteration is its change times the contraction; an estimate above this is not trusted.
+const TRUSTED_CONTRACTION: f64 = 0.3;
 
 /// The rail and the wheel's profile, built at initialisation.
 pub struct Rail {
@@ -188,6 +192,61 @@ impl Fields {
     }
 }
 
+/// Rates of change of what a step starts its iteration from, per second: the first guess is extrapolated.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Trend {
+    /// Of the shear, n.
+    pub shear: Vec<f64>,
+    /// Of the surface temperature, columns.
+    pub surface_temperature: Vec<f64>,
+    /// Of the thermal displacement, 2n.
+    pub thermal_displacement: Vec<f64>,
+}
+
+impl Trend {
+    /// No change.
+    pub fn new(rail: &Rail) -> Trend {
+        let fields = Fields::new(rail);
+        Trend {
+            shear: fields.shear,
+            surface_temperature: fields.surface_temperature,
+            thermal_displacement: fields.thermal_displacement,
+        }
+    }
+
+    /// The vectors, in the order of their declaration.
+    pub fn vectors(&self) -> [&Vec<f64>; 3] {
+        [&self.shear, &self.surface_temperature, &self.thermal_displacement]
+    }
+
+    /// The trend between two fields `duration` [s] apart.
+    pub fn update(&mut self, before: &Fields, after: &Fields, duration: f64) {
+        let update = |trend: &mut [f64], before: &[f64], after: &[f64]| {
+            for ((trend, before), after) in trend.iter_mut().zip(before).zip(after) {
+                *trend = (after - before) / duration;
+            }
+        };
+        update(&mut self.shear, &before.shear, &after.shear);
+        update(
+            &mut self.surface_temperature,
+            &before.surface_temperature,
+            &after.surface_temperature,
+        );
+        update(
+            &mut self.thermal_displacement,
+            &before.thermal_displacement,
+            &after.thermal_displacement,
+        );
+    }
+
+    /// Moves the first guess on by `duration` [s].
+    pub fn extrapolate(&self, fields: &mut Fields, duration: f64) {
+        dense::add_multiple(&self.shear, duration, &mut fields.shear);
+        dense::add_multiple(&self.surface_temperature, duration, &mut fields.surface_temperature);
+        dense::add_multiple(&self.thermal_displacement, duration, &mut fields.thermal_displacement);
+    }
+}
+
 /// How a split came to rest.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Convergence {
@@ -248,13 +307,20 @@ impl Contact<'_> {
         for iterations in 1..=SPLITS {
             self.remember(fields, scratch);
             // Step 2: tractions for given temperature and wear.
-            let shear_change = self.mechanics(fields, scratch)?;
+            let tolerance = (MECHANICS_TOLERANCE * residual).clamp(1e-10, FIRST_MECHANICS_TOLERANCE);
+            let shear_change = self.mechanics(fields, scratch, tolerance)?;
             // Step 3: wear and temperature for given tractions.
             self.march_wear(before, fields, scratch);
             self.march_heat(before, fields, scratch)?;
-            // Step 4: rest?
+            // Step 4: rest? The next change would be smaller by the contraction.
+            let last = residual;
             residual = self.change(fields, scratch);
-            if residual <= TOLERANCE && shear_change <= SHEAR_TOLERANCE {
+            let contraction = if residual < TRUSTED_CONTRACTION * last && last.is_finite() {
+                residual / last
+            } else {
+                1.0
+            };
+            if residual * contraction <= TOLERANCE && shear_change * contraction <= SHEAR_TOLERANCE {
                 self.check_window(fields)?;
                 return Ok(Convergence { iterations, residual });
             }
@@ -273,7 +339,7 @@ impl Contact<'_> {
     pub fn solve_mechanics(&self, fields: &mut Fields, scratch: &mut Scratch) -> Result<()> {
         scratch.mechanics.start_step();
         for _ in 0..SPLITS {
-            if self.mechanics(fields, scratch)? <= TOLERANCE {
+            if self.mechanics(fields, scratch, TOLERANCE)? <= TOLERANCE {
                 return self.check_window(fields);
             }
         }
@@ -306,7 +372,7 @@ impl Contact<'_> {
 
     /// (31): tractions for given temperature and wear. The convective inertia is that of the tractions before, and so at
     /// rest where the split is. Returns the relative change of the shear.
-    fn mechanics(&self, fields: &mut Fields, scratch: &mut Scratch) -> Result<f64> {
+    fn mechanics(&self, fields: &mut Fields, scratch: &mut Scratch, tolerance: f64) -> Result<f64> {
         let constraint = self.constraint();
         if constraint == Constraint::Total(0.0) {
             fields.pressure.fill(0.0);
@@ -317,7 +383,7 @@ impl Contact<'_> {
         }
         self.update_mechanics_data(fields, scratch);
         let (problem, mut tractions, mechanics) = self.mechanics_problem(fields, scratch);
-        mechanics.solve(&problem, &mut tractions)
+        mechanics.solve(&problem, &mut tractions, tolerance)
     }
 
     /// Friction coefficient, profile and displacement for given temperature, wear and inertia.

@@ -15,7 +15,7 @@ use crate::tangential::{Tangential, TangentialProblem};
 
 /// Sweeps between normal and tangential problem.
 const SWEEPS: usize = 200;
-/// Change of the shear at which the sweeps rest, relative to the peak pressure.
+/// Tolerance of [`Mechanics::linearise`].
 const TOLERANCE: f64 = 1e-10;
 
 /// The data of one mechanics problem with n contact nodes, scaled.
@@ -114,28 +114,28 @@ impl Mechanics {
         self.tangential.forget();
     }
 
-    /// Solves from the given tractions. Returns the largest change of the shear in the first sweep: how far the
+    /// Solves from the given tractions until the shear changes by less than `tolerance`, relative to the peak pressure. Returns the largest change of the shear in the first sweep: how far the
     /// tractions were from rest.
     ///
     /// # Errors
     /// The first solver that does not converge, [`Error::MechanicsNotConverged`].
-    pub fn solve(&mut self, problem: &MechanicsProblem, tractions: &mut Tractions) -> Result<f64> {
+    pub fn solve(&mut self, problem: &MechanicsProblem, tractions: &mut Tractions, tolerance: f64) -> Result<f64> {
         let mut first = None;
         let mut residual = f64::INFINITY;
         for _ in 0..SWEEPS {
             let set_changed = self.solve_normal(problem, tractions)?;
-            let change = self.solve_friction(problem, tractions)?;
+            let change = self.solve_friction(problem, tractions, tolerance)?;
             let largest = tractions.pressure.iter().fold(f64::MIN_POSITIVE, |m, p| p.max(m));
             residual = change / largest;
             let first = *first.get_or_insert(residual);
-            if residual <= TOLERANCE && !set_changed {
+            if residual <= tolerance && !set_changed {
                 return Ok(first);
             }
         }
         Err(Error::MechanicsNotConverged {
             iterations: SWEEPS,
             residual,
-            tolerance: TOLERANCE,
+            tolerance,
         })
     }
 
@@ -178,7 +178,7 @@ impl Mechanics {
     }
 
     /// (30) for given pressure and its response. Returns the largest change of the shear.
-    fn solve_friction(&mut self, problem: &MechanicsProblem, tractions: &mut Tractions) -> Result<f64> {
+    fn solve_friction(&mut self, problem: &MechanicsProblem, tractions: &mut Tractions, tolerance: f64) -> Result<f64> {
         self.displacement.copy_from_slice(problem.displacement);
         let compliance = problem.compliance;
         dense::multiply_add(
@@ -211,6 +211,7 @@ impl Mechanics {
                 rigid_slip: problem.rigid_slip,
                 strain_speed: problem.strain_speed.abs(),
                 regularisation: problem.regularisation,
+                tolerance,
             },
             &mut self.shear[..m],
         )?;
@@ -292,7 +293,7 @@ impl Mechanics {
             normal_solver: NormalSolver::ActiveSet,
             ..*problem
         };
-        self.solve(&problem, tractions)?;
+        self.solve(&problem, tractions, TOLERANCE)?;
         let singular = Error::MechanicsNotConverged {
             iterations: 0,
             residual: f64::NAN,
@@ -309,6 +310,7 @@ impl Mechanics {
             rigid_slip: problem.rigid_slip,
             strain_speed: problem.strain_speed.abs(),
             regularisation: problem.regularisation,
+            tolerance: TOLERANCE,
         };
         if self.tangential.linearise(&tangential) {
             Ok(())

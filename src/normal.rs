@@ -39,8 +39,11 @@ pub struct NormalSolution {
 
 /// Separations above −1e-13 count as closed: round-off of w, whose terms are of order 1.
 const ROUND_OFF: f64 = 1e-13;
-/// Exchanges of whole sets before the method that moves one node at a time takes over.
-const SET_EXCHANGES: usize = 40;
+/// Exchanges of all violated nodes at once; two ends of a contact that wait for each other can cycle, and from then on
+/// only the worst node is exchanged.
+const SET_EXCHANGES: usize = 4;
+/// Exchanges altogether before the method that descends takes over.
+const EXCHANGES: usize = 40;
 
 /// Primal–dual active set (Hintermüller, Ito and Kunisch, SIAM J. Optim. 13, 2003) with the load as one more row.
 ///
@@ -102,27 +105,41 @@ impl ActiveSet {
         if self.active.is_empty() {
             self.active.extend(0..pressure.len());
         }
-        for iterations in 1..=SET_EXCHANGES {
+        for iterations in 1..=EXCHANGES {
             let penetration = self.close_active_nodes(problem)?;
             pressure.copy_from_slice(&self.target);
             self.update_separation(problem, pressure, penetration);
-            let violated = |i: usize| match pressure[i] {
-                0.0 => self.separation[i] < -ROUND_OFF,
-                p => p < 0.0,
-            };
-            if !(0..pressure.len()).any(violated) {
+            let Some(worst) = self.worst_violation(pressure) else {
                 return Ok(NormalSolution {
                     penetration,
                     iterations,
                 });
+            };
+            if iterations <= SET_EXCHANGES {
+                self.active.clear();
+                self.active.extend((0..pressure.len()).filter(|&i| match pressure[i] {
+                    0.0 => self.separation[i] < -ROUND_OFF,
+                    p => p > 0.0,
+                }));
+            } else {
+                match self.active.binary_search(&worst) {
+                    Ok(place) => _ = self.active.remove(place),
+                    Err(place) => self.active.insert(place, worst),
+                }
             }
-            self.active.clear();
-            self.active.extend((0..pressure.len()).filter(|&i| match pressure[i] {
-                0.0 => self.separation[i] < -ROUND_OFF,
-                p => p > 0.0,
-            }));
         }
         self.descend(problem, pressure)
+    }
+
+    /// The node whose condition is violated most, by negative pressure or negative separation (both scaled).
+    fn worst_violation(&self, pressure: &[f64]) -> Option<usize> {
+        let violation = |i: usize| match pressure[i] {
+            0.0 if self.separation[i] < -ROUND_OFF => -self.separation[i],
+            p => -p,
+        };
+        (0..pressure.len())
+            .filter(|&i| violation(i) > 0.0)
+            .max_by(|&a, &b| violation(a).total_cmp(&violation(b)))
     }
 
     /// Primal active-set method: stays feasible, adds or drops one node at a time, decreases the energy (37).
@@ -135,8 +152,8 @@ impl ActiveSet {
         pressure.fill(start);
         self.active.clear();
         self.active.extend((0..n).filter(|_| start > 0.0));
-        let limit = SET_EXCHANGES + 20 * n;
-        for iterations in SET_EXCHANGES + 1..=limit {
+        let limit = EXCHANGES + 20 * n;
+        for iterations in EXCHANGES + 1..=limit {
             let penetration = self.close_active_nodes(problem)?;
             let blocking = (0..n)
                 .filter(|&i| self.target[i] < 0.0)

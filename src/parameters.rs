@@ -432,7 +432,7 @@ pub const REAL_PARAMETERS: &[RealParameter] = &[
     real!(
         "largest_load",
         "N",
-        120e3,
+        100e3,
         1.0,
         1e7,
         false,
@@ -685,10 +685,10 @@ impl Parameters {
         0.05 * self.rayleigh_speed()
     }
 
-    /// Half-width of the contact window, [m]: the Hertz half-length at the largest load and a margin of 1/11 for
+    /// Half-width of the contact window, [m]: the Hertz half-length at the largest load and a margin of a fifth for
     /// thermal bulge, friction coupling and wear.
     pub fn window_half_width(&self) -> f64 {
-        self.hertz_half_length(self.largest_load) * 12.0 / 11.0
+        1.2 * self.hertz_half_length(self.largest_load)
     }
 
     /// Checks every value against its range, then the values against each other.

@@ -30,6 +30,8 @@ pub struct TangentialProblem<'a> {
     pub strain_speed: f64,
     /// ε, [m/s].
     pub regularisation: f64,
+    /// Newton step at which the iteration stops, relative to the largest pressure.
+    pub tolerance: f64,
 }
 
 /// Where the last solve ended, on the nodes of its problem.
@@ -47,8 +49,6 @@ const NEWTON_STEPS: usize = 60;
 const HALVINGS: usize = 12;
 /// Half-decades of continuation in ε.
 const CONTINUATION: i32 = 10;
-/// Newton step at which the iteration stops, relative to the largest pressure.
-const TOLERANCE: f64 = 1e-11;
 /// A factorisation is kept while each step is shorter than this share of the one before.
 const SLOW_CONTRACTION: f64 = 0.1;
 
@@ -146,7 +146,7 @@ impl Tangential {
             Err(iterations) => Err(Error::TangentialNotConverged {
                 iterations,
                 residual: largest(&self.residual[..m]) / largest(&problem.pressure[..m]),
-                tolerance: TOLERANCE,
+                tolerance: problem.tolerance,
             }),
         }
     }
@@ -160,7 +160,7 @@ impl Tangential {
         shear: &[f64],
     ) -> std::result::Result<usize, usize> {
         let m = shear.len();
-        let tolerance = TOLERANCE * largest(problem.pressure);
+        let tolerance = problem.tolerance * largest(problem.pressure);
         let mut norm = self.update_residual(problem, regularisation, shear);
         let mut last_length = f64::INFINITY;
         for steps in 1..=NEWTON_STEPS {

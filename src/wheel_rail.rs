@@ -1,6 +1,6 @@
 //! The stepped model: inputs in, state advanced, outputs out. It knows nothing of FMI.
 
-use crate::contact::{Conditions, Contact, Fields, Rail, Scratch};
+use crate::contact::{Conditions, Contact, Fields, Rail, Scratch, Trend};
 use crate::error::{Error, Result};
 use crate::friction;
 use crate::outputs;
@@ -42,6 +42,8 @@ pub struct State {
     pub duration: f64,
     /// Temperature, wear, tractions.
     pub fields: Fields,
+    /// How they changed over the last sub-step.
+    pub trend: Trend,
     /// Outputs at the last committed instant, totals included.
     pub outputs: Outputs,
     /// Rates of change of the outputs over the last committed sub-step, per second.
@@ -118,6 +120,7 @@ impl Model {
             inputs: *inputs,
             duration: 0.0,
             fields,
+            trend: Trend::new(&self.rail),
             outputs: Outputs::default(),
             output_rates: Outputs::default(),
             convergence: Convergence::default(),
@@ -130,8 +133,12 @@ impl Model {
     pub fn accepts(&self, state: &State) -> bool {
         let expected = Fields::new(&self.rail);
         let fields = &state.fields;
-        let mut pairs = fields.vectors().into_iter().zip(expected.vectors());
-        pairs.all(|(own, expected)| own.len() == expected.len() && own.iter().all(|v| v.is_finite()))
+        let expected_trend = Trend::new(&self.rail);
+        let pairs = fields.vectors().into_iter().zip(expected.vectors());
+        let trends = state.trend.vectors().into_iter().zip(expected_trend.vectors());
+        pairs
+            .chain(trends)
+            .all(|(own, expected)| own.len() == expected.len() && own.iter().all(|v| v.is_finite()))
             && OUTPUTS.iter().all(|signal| (signal.get)(&state.outputs).is_finite())
             && fields.penetration.is_finite()
             && state.time.is_finite()
@@ -204,6 +211,8 @@ impl Model {
     ) -> Result<Convergence> {
         let Workspace { scratch, trial } = workspace;
         trial.copy_from(&state.fields);
+        // Not further than it was observed.
+        state.trend.extrapolate(trial, duration.min(state.duration));
         let contact = self.contact(inputs, duration);
         let convergence = contact.operator_split(&state.fields, trial, scratch)?;
 
@@ -215,6 +224,7 @@ impl Model {
             let rate = ((signal.get)(&outputs) - (signal.get)(&state.outputs)) / duration;
             (signal.set)(&mut state.output_rates, rate);
         }
+        state.trend.update(&state.fields, trial, duration);
         std::mem::swap(&mut state.fields, trial);
         state.inputs = *inputs;
         state.duration = duration;

@@ -119,10 +119,10 @@ fn extreme_step_sizes_come_back() {
 fn a_step_that_cannot_be_completed_is_discarded_after_a_committed_part_and_an_error_before() {
     let api = Api::load();
     let (mut discarded, mut failed) = (0, 0);
-    for (wear, creepage, load) in [0.5e-12, 1e-12, 3e-12, 1e-11]
+    for (wear, creepage, load) in [3e-12, 1e-11, 3e-11, 1e-10]
         .into_iter()
         .flat_map(|wear| [0.5, 5.0].map(|creepage| (wear, creepage)))
-        .flat_map(|(wear, creepage)| [1e5, 1.15e5, 1.2e5].map(|load| (wear, creepage, load)))
+        .flat_map(|(wear, creepage)| [8e4, 9e4, 1e5].map(|load| (wear, creepage, load)))
     {
         let client = Client::running(&api, &[("normal_load", load), ("wear_coefficient", wear)]);
         client.expect(OK, client.step(0.0, 1e-3));

@@ -29,7 +29,7 @@ fn a_lifted_wheel_transmits_nothing_and_the_rail_cools() {
         ..sliding
     };
     let mut run = Run::new(&parameters(), &sliding).unwrap();
-    let hot = run.hold(&sliding, 1e-3, 100).unwrap().clone();
+    let hot = *run.hold(&sliding, 1e-3, 100).unwrap();
     let mut peak = hot.peak_temperature;
     for step in 0..50 {
         let outputs = run.hold(&lifted, 1e-4, 1).unwrap();

@@ -18,6 +18,7 @@ const NODES: [usize; 4] = [31, 61, 121, 241];
 /// A solver that did not converge.
 pub fn rows() -> Result<Vec<Row>> {
     let mut rows = Vec::new();
+    // No bound is known beforehand: measured 4.0 % and 0.91 % at the default mesh, with some room. The claim is the order.
     for (creepage, tolerance) in [(0.0, 0.06), (0.01, 0.01)] {
         let defects = NODES
             .iter()
@@ -49,6 +50,7 @@ pub fn rows() -> Result<Vec<Row>> {
             "1",
             1.0,
             (defects[0] / defects[3]).log2() / 3.0,
+            // Nodes enter and leave the contact as the mesh is refined: measured 0.84 and 0.93.
             0.25,
             "upwind differences, order 1",
         ));
