@@ -3,6 +3,7 @@
 #   make fmu     target/WheelRailContact.fmu
 #   make demo    the paper's cases and a braking manoeuvre through FMPy: results/
 #   make test    formatting, lints, documentation, all Rust tests, `wheelrail verify`, all Python tests
+#   make docs    the generated tables of README.md and of the documentation page
 #   make bench   run times: a step, a cold start, both against the number of contact nodes
 #   make clean   removes everything that the above made
 
@@ -28,7 +29,7 @@ GLIBC := 2.17
 
 say = @printf '\n\033[1m== %s\033[0m\n' '$(1)'
 
-.PHONY: fmu demo test bench clean lint rust-test verify python-test hosts library command
+.PHONY: fmu demo test docs bench clean lint rust-test verify python-test hosts library command
 
 # ---- set-up -------------------------------------------------------------------------------------------------------
 
@@ -92,6 +93,11 @@ verify: command
 python-test: fmu hosts
 	$(call say,Python tests)
 	$(PY) -m pytest
+
+# README's and the documentation page's generated tables, and README's pictures; commit what changes.
+docs: demo
+	@$(PY) tools/update_docs.py
+	@cp results/paper_temperature.png results/braking.png docs/
 
 bench:
 	cargo bench

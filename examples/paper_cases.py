@@ -7,9 +7,11 @@ A wheel of 0.46 m pressed 0.1 mm into the rail rolls at 10 m/s with a creepage o
 The pictures are the paper's Figures 4 and 5, and what happens in the contact.
 """
 
+import csv
+
 import matplotlib.pyplot as plt
 import numpy as np
-from helpers import BLACK, BLUE, ORANGE, RED, WHEEL_RADIUS, profile, profile_names, save, simulate, write_csv
+from helpers import BLACK, BLUE, ORANGE, RED, RESULTS, WHEEL_RADIUS, profile, profile_names, save, simulate, write_csv
 
 SPEED, CREEPAGE, AMBIENT = 10.0, 0.04, 273.15
 CONSTANT, PIECEWISE_LINEAR = 1, 2
@@ -126,7 +128,7 @@ def draw_contact(results):
 
 
 def write_tables(results):
-    """Profiles of all cases side by side, and one row of figures per case."""
+    """Write the profiles of all cases side by side."""
     first = results["constant"]
     across = {"x [m]": profile(first, "profile.x")}
     depth = {"z [m]": profile(first, "depth.z")}
@@ -139,12 +141,29 @@ def write_tables(results):
     write_csv("paper_depth.csv", depth)
 
 
+def write_summary(results):
+    """One row of figures per case."""
+    constant = results["constant"]["peak_temperature"][-1]
+    RESULTS.mkdir(exist_ok=True)
+    path = RESULTS / "paper_cases.csv"
+    with path.open("w", newline="") as file:
+        writer = csv.writer(file)
+        units = dict(zip(OUTPUTS, ["N", "1", "K", "Pa", "1"], strict=True))
+        writer.writerow(["case", "lower [K]", *(f"{name} [{unit}]" for name, unit in units.items())])
+        for case, result in results.items():
+            last = result[-1]
+            lower = constant - last["peak_temperature"]
+            writer.writerow([case, *(repr(float(value)) for value in (lower, *(last[name] for name in OUTPUTS)))])
+    print(f"  wrote results/{path.name}")
+
+
 def main():
     """Simulate, draw, write, report."""
     results = {case: roll(case) for case in CASES}
     draw_temperature(results)
     draw_contact(results)
     write_tables(results)
+    write_summary(results)
     peaks = {case: celsius(result["peak_temperature"][-1]) for case, result in results.items()}
     print("  case       peak temperature   lower than constant   mean friction   peak pressure   traction")
     for case, result in results.items():

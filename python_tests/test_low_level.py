@@ -111,7 +111,7 @@ def test_saved_state_repeats_the_same_bits(instance, reference, outputs, seriali
         data = first.serializeFMUState(state)
         second = instance("second")
         start(second, reference)
-        restored = second.deSerializeFMUState(data)
+        restored = second.deserializeFMUState(data)
         second.setFMUState(restored)
         assert advance(second) == expected
         second.freeFMUState(restored)
@@ -132,7 +132,7 @@ def test_noise_is_no_state(instance, reference):
     for damaged in (data[:-1], bytes(len(data)), data[:100] + bytes([data[100] ^ 1]) + data[101:]):
         other = instance()
         start(other, reference)
-        assert status_of(other.deSerializeFMUState, damaged) == fmi2Error
+        assert status_of(other.deserializeFMUState, damaged) == fmi2Error
 
 
 def test_directional_derivative_is_the_slope(instance, reference, outputs):
