@@ -75,7 +75,7 @@ test: lint rust-test verify python-test
 	$(call say,All checks passed)
 
 lint: $(VENV)/ready
-	$(call say,Formatting, lints, documentation)
+	$(call say,Formatting - lints - documentation)
 	cargo fmt --check
 	cargo clippy --quiet --all-targets -- -D warnings
 	RUSTDOCFLAGS='-D warnings' cargo doc --quiet --no-deps --document-private-items
