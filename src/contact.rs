@@ -6,6 +6,7 @@ use crate::compliance::{self, RollingCompliance, Scales};
 use crate::dense;
 use crate::error::{Error, Result};
 use crate::heat::{DepthBasis, FrictionState, HeatMarch, Heated, SurfaceExchange};
+use crate::injection::{self, Solver};
 use crate::mechanics::{Mechanics, MechanicsProblem, ProblemTangent, Tractions};
 use crate::mesh::Mesh;
 use crate::normal::Constraint;
@@ -337,6 +338,7 @@ impl Contact<'_> {
             };
             if residual * contraction <= TOLERANCE && shear_change * contraction <= SHEAR_TOLERANCE {
                 self.check_window(fields)?;
+                injection::passes(Solver::Split)?;
                 return Ok(Convergence { iterations, residual });
             }
             if iterations >= ACCELERATE_FROM {

@@ -9,6 +9,7 @@ use crate::compliance::Compliance;
 use crate::dense;
 use crate::error::{Error, Result};
 use crate::friction::{saturation, saturation_slope};
+use crate::injection::{self, Solver};
 use crate::normal::{ActiveSet, Constraint, NormalProblem, Pschenichnyj};
 use crate::parameters::NormalSolver;
 use crate::tangential::{Tangential, TangentialProblem};
@@ -140,6 +141,7 @@ impl Mechanics {
             residual = change / largest;
             let first = *first.get_or_insert(residual);
             if residual <= tolerance && !set_changed {
+                injection::passes(Solver::Mechanics)?;
                 return Ok(first);
             }
         }
@@ -170,11 +172,14 @@ impl Mechanics {
             NormalSolver::ActiveSet => self.active_set.solve(&normal, tractions.pressure)?,
             NormalSolver::Pschenichnyj => self.pschenichnyj.solve(&normal, tractions.pressure)?,
         };
+        injection::passes(match problem.normal_solver {
+            NormalSolver::ActiveSet => Solver::ActiveSet,
+            NormalSolver::Pschenichnyj => Solver::Pschenichnyj,
+        })?;
         *tractions.penetration = solution.penetration;
 
-        let n = tractions.pressure.len();
         self.nodes.clear();
-        self.nodes.extend((1..n - 1).filter(|&i| tractions.pressure[i] > 0.0));
+        self.nodes.extend(under_pressure(tractions.pressure));
         let forward = problem.strain_speed >= 0.0;
         let load_given = matches!(problem.constraint, Constraint::Total(_));
         let follows = problem.normal_solver == NormalSolver::ActiveSet && self.active_set.active() == self.nodes;
@@ -242,6 +247,7 @@ impl Mechanics {
             tractions.shear[node] = self.shear[row];
             tractions.slip[node] = self.tangential.slip()[row];
         }
+        injection::passes(Solver::Tangential)?;
         Ok(change.max(clamped))
     }
 
