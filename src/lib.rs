@@ -1,4 +1,5 @@
 //! wheelrail
+pub mod acceleration;
 pub mod compliance;
 pub mod contact;
 pub mod dense;

@@ -57,7 +57,6 @@ fn a_run_repeats_bit_for_bit() {
 
 /// A state that is restored goes on with the same bits only if the workspace adds nothing.
 #[test]
-#[ignore = "the mechanics keep the inverse and the response of the last active set, which differ by round-off"]
 fn a_workspace_carries_nothing_from_step_to_step() {
     let inputs = |step: u32| Inputs {
         creepage: 0.02 * f64::from(step % 2),
@@ -139,7 +138,7 @@ fn a_failed_step_leaves_the_state_as_it_was() {
         "{interrupted:?}"
     );
     let message = interrupted.error.to_string();
-    assert!(message.contains("largest_load = 120000 N"), "{message}");
+    assert!(message.contains("largest_load = 100000 N"), "{message}");
 
     // The way on, and the same one as if the failure had not been.
     let mut fresh = Run::new(&parameters, &rolling).unwrap();

@@ -15,12 +15,28 @@ OUTPUT = REPOSITORY / "modelDescription" / "licenses" / "THIRD-PARTY.txt"
 def linked_packages():
     """Packages of the library's normal dependencies, procedural macros and build scripts left out."""
     tree = subprocess.check_output(
-        ["cargo", "tree", "--no-default-features", "--edges", "normal,no-proc-macro", "--prefix", "none",
-         "--target", "x86_64-unknown-linux-gnu", "--format", "{p}"],
-        cwd=REPOSITORY, text=True)
+        [
+            "cargo",
+            "tree",
+            "--no-default-features",
+            "--edges",
+            "normal,no-proc-macro",
+            "--prefix",
+            "none",
+            "--target",
+            "x86_64-unknown-linux-gnu",
+            "--format",
+            "{p}",
+        ],
+        cwd=REPOSITORY,
+        text=True,
+    )
     linked = {tuple(line.split()[:2]) for line in tree.splitlines() if line.strip()}
-    metadata = json.loads(subprocess.check_output(
-        ["cargo", "metadata", "--format-version", "1", "--no-default-features"], cwd=REPOSITORY, text=True))
+    metadata = json.loads(
+        subprocess.check_output(
+            ["cargo", "metadata", "--format-version", "1", "--no-default-features"], cwd=REPOSITORY, text=True
+        )
+    )
     packages = [p for p in metadata["packages"] if (p["name"], "v" + p["version"]) in linked]
     return sorted((p for p in packages if p["source"]), key=lambda p: (p["name"], p["version"]))
 
@@ -28,8 +44,11 @@ def linked_packages():
 def licence_texts(package):
     """The licence files that come with a package."""
     folder = Path(package["manifest_path"]).parent
-    names = [p for p in folder.iterdir()
-             if p.is_file() and p.name.upper().startswith(("LICENSE", "LICENCE", "COPYING", "NOTICE", "UNLICENSE"))]
+    names = [
+        p
+        for p in folder.iterdir()
+        if p.is_file() and p.name.upper().startswith(("LICENSE", "LICENCE", "COPYING", "NOTICE", "UNLICENSE"))
+    ]
     return [p.read_text(encoding="utf-8", errors="replace").replace("\r\n", "\n").strip() for p in sorted(names)]
 
 

@@ -1,0 +1,106 @@
+# wheelrail: `make demo` shows what it does, `make test` checks it. Both do all set-up in a fresh clone.
+#
+#   make fmu     target/WheelRailContact.fmu
+#   make demo    the paper's cases and a braking manoeuvre through FMPy: results/
+#   make test    formatting, lints, documentation, all Rust tests, `wheelrail verify`, all Python tests
+#   make docs    the generated tables of README.md and of the documentation page
+#   make bench   run times: a step, a cold start, both against the number of contact nodes
+#   make clean   removes everything that the above made
+
+SHELL := /bin/bash
+.SHELLFLAGS := -eu -o pipefail -c
+.DEFAULT_GOAL := fmu
+
+PYTHON ?= python3
+VENV := .venv
+PY := $(CURDIR)/$(VENV)/bin/python
+# One place for everything built, whatever the environment says.
+export CARGO_TARGET_DIR := $(CURDIR)/target
+# The scripts are vectorised over small arrays: threads of their own would only get in each other's way.
+export OMP_NUM_THREADS := 1
+export OPENBLAS_NUM_THREADS := 1
+export MPLBACKEND := Agg
+
+FMU := target/WheelRailContact.fmu
+WHEELRAIL := target/release/wheelrail
+# The shared library of a Linux FMU is linked against the symbols of glibc 2.17 (2012), by zig as the linker.
+PORTABLE := x86_64-unknown-linux-gnu
+GLIBC := 2.17
+
+say = @printf '\n\033[1m== %s\033[0m\n' '$(1)'
+
+.PHONY: fmu demo test docs bench clean lint rust-test verify python-test hosts library command
+
+# ---- set-up -------------------------------------------------------------------------------------------------------
+
+$(VENV)/ready: requirements.txt
+	$(call say,Python environment $(VENV))
+	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "Python 3.11 or newer is needed, this is " + sys.version)'
+	$(PYTHON) -m venv $(VENV)
+	$(PY) -m pip install --quiet --disable-pip-version-check -r requirements.txt
+	@touch $@
+
+# Hosts that need more than a Python package: each has a test that is skipped, with the reason, where this fails.
+hosts: $(VENV)/ready
+	$(call say,Other simulation hosts)
+	@$(PY) tools/hosts.py
+
+# ---- the component ------------------------------------------------------------------------------------------------
+
+command:
+	$(call say,Command line $(WHEELRAIL))
+	cargo build --release --bin wheelrail
+
+library: $(VENV)/ready
+	$(call say,Shared library)
+	@$(PY) tools/build_library.py --target $(PORTABLE) --glibc $(GLIBC)
+
+fmu: library command
+	$(call say,$(FMU))
+	@$(WHEELRAIL) pack --library "$$(cat target/library.path)" --output $(FMU)
+
+# ---- what it does -------------------------------------------------------------------------------------------------
+
+demo: fmu
+	$(call say,The cases of the paper)
+	@$(PY) examples/paper_cases.py
+	$(call say,A braking manoeuvre)
+	@$(PY) examples/braking_demo.py
+	$(call say,Written)
+	@ls -l results/*.csv results/*.png | awk '{ print $$NF, "(" $$5, "bytes)" }'
+
+# ---- checks -------------------------------------------------------------------------------------------------------
+
+test: lint rust-test verify python-test
+	$(call say,All checks passed)
+
+lint: $(VENV)/ready
+	$(call say,Formatting - lints - documentation)
+	cargo fmt --check
+	cargo clippy --quiet --all-targets -- -D warnings
+	RUSTDOCFLAGS='-D warnings' cargo doc --quiet --no-deps --document-private-items
+	$(VENV)/bin/ruff check .
+	$(VENV)/bin/ruff format --check .
+
+rust-test:
+	$(call say,Rust tests)
+	cargo test
+
+verify: command
+	$(call say,Verification against closed forms and the paper)
+	$(WHEELRAIL) verify
+
+python-test: fmu hosts
+	$(call say,Python tests)
+	$(PY) -m pytest
+
+# README's and the documentation page's generated tables, and README's pictures; commit what changes.
+docs: demo
+	@$(PY) tools/update_docs.py
+	@cp results/paper_temperature.png results/braking.png docs/
+
+bench:
+	cargo bench
+
+clean:
+	rm -rf target $(VENV) .venv-cofmupy results .pytest_cache .ruff_cache

@@ -1,0 +1,112 @@
+"""What the tests share: the component that `make fmu` built, and a low-level instance of it."""
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import fmpy
+import pytest
+from fmpy.fmi2 import FMU2Slave
+
+REPOSITORY = Path(__file__).resolve().parent.parent
+
+
+def built(path):
+    """Return a file that `make fmu` makes."""
+    if not path.exists():
+        pytest.exit(f"{path} is not there: run `make fmu` first", returncode=2)
+    return path
+
+
+@pytest.fixture(scope="session")
+def fmu():
+    """Return the path of the packed component."""
+    return str(built(REPOSITORY / "target" / "WheelRailContact.fmu"))
+
+
+@pytest.fixture(scope="session")
+def wheelrail():
+    """Return the path of the command line."""
+    return built(REPOSITORY / "target" / "release" / "wheelrail")
+
+
+@pytest.fixture(scope="session")
+def description(fmu):
+    """Return the component's model description."""
+    return fmpy.read_model_description(fmu)
+
+
+@pytest.fixture(scope="session")
+def unpacked(fmu):
+    """Return the folder of the unpacked component."""
+    return Path(fmpy.extract(fmu))
+
+
+@pytest.fixture(scope="session")
+def library(unpacked):
+    """Return the shared library that is in the component."""
+    return unpacked / "binaries" / "linux64" / "wheelrail.so"
+
+
+@pytest.fixture(scope="session")
+def reference(description):
+    """Return the value reference of each name."""
+    return {variable.name: variable.valueReference for variable in description.modelVariables}
+
+
+@pytest.fixture(scope="session")
+def outputs(description):
+    """Return the names of the outputs."""
+    return [variable.name for variable in description.modelVariables if variable.causality == "output"]
+
+
+@pytest.fixture
+def instance(unpacked, description):
+    """Return a function that makes instances in state `instantiated`; they are freed after the test."""
+    made = []
+
+    def make(name="contact", **options):
+        slave = FMU2Slave(
+            guid=description.guid,
+            unzipDirectory=str(unpacked),
+            modelIdentifier=description.coSimulation.modelIdentifier,
+            instanceName=name,
+        )
+        slave.instantiate(**options)
+        made.append(slave)
+        return slave
+
+    yield make
+    for slave in made:
+        # Unloading is tested elsewhere; here two instances may share the library.
+        slave.fmi2FreeInstance(slave.component)
+
+
+@pytest.fixture(scope="session")
+def host_process(fmu, tmp_path_factory):
+    """Return a function that runs a host script on a scenario in a process of its own and returns its answer."""
+
+    def run(script, scenario, python=sys.executable):
+        file = tmp_path_factory.mktemp("host") / "scenario.json"
+        file.write_text(json.dumps(scenario))
+        path = REPOSITORY / "python_tests" / "hosts" / script
+        done = subprocess.run([python, path, fmu, file], capture_output=True, text=True, timeout=300)
+        assert done.returncode == 0, done.stdout[-2000:] + done.stderr[-2000:]
+        return json.loads(done.stdout.splitlines()[-1])
+
+    return run
+
+
+@pytest.fixture(scope="session")
+def simulate_natively(wheelrail, tmp_path_factory):
+    """Return a function that runs `wheelrail simulate` and returns the path of its table."""
+
+    def run(scenario, step, parameters):
+        out = tmp_path_factory.mktemp("native") / "out.csv"
+        options = [option for name, value in parameters.items() for option in ("--set", f"{name}={value!r}")]
+        command = [wheelrail, "simulate", scenario, "-o", out, "--step", repr(step), *options]
+        subprocess.run(command, check=True, capture_output=True)
+        return out
+
+    return run

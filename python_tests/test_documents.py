@@ -1,0 +1,110 @@
+"""README.md and the documentation page say what the component does: their tables are compared, the example is run."""
+
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+REPOSITORY = Path(__file__).resolve().parent.parent
+sys.path[:0] = [str(REPOSITORY / "tools"), str(REPOSITORY / "examples")]
+
+import paper_cases  # noqa: E402
+import update_docs  # noqa: E402
+
+STALE = "run `make docs` and commit what it changes"
+
+
+def block(path, marker):
+    """Return what stands between a marker and its end."""
+    found = re.search(rf"<!-- {marker} -->\n(.*?)<!-- end of {marker} -->", path.read_text(), re.DOTALL)
+    assert found, marker
+    return found[1].strip()
+
+
+def cells(text):
+    """Return the cells of an HTML table, row by row."""
+    return [re.split(r"<t[dh](?: [^>]*)?>", row)[1:] for row in re.sub(r"\n", "", text).split("<tr>")[1:]]
+
+
+def test_tables_of_variables():
+    """The tables are those of `wheelrail describe`."""
+    assert block(update_docs.README, "wheelrail describe") == update_docs.variables_markdown().strip(), STALE
+    assert block(update_docs.PAGE, "wheelrail describe") == update_docs.variables_html().strip(), STALE
+
+
+def test_tables_list_every_variable(description):
+    """Each variable of the model description is in README, repeated ones by their first point, and nothing else is."""
+    listed = set(re.findall(r"^\| `([^`]+)`", block(update_docs.README, "wheelrail describe"), re.MULTILINE))
+    names = {re.sub(r"\[\d+\]", "[i]", variable.name) for variable in description.modelVariables}
+    # `wheelrail describe` leaves out the solver's locals and the profiles' further points only.
+    assert listed <= names
+    assert {name for name in names if "solver." not in name} <= listed
+
+
+def test_figures_of_the_paper_cases():
+    """README's figures are those of the simulation, to one unit of the last digit."""
+    rows = [line.split("|")[1:-1] for line in block(update_docs.README, "examples/paper_cases.py").splitlines()[2:]]
+    shown = {row[0].strip(): [re.search(r"[\d.]+", cell)[0] for cell in row[1:]] for row in rows}
+    assert set(shown) == set(paper_cases.CASES)
+    last = {case: paper_cases.roll(case)[-1] for case in paper_cases.CASES}
+    for case, row in last.items():
+        values = (
+            row["peak_temperature"] - 273.15,
+            last["constant"]["peak_temperature"] - row["peak_temperature"],
+            row["friction_coefficient"],
+            row["traction_force"] / 1e3,
+        )
+        for text, value in zip(shown[case], values, strict=True):
+            assert abs(float(text) - value) <= 10.0 ** -len(text.split(".")[1]), f"{case}: {text}, {value}; {STALE}"
+
+
+def test_figures_of_the_verification():
+    """The page's figures are those that `wheelrail verify` measures now, to a thousandth, or both are round-off."""
+    fresh = [row for _, rows in update_docs.verification() for row in rows]
+    shown = [row for row in cells(block(update_docs.PAGE, "wheelrail verify")) if len(row) == 5][1:]
+    assert [row["quantity"] for row in fresh] == [row[0].replace("&gt;", ">").replace("&lt;", "<") for row in shown], (
+        STALE
+    )
+    for row, (quantity, reference, computed, unit, _) in zip(fresh, shown, strict=True):
+        assert (float(reference), unit) == (pytest.approx(float(row["reference"]), rel=1e-3), row["unit"]), quantity
+        scale = max(abs(float(row["reference"])), abs(float(row["computed"])), 1e-9)
+        if computed.startswith("below"):
+            assert abs(float(row["computed"])) < 1e-9, quantity
+        else:
+            assert abs(float(computed) - float(row["computed"])) <= 1e-3 * scale, f"{quantity}; {STALE}"
+
+
+def test_readme_example_runs():
+    """README's lines of Python run as they stand, and print the last row."""
+    program = re.search(r"```python\n(.*?)```", update_docs.README.read_text(), re.DOTALL)[1]
+    assert len(program.strip().splitlines()) <= 12
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, cwd=REPOSITORY)
+    assert done.returncode == 0, done.stderr
+    time, traction, temperature, friction, worn = map(
+        float, re.findall(r"[-+\d.e]+", done.stdout.splitlines()[-1].replace("np.float64", ""))
+    )
+    assert time == 1.0
+    assert 10e3 < traction < 80e3
+    assert temperature > 300.0
+    assert 0.2 <= friction <= 0.45
+    assert worn > 0.0
+
+
+def test_links_of_readme():
+    """Every file that README links to is in the repository."""
+    targets = re.findall(r"\]\((?!http)([^)#]+)\)", update_docs.README.read_text())
+    assert len(targets) >= 3
+    for target in targets:
+        assert (REPOSITORY / target).exists(), target
+
+
+def test_documentation_page_is_well_formed():
+    """Opened elements are closed, and the page names no file that is not in the FMU."""
+    page = update_docs.PAGE.read_text()
+    for tag in ("table", "ul", "h1", "h2", "h3", "div", "p", "i", "code", "cite", "sub", "sup", "b", "span"):
+        opened = len(re.findall(rf"<{tag}[ >]", page))
+        closed = len(re.findall(rf"</{tag}>", page))
+        assert opened == closed, tag
+    assert not re.findall(r'(?:src|href)="', page)

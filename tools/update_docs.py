@@ -1,0 +1,140 @@
+"""Write the generated parts of README.md and of the documentation page, between their markers (`make docs`).
+
+- the table of variables, from `wheelrail describe`;
+- the figures of the paper's cases, from results/paper_cases.csv, which examples/paper_cases.py writes;
+- the figures of the verification, from `wheelrail verify`.
+"""
+
+import csv
+import html
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+REPOSITORY = Path(__file__).resolve().parent.parent
+WHEELRAIL = REPOSITORY / "target" / "release" / "wheelrail"
+README = REPOSITORY / "README.md"
+PAGE = REPOSITORY / "modelDescription" / "documentation" / "index.html"
+PAPER_CASES = REPOSITORY / "results" / "paper_cases.csv"
+
+
+def variables():
+    """Return (title, rows) of each group; of repeated variables only the first."""
+    text = subprocess.check_output([WHEELRAIL, "describe", "--markdown"], text=True)
+    groups = []
+    for block in text.split("### ")[1:]:
+        title, *lines = block.splitlines()
+        rows = [[cell.strip() for cell in line.strip("|").split(" | ")] for line in lines if line.startswith("| `")]
+        rows = [row for row in rows if not re.search(r"\[(?!1\])\d+\]", row[0])]
+        groups.append((title, [[row[0].strip("| `"), *(cell.strip(" |") for cell in row[1:])] for row in rows]))
+    return groups
+
+
+def repeats(name):
+    """Return a name as people write it: [1] stands for all points."""
+    return name.replace("[1]", "[i]")
+
+
+def variables_markdown():
+    """Return the tables of variables in Markdown."""
+    lines = []
+    for title, rows in variables():
+        lines += [f"### {title}", "", "| name | unit | start | range | description |", "|---|---|---|---|---|"]
+        for name, *cells in rows:
+            name, *tunable = name.split()
+            shown = f"`{repeats(name)}`" + "".join(f" {mark}" for mark in tunable)
+            lines.append(f"| {shown} | {' | '.join(cells)} |")
+        lines.append("")
+    return "\n".join(lines)
+
+
+def variables_html():
+    """Return the tables of variables in HTML."""
+    lines = []
+    for title, rows in variables():
+        lines += [f"<h3>{title}</h3>", "<table>", "<tr><th>name<th>unit<th>start<th>range<th>description"]
+        for name, *cells in rows:
+            name, *tunable = name.split()
+            shown = f"<code>{repeats(name)}</code>" + "".join(f" {mark}" for mark in tunable)
+            lines.append("<tr>" + "".join(f"<td>{cell}" for cell in (shown, *map(html.escape, cells))))
+        lines.append("</table>")
+    return "\n".join(lines)
+
+
+def paper_cases_markdown():
+    """Return the figures of the paper's cases as a Markdown table."""
+    with PAPER_CASES.open(newline="") as file:
+        rows = list(csv.DictReader(file))
+    lines = ["| case | peak temperature | lower than constant μ by | mean friction coefficient | traction |"]
+    lines.append("|---|---|---|---|---|")
+    for row in rows:
+        lines.append(
+            f"| {row['case']} | {float(row['peak_temperature [K]']) - 273.15:.1f} °C"
+            f" | {float(row['lower [K]']):.1f} K | {float(row['friction_coefficient [1]']):.3f}"
+            f" | {float(row['traction_force [N]']) / 1e3:.1f} kN |"
+        )
+    return "\n".join(lines) + "\n"
+
+
+ROW = re.compile(
+    r"^  (?P<quantity>\S.*?)\s{2,}(?P<reference>[-\d.e]+)\s+(?P<computed>[-\d.e]+) (?P<unit>\S+)"
+    r"\s+(?P<deviation>[-\d.e]+)\s+(?P<tolerance>[-\d.e]+)\s+(?P<passed>yes|NO)\s+(?P<source>.*)$"
+)
+
+
+def verification():
+    """Return (title, rows) of each group that `wheelrail verify` prints."""
+    text = subprocess.run([WHEELRAIL, "verify"], capture_output=True, text=True).stdout
+    groups = []
+    for line in text.splitlines()[1:]:
+        if match := ROW.match(line):
+            groups[-1][1].append(match.groupdict())
+        elif line and not line[0].isdigit():
+            groups.append((line.strip(), []))
+    failed = [row["quantity"] for _, rows in groups for row in rows if row["passed"] != "yes"]
+    if failed:
+        sys.exit(f"`wheelrail verify` fails, so nothing is written: {', '.join(failed)}")
+    return groups
+
+
+def figure(text):
+    """Return four significant digits."""
+    return f"{float(text):.4g}"
+
+
+def verification_html():
+    """Return the figures of the verification in HTML."""
+    lines = ["<table>", "<tr><th>quantity<th>reference<th>computed<th>unit<th>source of the reference"]
+    for title, rows in verification():
+        lines.append(f'<tr><th colspan="5">{html.escape(title)}')
+        for row in rows:
+            computed = float(row["computed"])
+            # What is nothing but round-off differs from machine to machine.
+            noise = float(row["reference"]) == 0.0 and abs(computed) < 1e-9
+            shown = f"below {figure(row['tolerance'])}" if noise else figure(row["computed"])
+            cells = (row["quantity"], figure(row["reference"]), shown, row["unit"], row["source"])
+            lines.append("<tr>" + "".join(f"<td>{html.escape(cell)}" for cell in cells))
+    return "\n".join([*lines, "</table>"])
+
+
+def between(text, marker, content):
+    """Replace what stands between a marker and its end."""
+    pattern = re.compile(rf"(<!-- {marker} -->\n).*?(<!-- end of {marker} -->)", re.DOTALL)
+    replaced, count = pattern.subn(lambda match: f"{match[1]}{content.rstrip()}\n{match[2]}", text)
+    assert count == 1, f"marker {marker!r} is there {count} times"
+    return replaced
+
+
+def main():
+    """Write all parts."""
+    page = between(PAGE.read_text(), "wheelrail describe", variables_html())
+    page = between(page, "wheelrail verify", verification_html())
+    readme = README.read_text()
+    readme = between(readme, "wheelrail describe", variables_markdown())
+    README.write_text(between(readme, "examples/paper_cases.py", paper_cases_markdown()))
+    PAGE.write_text(page)
+
+
+if __name__ == "__main__":
+    main()
