@@ -297,6 +297,13 @@ impl Scratch {
             softening: Softening::new(&rail.compliance.at_rest.normal_normal),
         }
     }
+
+    /// Forgets what the step before has left: a step follows from the state alone.
+    fn start_step(&mut self) {
+        self.mechanics.start_step();
+        self.softening.start_step();
+        self.anderson.restart();
+    }
 }
 
 /// One problem: the rail, its parameters and the conditions of the step.
@@ -316,8 +323,7 @@ impl Contact<'_> {
     /// # Errors
     /// The first solver that did not converge, or [`Error::ContactLeavesWindow`]; `fields` is then unspecified.
     pub fn operator_split(&self, before: &Fields, fields: &mut Fields, scratch: &mut Scratch) -> Result<Convergence> {
-        scratch.mechanics.start_step();
-        scratch.anderson.restart();
+        scratch.start_step();
         self.soften(fields, scratch);
         self.gather(fields, &scratch.softening, &mut scratch.iterate);
         let mut residual = f64::INFINITY;
@@ -360,7 +366,7 @@ impl Contact<'_> {
     /// # Errors
     /// As [`Contact::operator_split`].
     pub fn solve_mechanics(&self, fields: &mut Fields, scratch: &mut Scratch) -> Result<()> {
-        scratch.mechanics.start_step();
+        scratch.start_step();
         self.soften(fields, scratch);
         self.gather(fields, &scratch.softening, &mut scratch.iterate);
         for _ in 0..SPLITS {
@@ -485,7 +491,7 @@ impl Contact<'_> {
 
     /// Factorises the mechanics at `fields`, which are at rest.
     pub(crate) fn linearise_mechanics(&self, fields: &mut Fields, scratch: &mut Scratch) -> Result<()> {
-        scratch.mechanics.start_step();
+        scratch.start_step();
         self.soften(fields, scratch);
         self.gather(fields, &scratch.softening, &mut scratch.iterate);
         self.update_mechanics_data(fields, scratch);

@@ -43,6 +43,8 @@ pub struct Softening {
     forward: bool,
     compliance: DMatrix<f64>,
     smallest_compliance: f64,
+    /// Whether the next update renews the softening, however small its change.
+    stale: bool,
 }
 
 impl Softening {
@@ -63,12 +65,18 @@ impl Softening {
             forward: true,
             compliance: compliance.clone(),
             smallest_compliance: alternating / n as f64,
+            stale: true,
         }
     }
 
     /// The normal compliance with the wear of the step.
     pub fn compliance(&self) -> &DMatrix<f64> {
         &self.compliance
+    }
+
+    /// Makes the next [`Softening::update`] renew the softening: a step does not follow from the steps before.
+    pub fn start_step(&mut self) {
+        self.stale = true;
     }
 
     /// Adapts to slip velocities [m/s] and step: `per_slip` is the wear rate per pressure and slip, `storage` 1/Δt and
@@ -99,7 +107,8 @@ impl Softening {
             .iter()
             .zip(slip)
             .fold(0.0, |m: f64, (own, s)| (own - factor * s.abs()).abs().max(m));
-        if change <= RENEWAL * largest && handed_on == self.handed_on && forward == self.forward {
+        let stale = std::mem::take(&mut self.stale);
+        if !stale && change <= RENEWAL * largest && handed_on == self.handed_on && forward == self.forward {
             return false;
         }
         for (own, slip) in self.own.iter_mut().zip(slip) {

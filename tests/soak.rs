@@ -19,7 +19,7 @@ const STEP: f64 = 1e-3;
 /// Steps between two checks of the profiles.
 const PROFILE_STEPS: u64 = 1000;
 /// Steps between two that are repeated from a saved state.
-const REPEATED_STEPS: u64 = 500;
+const REPEATED_STEPS: u64 = 50;
 /// Memory that may come and go with the allocator, [KiB].
 const SLACK: u64 = 256;
 
