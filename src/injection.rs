@@ -70,7 +70,7 @@ impl Solver {
 /// Called by a solver that has converged, with everything it writes already written.
 ///
 /// # Errors
-/// [`Solver::divergence`], once, where [`diverge`] asked for it.
+/// [`Solver::divergence`], where `diverge` asked for it.
 #[inline(always)]
 pub fn passes(solver: Solver) -> Result<()> {
     #[cfg(feature = "divergence-injection")]
@@ -90,26 +90,40 @@ mod injected {
     use super::{Result, Solver};
     use std::cell::Cell;
 
-    thread_local! {
-        static NEXT: Cell<Option<(Solver, usize)>> = const { Cell::new(None) };
+    /// What is asked for.
+    #[derive(Clone, Copy)]
+    struct Request {
+        solver: Solver,
+        after: usize,
+        times: usize,
     }
 
-    /// Lets a solver converge `after` more times in this thread and then, once, not.
-    pub fn diverge(solver: Solver, after: usize) {
-        NEXT.set(Some((solver, after)));
+    thread_local! {
+        static REQUEST: Cell<Option<Request>> = const { Cell::new(None) };
+    }
+
+    /// Lets a solver converge `after` more times in this thread and then not, for so many `times`. Replaces what was asked
+    /// for before.
+    pub fn diverge(solver: Solver, after: usize, times: usize) {
+        REQUEST.set(Some(Request { solver, after, times }));
     }
 
     pub fn passes(solver: Solver) -> Result<()> {
-        match NEXT.get() {
-            Some((chosen, 0)) if chosen == solver => {
-                NEXT.set(None);
+        let Some(mut request) = REQUEST.get().filter(|request| request.solver == solver) else {
+            return Ok(());
+        };
+        let result = match (request.after, request.times) {
+            (0, 0) => Ok(()),
+            (0, _) => {
+                request.times -= 1;
                 Err(solver.divergence())
             }
-            Some((chosen, after)) if chosen == solver => {
-                NEXT.set(Some((chosen, after - 1)));
+            _ => {
+                request.after -= 1;
                 Ok(())
             }
-            _ => Ok(()),
-        }
+        };
+        REQUEST.set(Some(request));
+        result
     }
 }
