@@ -1,10 +1,12 @@
 //! The operator split of section 4 of the paper: mechanics for given temperature and wear, wear and heat for given
 //! tractions, repeated until the temperature rests.
 
+use crate::acceleration::Anderson;
 use crate::compliance::{self, RollingCompliance, Scales};
 use crate::dense;
 use crate::error::{Error, Result};
 use crate::heat::{DepthBasis, FrictionState, HeatMarch, Heated, SurfaceExchange};
+use crate::injection::{self, Solver};
 use crate::mechanics::{Mechanics, MechanicsProblem, ProblemTangent, Tractions};
 use crate::mesh::Mesh;
 use crate::normal::Constraint;
@@ -12,11 +14,11 @@ use crate::parameters::{Control, Parameters};
 use crate::signals::{Inputs, Motion};
 use crate::thermal_map::{self, ThermalMap};
 use crate::transport::Upwind;
-use crate::wear;
+use crate::wear::{self, Softening};
 use serde::{Deserialize, Serialize};
 
 /// Iterations of the operator split.
-const SPLITS: usize = 200;
+const SPLITS: usize = 100;
 /// Error of surface temperature and wear at which the split rests (η), relative to the largest temperature (at least 1 K)
 /// and to the displacement scale.
 const TOLERANCE: f64 = 1e-9;
@@ -25,6 +27,10 @@ const SHEAR_TOLERANCE: f64 = 1e-8;
 /// Tolerance of the mechanics in the first iteration, and in the further ones relative to the last change.
 const FIRST_MECHANICS_TOLERANCE: f64 = 1e-7;
 const MECHANICS_TOLERANCE: f64 = 1e-2;
+/// Iterations after which a split that has not come to rest is accelerated.
+const ACCELERATE_FROM: usize = 6;
+/// Temperature that counts as much as a displacement of one unit, [K].
+pub(crate) const TEMPERATURE_SCALE: f64 = 100.0;
 /// The error of an iteration is its change times the contraction; an estimate above this is not trusted.
 const TRUSTED_CONTRACTION: f64 = 0.3;
 
@@ -258,14 +264,18 @@ pub struct Convergence {
 
 /// Buffers of a split.
 pub struct Scratch {
+    pub(crate) softening: Softening,
     mechanics: Mechanics,
     profile: Vec<f64>,
     displacement: Vec<f64>,
     exchange: Vec<SurfaceExchange>,
     wear_rate: Vec<f64>,
     mode: Vec<f64>,
-    last_surface_temperature: Vec<f64>,
-    last_wear: Vec<f64>,
+    /// What the mechanics see of heat and wear in this iteration, and what heat and wear give for the next one:
+    /// [`Contact::gather`].
+    iterate: Vec<f64>,
+    image: Vec<f64>,
+    anderson: Anderson,
 }
 
 impl Scratch {
@@ -279,8 +289,10 @@ impl Scratch {
             exchange: vec![SurfaceExchange::default(); n],
             wear_rate: vec![0.0; n],
             mode: vec![0.0; rail.basis.len()],
-            last_surface_temperature: vec![0.0; n],
-            last_wear: vec![0.0; n],
+            iterate: vec![0.0; 4 * n],
+            image: vec![0.0; 4 * n],
+            anderson: Anderson::new(4 * n),
+            softening: Softening::new(&rail.compliance.at_rest.normal_normal),
         }
     }
 }
@@ -303,18 +315,22 @@ impl Contact<'_> {
     /// The first solver that did not converge, or [`Error::ContactLeavesWindow`]; `fields` is then unspecified.
     pub fn operator_split(&self, before: &Fields, fields: &mut Fields, scratch: &mut Scratch) -> Result<Convergence> {
         scratch.mechanics.start_step();
+        scratch.anderson.restart();
+        self.soften(fields, scratch);
+        self.gather(fields, &scratch.softening, &mut scratch.iterate);
         let mut residual = f64::INFINITY;
         for iterations in 1..=SPLITS {
-            self.remember(fields, scratch);
             // Step 2: tractions for given temperature and wear.
             let tolerance = (MECHANICS_TOLERANCE * residual).clamp(1e-10, FIRST_MECHANICS_TOLERANCE);
             let shear_change = self.mechanics(fields, scratch, tolerance)?;
             // Step 3: wear and temperature for given tractions.
             self.march_wear(before, fields, scratch);
             self.march_heat(before, fields, scratch)?;
+            self.soften(fields, scratch);
+            self.gather(fields, &scratch.softening, &mut scratch.image);
             // Step 4: rest? The next change would be smaller by the contraction.
             let last = residual;
-            residual = self.change(fields, scratch);
+            residual = self.change(&scratch.iterate, &scratch.image);
             let contraction = if residual < TRUSTED_CONTRACTION * last && last.is_finite() {
                 residual / last
             } else {
@@ -322,8 +338,13 @@ impl Contact<'_> {
             };
             if residual * contraction <= TOLERANCE && shear_change * contraction <= SHEAR_TOLERANCE {
                 self.check_window(fields)?;
+                injection::passes(Solver::Split)?;
                 return Ok(Convergence { iterations, residual });
             }
+            if iterations >= ACCELERATE_FROM {
+                scratch.anderson.next(&scratch.iterate, &mut scratch.image);
+            }
+            std::mem::swap(&mut scratch.iterate, &mut scratch.image);
         }
         Err(Error::SplitNotConverged {
             iterations: SPLITS,
@@ -338,6 +359,8 @@ impl Contact<'_> {
     /// As [`Contact::operator_split`].
     pub fn solve_mechanics(&self, fields: &mut Fields, scratch: &mut Scratch) -> Result<()> {
         scratch.mechanics.start_step();
+        self.soften(fields, scratch);
+        self.gather(fields, &scratch.softening, &mut scratch.iterate);
         for _ in 0..SPLITS {
             if self.mechanics(fields, scratch, TOLERANCE)? <= TOLERANCE {
                 return self.check_window(fields);
@@ -389,19 +412,15 @@ impl Contact<'_> {
     /// Friction coefficient, profile and displacement for given temperature, wear and inertia.
     fn update_mechanics_data(&self, fields: &mut Fields, scratch: &mut Scratch) {
         let n = self.rail.mesh.contact_nodes;
-        let window = self.window();
         let friction = self.friction_state();
-        for (mu, rise) in fields
-            .friction
-            .iter_mut()
-            .zip(&fields.surface_temperature[window.clone()])
-        {
-            *mu = friction.coefficient(*rise).0;
+        let (displacement, rest) = scratch.iterate.split_at(2 * n);
+        let (temperature, wear) = rest.split_at(n);
+        for (mu, temperature) in fields.friction.iter_mut().zip(temperature) {
+            *mu = friction.coefficient(temperature * TEMPERATURE_SCALE).0;
         }
-        scratch.displacement.copy_from_slice(&fields.thermal_displacement[..n]);
+        scratch.displacement.copy_from_slice(&displacement[..n]);
         for (node, profile) in scratch.profile.iter_mut().enumerate() {
-            let wear = fields.wear[window.start + node] / self.rail.scales.displacement;
-            *profile = self.rail.profile[node] - wear + fields.thermal_displacement[n + node];
+            *profile = self.rail.profile[node] - wear[node] + displacement[n + node];
         }
         let rho_v2 = self.parameters.density * self.conditions.motion.rolling_speed.powi(2);
         self.add_inertia(
@@ -438,6 +457,7 @@ impl Contact<'_> {
         let motion = self.conditions.motion;
         let problem = MechanicsProblem {
             compliance: &self.rail.compliance.at_rest,
+            normal_compliance: scratch.softening.compliance(),
             profile: &scratch.profile,
             displacement: &scratch.displacement,
             friction: &fields.friction,
@@ -464,6 +484,8 @@ impl Contact<'_> {
     /// Factorises the mechanics at `fields`, which are at rest.
     pub(crate) fn linearise_mechanics(&self, fields: &mut Fields, scratch: &mut Scratch) -> Result<()> {
         scratch.mechanics.start_step();
+        self.soften(fields, scratch);
+        self.gather(fields, &scratch.softening, &mut scratch.iterate);
         self.update_mechanics_data(fields, scratch);
         let (problem, mut tractions, mechanics) = self.mechanics_problem(fields, scratch);
         mechanics.linearise(&problem, &mut tractions)
@@ -542,21 +564,51 @@ impl Contact<'_> {
         Ok(())
     }
 
-    fn remember(&self, fields: &Fields, scratch: &mut Scratch) {
-        let window = self.window();
-        scratch
-            .last_surface_temperature
-            .copy_from_slice(&fields.surface_temperature[window.clone()]);
-        scratch.last_wear.copy_from_slice(&fields.wear[window]);
+    /// Adapts the normal compliance to the wear of the step.
+    fn soften(&self, fields: &Fields, scratch: &mut Scratch) {
+        let scales = self.rail.scales;
+        let transport = self.upwind();
+        let changed = scratch.softening.update(
+            &self.rail.compliance.at_rest.normal_normal,
+            &fields.slip,
+            self.parameters.wear_coefficient * scales.pressure / scales.displacement,
+            1.0 / self.conditions.duration,
+            transport.speed() / self.rail.mesh.contact_spacing(),
+            transport.is_forward(),
+        );
+        if changed {
+            scratch.mechanics.forget_normal_compliance();
+        }
     }
 
-    /// ‖Δθ‖ and ‖ΔW‖ at the contact nodes since [`Contact::remember`], relative.
-    fn change(&self, fields: &Fields, scratch: &Scratch) -> f64 {
-        let temperature = &fields.surface_temperature[self.window()];
-        let largest = temperature.iter().fold(1.0_f64, |m, t| t.abs().max(m));
-        let wear = largest_change(&fields.wear[self.window()], &scratch.last_wear);
-        (largest_change(temperature, &scratch.last_surface_temperature) / largest)
-            .max(wear / self.rail.scales.displacement)
+    /// What the mechanics see of heat and wear: thermal displacement (2n), temperature (n) in hundreds of kelvin, a change
+    /// that matters to the friction law, and the part of the wear that is not in the normal compliance (n).
+    pub(crate) fn gather(&self, fields: &Fields, softening: &Softening, values: &mut [f64]) {
+        let n = self.rail.mesh.contact_nodes;
+        let window = self.window();
+        let (displacement, rest) = values.split_at_mut(2 * n);
+        let (temperature, wear) = rest.split_at_mut(n);
+        displacement.copy_from_slice(&fields.thermal_displacement);
+        for (value, temperature) in temperature.iter_mut().zip(&fields.surface_temperature[window.clone()]) {
+            *value = temperature / TEMPERATURE_SCALE;
+        }
+        for (value, depth) in wear.iter_mut().zip(&fields.wear[window]) {
+            *value = depth / self.rail.scales.displacement;
+        }
+        softening.subtract_proportional(&fields.pressure, wear);
+    }
+
+    /// ‖Δθ‖ relative to the largest temperature (at least 1 K), and the change of thermal displacement and wear relative to
+    /// the displacement scale.
+    fn change(&self, before: &[f64], after: &[f64]) -> f64 {
+        let n = self.rail.mesh.contact_nodes;
+        let temperature = 2 * n..3 * n;
+        let largest = after[temperature.clone()]
+            .iter()
+            .fold(1.0 / TEMPERATURE_SCALE, |m, t| t.abs().max(m));
+        (largest_change(&after[temperature.clone()], &before[temperature]) / largest)
+            .max(largest_change(&after[..2 * n], &before[..2 * n]))
+            .max(largest_change(&after[3 * n..], &before[3 * n..]))
     }
 
     /// A contact that reaches the end of the window is cut off by it.

@@ -9,6 +9,7 @@
 use crate::dense;
 use crate::error::{Error, Result};
 use crate::friction;
+use crate::injection::{self, Solver};
 use crate::parameters::Parameters;
 use crate::transport::Upwind;
 use nalgebra::{Cholesky, DMatrix, SymmetricEigen};
@@ -274,6 +275,7 @@ impl HeatMarch<'_> {
             let (mu, slope) = self.friction.coefficient(theta);
             residual = damping * theta - unheated - gain * mu * exchange.friction;
             if residual.abs() <= tolerance * damping || high - low <= tolerance {
+                injection::passes(Solver::SurfaceHeat)?;
                 return Ok(parameters.heat_partition * (mu * exchange.friction - loss * theta));
             }
             if residual > 0.0 {

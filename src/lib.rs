@@ -1,4 +1,5 @@
 //! wheelrail
+pub mod acceleration;
 pub mod compliance;
 pub mod contact;
 pub mod dense;
@@ -8,6 +9,7 @@ pub mod error;
 pub mod fmi2;
 pub mod friction;
 pub mod heat;
+pub mod injection;
 pub mod mechanics;
 pub mod mesh;
 pub mod normal;

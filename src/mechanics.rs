@@ -9,9 +9,11 @@ use crate::compliance::Compliance;
 use crate::dense;
 use crate::error::{Error, Result};
 use crate::friction::{saturation, saturation_slope};
+use crate::injection::{self, Solver};
 use crate::normal::{ActiveSet, Constraint, NormalProblem, Pschenichnyj};
 use crate::parameters::NormalSolver;
 use crate::tangential::{Tangential, TangentialProblem};
+use nalgebra::DMatrix;
 
 /// Sweeps between normal and tangential problem.
 const SWEEPS: usize = 200;
@@ -23,6 +25,8 @@ const TOLERANCE: f64 = 1e-10;
 pub struct MechanicsProblem<'a> {
     /// Compliance at rest.
     pub compliance: &'a Compliance,
+    /// Its C_nn, softened by the wear of the step where that is treated implicitly.
+    pub normal_compliance: &'a DMatrix<f64>,
     /// Profile of the wheel, less wear, plus the upward displacement that heat and inertia cause, n.
     pub profile: &'a [f64],
     /// Displacement along x₁ that heat and inertia cause, n.
@@ -81,6 +85,7 @@ pub struct Mechanics {
     strain: Vec<f64>,
     friction: Vec<f64>,
     nodes: Vec<usize>,
+    nodes_before: Vec<usize>,
 }
 
 impl Mechanics {
@@ -106,12 +111,19 @@ impl Mechanics {
             strain: vector(),
             friction: vector(),
             nodes: Vec::with_capacity(nodes),
+            nodes_before: Vec::with_capacity(nodes),
         }
     }
 
     /// Forgets what was factorised for the step before.
     pub fn start_step(&mut self) {
         self.tangential.forget();
+    }
+
+    /// Forgets what belongs to the normal compliance: it has been replaced.
+    pub fn forget_normal_compliance(&mut self) {
+        self.active_set.forget();
+        self.response.nodes.clear();
     }
 
     /// Solves from the given tractions until the shear changes by less than `tolerance`, relative to the peak pressure. Returns the largest change of the shear in the first sweep: how far the
@@ -129,6 +141,7 @@ impl Mechanics {
             residual = change / largest;
             let first = *first.get_or_insert(residual);
             if residual <= tolerance && !set_changed {
+                injection::passes(Solver::Mechanics)?;
                 return Ok(first);
             }
         }
@@ -141,6 +154,8 @@ impl Mechanics {
 
     /// (37) for given shear. Returns whether the set of nodes under pressure changed.
     fn solve_normal(&mut self, problem: &MechanicsProblem, tractions: &mut Tractions) -> Result<bool> {
+        self.nodes_before.clear();
+        self.nodes_before.extend(under_pressure(tractions.pressure));
         self.profile.copy_from_slice(problem.profile);
         dense::multiply_add(
             &problem.compliance.normal_tangential,
@@ -149,7 +164,7 @@ impl Mechanics {
             &mut self.profile,
         );
         let normal = NormalProblem {
-            compliance: &problem.compliance.normal_normal,
+            compliance: problem.normal_compliance,
             profile: &self.profile,
             constraint: problem.constraint,
         };
@@ -157,12 +172,14 @@ impl Mechanics {
             NormalSolver::ActiveSet => self.active_set.solve(&normal, tractions.pressure)?,
             NormalSolver::Pschenichnyj => self.pschenichnyj.solve(&normal, tractions.pressure)?,
         };
+        injection::passes(match problem.normal_solver {
+            NormalSolver::ActiveSet => Solver::ActiveSet,
+            NormalSolver::Pschenichnyj => Solver::Pschenichnyj,
+        })?;
         *tractions.penetration = solution.penetration;
 
-        // The ends of the window have no neighbour; a contact that rests there is an error of the step.
-        let n = tractions.pressure.len();
         self.nodes.clear();
-        self.nodes.extend((1..n - 1).filter(|&i| tractions.pressure[i] > 0.0));
+        self.nodes.extend(under_pressure(tractions.pressure));
         let forward = problem.strain_speed >= 0.0;
         let load_given = matches!(problem.constraint, Constraint::Total(_));
         let follows = problem.normal_solver == NormalSolver::ActiveSet && self.active_set.active() == self.nodes;
@@ -174,11 +191,20 @@ impl Mechanics {
             (response.forward, response.load_given, response.follows) = (forward, load_given, follows);
             self.update_response(problem.compliance);
         }
-        Ok(!known)
+        // Not whether the response was known: that depends on what was solved before.
+        Ok(self.nodes != self.nodes_before)
     }
 
     /// (30) for given pressure and its response. Returns the largest change of the shear.
     fn solve_friction(&mut self, problem: &MechanicsProblem, tractions: &mut Tractions, tolerance: f64) -> Result<f64> {
+        // Within the bound from the start: a shear left over from a much larger pressure would swamp this one's strain.
+        let mut clamped = 0.0_f64;
+        for (node, shear) in tractions.shear.iter_mut().enumerate() {
+            let bound = problem.friction[node] * tractions.pressure[node];
+            let within = shear.clamp(-bound, bound);
+            clamped = clamped.max((*shear - within).abs());
+            *shear = within;
+        }
         self.displacement.copy_from_slice(problem.displacement);
         let compliance = problem.compliance;
         dense::multiply_add(
@@ -221,7 +247,8 @@ impl Mechanics {
             tractions.shear[node] = self.shear[row];
             tractions.slip[node] = self.tangential.slip()[row];
         }
-        Ok(change)
+        injection::passes(Solver::Tangential)?;
+        Ok(change.max(clamped))
     }
 
     /// ∂p/∂τ = Π C_nt with Π = C_AA⁻¹, under a given load Π = C_AA⁻¹ − C_AA⁻¹1 1ᵀC_AA⁻¹ / (1ᵀC_AA⁻¹1), and the strain of
@@ -390,12 +417,18 @@ impl Mechanics {
                 for profile in &mut self.profile {
                     *profile = -*profile;
                 }
-                dense::multiply_add(&compliance.normal_normal, tractions.pressure, 1.0, &mut self.profile);
+                dense::multiply_add(problem.normal_compliance, tractions.pressure, 1.0, &mut self.profile);
                 self.profile[node]
             }
             _ => 0.0,
         };
     }
+}
+
+/// The nodes under pressure. The ends of the window have no neighbour; a contact that rests there is an error of the
+/// step.
+fn under_pressure(pressure: &[f64]) -> impl Iterator<Item = usize> + '_ {
+    (1..pressure.len() - 1).filter(|&i| pressure[i] > 0.0)
 }
 
 /// The next node on the leading side: towards +x₁ where V ≥ 0.

@@ -46,7 +46,8 @@ impl Mesh {
                 let first = FIRST_CELL * 40.0 / cells as f64;
                 Mesh::graded(half_width, n, length, outer, height, cells, first)
             }
-            MeshKind::Paper => Mesh::graded(half_width, 9, length, 2, height, 8, 2.0 * FIRST_CELL),
+            // So coarse a rail is stiff, and the contact at a given penetration wide.
+            MeshKind::Paper => Mesh::graded(1.5 * half_width, 9, length, 2, height, 8, 2.0 * FIRST_CELL),
         }
     }
 

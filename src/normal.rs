@@ -60,6 +60,7 @@ pub struct ActiveSet {
     /// C_AA⁻¹, m × m for m active nodes.
     inverse: Vec<f64>,
     factor: Vec<f64>,
+    pivots: Vec<usize>,
     /// C_AA⁻¹ 1.
     unit: Vec<f64>,
     gathered: Vec<f64>,
@@ -76,12 +77,18 @@ impl ActiveSet {
             inverted: Vec::with_capacity(nodes),
             inverse: vec![0.0; nodes * nodes],
             factor: vec![0.0; nodes * nodes],
+            pivots: vec![0; nodes],
             unit: vec![0.0; nodes],
             gathered: vec![0.0; nodes],
             particular: vec![0.0; nodes],
             separation: vec![0.0; nodes],
             target: vec![0.0; nodes],
         }
+    }
+
+    /// Forgets the inverse: the compliance is another one from now on.
+    pub fn forget(&mut self) {
+        self.inverted.clear();
     }
 
     /// The active nodes of the last solve, ascending.
@@ -217,26 +224,26 @@ impl ActiveSet {
         Ok(penetration)
     }
 
-    /// C_AA⁻¹ and C_AA⁻¹ 1 by Cholesky. An inverse, because a contact compliance has a condition number of about n, and
-    /// a product has none of the latency of two triangular solves.
+    /// C_AA⁻¹ and C_AA⁻¹ 1. An inverse, because a contact compliance has a condition number of about n, and a product has
+    /// none of the latency of two triangular solves. By LU: wear makes the matrix unsymmetric.
     fn invert(&mut self, compliance: &DMatrix<f64>) -> Result<()> {
         let m = self.active.len();
         self.inverted.clear();
         for (column, &j) in self.active.iter().enumerate() {
-            for (row, &i) in self.active.iter().enumerate().skip(column) {
+            for (row, &i) in self.active.iter().enumerate() {
                 self.factor[column * m + row] = compliance[(i, j)];
             }
         }
-        if !dense::cholesky(&mut self.factor[..m * m], m) {
+        if !dense::lu(&mut self.factor[..m * m], m, &mut self.pivots) {
             return Err(Error::StiffnessNotPositiveDefinite { unknowns: m });
         }
         for (column, unit) in self.inverse[..m * m].chunks_exact_mut(m.max(1)).enumerate() {
             unit.fill(0.0);
             unit[column] = 1.0;
-            dense::cholesky_solve(&self.factor, m, unit);
+            dense::lu_solve(&self.factor, m, &self.pivots, unit);
         }
         self.unit[..m].fill(1.0);
-        dense::cholesky_solve(&self.factor, m, &mut self.unit[..m]);
+        dense::lu_solve(&self.factor, m, &self.pivots, &mut self.unit[..m]);
         self.inverted.extend_from_slice(&self.active);
         Ok(())
     }

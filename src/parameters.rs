@@ -409,7 +409,7 @@ macro_rules! table_point {
             "1",
             table_coefficient($index),
             0.0,
-            2.0,
+            1.0,
             false,
             "Friction coefficient of a point of the friction table",
             friction_table_coefficient[$index]
@@ -534,7 +534,7 @@ pub const REAL_PARAMETERS: &[RealParameter] = &[
         "1/K",
         12e-6,
         0.0,
-        1e-3,
+        1e-4,
         false,
         "Coefficient of linear thermal expansion of the rail; 0 switches the thermal bulge off",
         thermal_expansion
@@ -584,7 +584,7 @@ pub const REAL_PARAMETERS: &[RealParameter] = &[
         "1",
         0.45,
         0.0,
-        2.0,
+        1.0,
         true,
         "Friction coefficient of the cold contact",
         friction_cold
@@ -594,7 +594,7 @@ pub const REAL_PARAMETERS: &[RealParameter] = &[
         "1",
         0.25,
         0.0,
-        2.0,
+        1.0,
         true,
         "Friction coefficient of the hot contact",
         friction_hot

@@ -6,7 +6,8 @@
 //! tractions, repeated until they rest. Every part is linear and exact; the active set does not change under an
 //! infinitesimal change. Held fixed are the fields at the beginning of the sub-step and its length.
 
-use crate::contact::{Contact, Fields, Scratch};
+use crate::acceleration::Anderson;
+use crate::contact::{Contact, Fields, Scratch, TEMPERATURE_SCALE};
 use crate::error::{Error, Result};
 use crate::friction;
 use crate::heat::SurfaceExchange;
@@ -18,6 +19,8 @@ use crate::signals::{Inputs, Outputs, INPUTS, OUTPUTS};
 
 /// Iterations of the linear split.
 const SPLITS: usize = 400;
+/// Iterations after which a linear split that has not come to rest is accelerated.
+const ACCELERATE_FROM: usize = 6;
 /// Change of the tangents, relative to the largest, at which the linear split rests.
 const TOLERANCE: f64 = 1e-9;
 /// Relative step of the central difference of the outputs along the tangent. The outputs are sums, products and
@@ -103,12 +106,15 @@ impl<'a> Linearisation<'a> {
 
     /// dz along one direction of the inputs.
     fn fields_tangent(&mut self, change: &InputTangent) -> Result<Fields> {
+        let n = self.contact.rail.mesh.contact_nodes;
         let mut tangent = Fields::new(self.contact.rail);
         let mut last = tangent.clone();
+        let (mut iterate, mut image) = (vec![0.0; 4 * n], vec![0.0; 4 * n]);
+        let mut anderson = Anderson::new(4 * n);
         let mut residual = f64::INFINITY;
-        for _ in 0..SPLITS {
+        for iteration in 0..SPLITS {
             if !self.lifted {
-                self.tractions_tangent(change, &mut tangent);
+                self.tractions_tangent(change, &iterate, &mut tangent);
             }
             if self.marches {
                 self.wear_tangent(change, &mut tangent);
@@ -118,6 +124,7 @@ impl<'a> Linearisation<'a> {
                     .thermal_map
                     .apply(&tangent.temperature, &mut tangent.thermal_displacement);
             }
+            self.contact.gather(&tangent, &self.scratch.softening, &mut image);
             residual = tangent
                 .vectors()
                 .iter()
@@ -128,6 +135,10 @@ impl<'a> Linearisation<'a> {
                 return Ok(tangent);
             }
             last.copy_from(&tangent);
+            if iteration >= ACCELERATE_FROM {
+                anderson.next(&iterate, &mut image);
+            }
+            std::mem::swap(&mut iterate, &mut image);
         }
         Err(Error::SplitNotConverged {
             iterations: SPLITS,
@@ -137,28 +148,28 @@ impl<'a> Linearisation<'a> {
     }
 
     /// dμ at the contact nodes.
-    fn friction_tangent(&self, change: &InputTangent, tangent: &mut Fields) {
+    fn friction_tangent(&self, change: &InputTangent, temperature: &[f64], tangent: &mut Fields) {
         let law = self.contact.friction_state();
         for (node, column) in self.contact.window().enumerate() {
             let rise = self.fields.surface_temperature[column];
             let absolute = law.ambient + rise;
             let slope = law.coefficient(rise).1;
-            tangent.friction[node] = slope * (tangent.surface_temperature[column] + change.inputs.ambient_temperature)
+            tangent.friction[node] = slope
+                * (temperature[node] * TEMPERATURE_SCALE + change.inputs.ambient_temperature)
                 + change.inputs.friction_scale * friction::coefficient(law.parameters, absolute).0;
         }
     }
 
-    /// (31).
-    fn tractions_tangent(&mut self, change: &InputTangent, tangent: &mut Fields) {
-        self.friction_tangent(change, tangent);
+    /// (31), for the tangents of thermal displacement, temperature and wear of the iterate ([`Contact::gather`]).
+    fn tractions_tangent(&mut self, change: &InputTangent, iterate: &[f64], tangent: &mut Fields) {
+        let n = self.contact.rail.mesh.contact_nodes;
+        let (displacement, rest) = iterate.split_at(2 * n);
+        let (temperature, wear) = rest.split_at(n);
+        self.friction_tangent(change, temperature, tangent);
         let (contact, rail) = (&self.contact, self.contact.rail);
-        let n = rail.mesh.contact_nodes;
         let motion = contact.conditions.motion;
-        let first = contact.window().start;
-        let mut along = tangent.thermal_displacement[..n].to_vec();
-        let mut upward: Vec<f64> = (0..n)
-            .map(|node| tangent.thermal_displacement[n + node] - tangent.wear[first + node] / rail.scales.displacement)
-            .collect();
+        let mut along = displacement[..n].to_vec();
+        let mut upward: Vec<f64> = displacement[n..].iter().zip(wear).map(|(u, w)| u - w).collect();
         // d(ρV² C₁ f) = 2ρV dV C₁ f + ρV² C₁ df.
         let density = contact.parameters.density;
         let fields = &*self.fields;

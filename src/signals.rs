@@ -145,7 +145,7 @@ pub const INPUTS: &[InputSignal] = &[
     input!(normal_load, "N", 60e3, 0.0, 1e7, 6e4, "Normal load of the wheel on the rail, at most largest_load; 0 is a lifted wheel"),
     input!(creepage, "1", 0.0, -0.99, 100.0, 1e-2, "Creepage (wheel_speed*wheel_radius - V)/V, used where slip_source is creepage"),
     input!(vehicle_speed, "m/s", 10.0, -1e3, 1e3, 10.0, "Speed of the wheel's axle along the rail, used where slip_source is vehicle_speed"),
-    input!(friction_scale, "1", 1.0, 0.0, 10.0, 1.0, "Factor on the friction coefficient for a wet, contaminated or sanded rail"),
+    input!(friction_scale, "1", 1.0, 0.0, 2.0, 1.0, "Factor on the friction coefficient for a wet, contaminated or sanded rail"),
     input!(ambient_temperature, "K", 293.15, 100.0, 1000.0, 300.0, "Ambient temperature, the temperature of rail and wheel away from the contact"),
 ];
 
@@ -189,6 +189,9 @@ impl Default for Inputs {
         inputs
     }
 }
+
+/// Rounding of a value at the end of a ramp, relative to the range.
+const ROUNDING: f64 = 1e-12;
 
 /// Rolling of the wheel at one instant.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -272,6 +275,21 @@ impl Inputs {
             (signal.set)(&mut later, (signal.get)(self) + (signal.get)(rates) * time);
         }
         later
+    }
+
+    /// Values that miss a limit by rounding, at the end of a ramp to it, are moved onto the limit.
+    pub fn snapped(&self, parameters: &Parameters) -> Inputs {
+        let mut snapped = *self;
+        for signal in INPUTS {
+            let (value, (minimum, maximum)) = ((signal.get)(self), signal.range(parameters));
+            let room = ROUNDING * (maximum - minimum);
+            if value < minimum && value >= minimum - room {
+                (signal.set)(&mut snapped, minimum);
+            } else if value > maximum && value <= maximum + room {
+                (signal.set)(&mut snapped, maximum);
+            }
+        }
+        snapped
     }
 
     /// All zero: the rates of inputs that are held.

@@ -170,7 +170,8 @@ impl Tangential {
             }
             self.find_step(m);
             let length = largest(&self.step[..m]);
-            if !fresh && !(length <= SLOW_CONTRACTION * last_length || length <= tolerance) {
+            let contracts = length <= SLOW_CONTRACTION * last_length || length <= tolerance;
+            if !fresh && !contracts {
                 self.factored = false;
                 continue;
             }

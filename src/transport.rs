@@ -34,6 +34,11 @@ impl<'a> Upwind<'a> {
         self.x[column]
     }
 
+    /// Whether material moves towards −x₁.
+    pub fn is_forward(&self) -> bool {
+        self.speed >= 0.0
+    }
+
     /// The column where material enters: essential conditions, not part of the march.
     pub fn inflow(&self) -> usize {
         if self.speed >= 0.0 {

@@ -19,6 +19,9 @@ const FIRST_SUBSTEP: f64 = 0.25;
 /// Largest number of sub-steps of equal length while the inputs change at given rates.
 const RAMP_SUBSTEPS: f64 = 50.0;
 
+/// Times that a sub-step which does not converge is quartered, in one step.
+const RETRIES: usize = 4;
+
 /// Everything that does not change after initialisation: the rail, and the parameters (but for the tunable ones).
 pub struct Model {
     parameters: Parameters,
@@ -150,7 +153,7 @@ impl Model {
     ///
     /// The step is implicit in time, of order 1. It is divided after a jump of the inputs, from a quarter of the
     /// passage of the contact window on with doubling sub-steps, and where the rates change the inputs by more
-    /// than a fifth of their scale.
+    /// than a fifth of their scale. A sub-step that does not converge is tried again in quarters.
     ///
     /// # Errors
     /// [`Interrupted`]: the state stands at the last committed sub-step, bit for bit.
@@ -167,17 +170,18 @@ impl Model {
         let interrupted = |committed, error| Interrupted { committed, error };
         inputs
             .check(&self.parameters)
-            .and_then(|()| inputs.advanced(rates, duration).check(&self.parameters))
+            .and_then(|()| self.inputs_at(inputs, rates, duration).check(&self.parameters))
             .map_err(|error| interrupted(0.0, error))?;
 
         let jump = self.change(&state.inputs, inputs);
-        let ramp = self.change(inputs, &inputs.advanced(rates, duration));
+        let ramp = self.change(inputs, &self.inputs_at(inputs, rates, duration));
         let mut substep = duration / (ramp / JUMP).ceil().clamp(1.0, RAMP_SUBSTEPS);
         let largest_substep = substep;
         if jump > JUMP {
             substep = substep.min(FIRST_SUBSTEP * self.passage_time(inputs));
         }
         let mut convergence = Convergence::default();
+        let mut retries = 0;
         while committed < duration {
             // The last sub-step takes the rest, so that no sliver is left over by rounding.
             let remaining = duration - committed;
@@ -187,10 +191,17 @@ impl Model {
             } else {
                 committed + length
             };
-            let at_end = inputs.advanced(rates, end);
-            let solved = self
-                .advance(workspace, state, &at_end, length)
-                .map_err(|error| interrupted(committed, error))?;
+            let at_end = self.inputs_at(inputs, rates, end);
+            let solved = match self.advance(workspace, state, &at_end, length) {
+                Ok(solved) => solved,
+                // A shorter sub-step starts closer to its solution; what the window cannot hold no step can.
+                Err(error) if !matches!(error, Error::ContactLeavesWindow { .. }) && retries < RETRIES => {
+                    retries += 1;
+                    substep = 0.25 * length;
+                    continue;
+                }
+                Err(error) => return Err(interrupted(committed, error)),
+            };
             committed = end;
             state.time = start + committed;
             convergence.iterations += solved.iterations;
@@ -230,6 +241,11 @@ impl Model {
         state.duration = duration;
         state.outputs = outputs;
         Ok(convergence)
+    }
+
+    /// The inputs `time` after the beginning of a step.
+    fn inputs_at(&self, inputs: &Inputs, rates: &Inputs, time: f64) -> Inputs {
+        inputs.advanced(rates, time).snapped(&self.parameters)
     }
 
     fn contact(&self, inputs: &Inputs, duration: f64) -> Contact<'_> {

@@ -139,7 +139,7 @@ fn a_failed_step_leaves_the_state_as_it_was() {
         "{interrupted:?}"
     );
     let message = interrupted.error.to_string();
-    assert!(message.contains("largest_load = 120000 N"), "{message}");
+    assert!(message.contains("largest_load = 100000 N"), "{message}");
 
     // The way on, and the same one as if the failure had not been.
     let mut fresh = Run::new(&parameters, &rolling).unwrap();

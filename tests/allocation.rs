@@ -1,0 +1,163 @@
+//! After the first steps a step allocates nothing, natively and through the interface with logging off. The library is
+//! linked here, not loaded, so that its allocations go through the counting allocator.
+
+#![allow(unsafe_code)]
+
+use std::alloc::{GlobalAlloc, Layout, System};
+use std::cell::Cell;
+use std::ffi::CString;
+use std::ptr::{null, null_mut};
+use wheelrail::fmi2::functions::{
+    fmi2DoStep, fmi2EnterInitializationMode, fmi2ExitInitializationMode, fmi2FreeInstance, fmi2GetReal,
+    fmi2Instantiate, fmi2SetReal, fmi2SetRealInputDerivatives, fmi2SetupExperiment,
+};
+use wheelrail::fmi2::types::{CallbackFunctions, Status};
+use wheelrail::parameters::{NormalSolver, Parameters, SlipSource};
+use wheelrail::signals::Inputs;
+use wheelrail::wheel_rail::Model;
+
+/// Counts what a thread takes from the system's allocator.
+struct Counting;
+
+thread_local! {
+    static ALLOCATIONS: Cell<usize> = const { Cell::new(0) };
+}
+
+// SAFETY: the system's allocator does the work.
+unsafe impl GlobalAlloc for Counting {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        ALLOCATIONS.set(ALLOCATIONS.get() + 1);
+        // SAFETY: the caller's promise.
+        unsafe { System.alloc(layout) }
+    }
+
+    unsafe fn alloc_zeroed(&self, layout: Layout) -> *mut u8 {
+        ALLOCATIONS.set(ALLOCATIONS.get() + 1);
+        // SAFETY: the caller's promise.
+        unsafe { System.alloc_zeroed(layout) }
+    }
+
+    unsafe fn realloc(&self, pointer: *mut u8, layout: Layout, size: usize) -> *mut u8 {
+        ALLOCATIONS.set(ALLOCATIONS.get() + 1);
+        // SAFETY: the caller's promise.
+        unsafe { System.realloc(pointer, layout, size) }
+    }
+
+    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
+        // SAFETY: the caller's promise.
+        unsafe { System.dealloc(pointer, layout) }
+    }
+}
+
+#[global_allocator]
+static ALLOCATOR: Counting = Counting;
+
+/// Allocations of this thread during a call.
+fn allocations<T>(body: impl FnOnce() -> T) -> (usize, T) {
+    let before = ALLOCATIONS.get();
+    let result = body();
+    (ALLOCATIONS.get() - before, result)
+}
+
+/// A braking wheel whose load, slip and friction change from step to step, with a lift-off, a locked wheel and a standstill.
+fn inputs(step: u32) -> Inputs {
+    let phase = f64::from(step % 40);
+    let vehicle_speed = (20.0 - 0.05 * f64::from(step)).max(0.0);
+    let creepage = match step % 97 {
+        0..=9 => -1.0,
+        10..=40 => 1e-4 * phase,
+        _ => -0.02,
+    };
+    Inputs {
+        vehicle_speed,
+        wheel_speed: vehicle_speed * (1.0 + creepage) / Parameters::default().wheel_radius,
+        normal_load: if step % 83 == 0 { 0.0 } else { 40e3 + 1.5e3 * phase },
+        friction_scale: 0.3 + 0.02 * phase,
+        ..Inputs::default()
+    }
+}
+
+const STEPS: u32 = 500;
+const WARM_UP: u32 = 1;
+
+#[test]
+fn a_step_of_the_model_allocates_nothing() {
+    for (normal_solver, steps) in [(NormalSolver::ActiveSet, STEPS), (NormalSolver::Pschenichnyj, 20)] {
+        let model = Model::new(Parameters {
+            slip_source: SlipSource::VehicleSpeed,
+            normal_solver,
+            ..Parameters::default()
+        })
+        .unwrap();
+        let mut workspace = model.workspace();
+        let mut state = model.initial_state(&mut workspace, &inputs(1)).unwrap();
+        for step in 1..steps {
+            let (count, result) =
+                allocations(|| model.step(&mut workspace, &mut state, &inputs(step), &Inputs::ZERO, 1e-3));
+            result.unwrap();
+            assert!(
+                step <= WARM_UP || count == 0,
+                "{normal_solver:?}, step {step}: {count} allocations"
+            );
+        }
+    }
+}
+
+#[test]
+fn the_allocator_counts() {
+    let (count, _) = allocations(|| std::hint::black_box(vec![0_u8; 100]));
+    assert_eq!(count, 1);
+}
+
+#[test]
+fn a_step_through_the_interface_allocates_nothing() {
+    let guid = CString::new(wheelrail::fmi2::GUID).unwrap();
+    let callbacks = CallbackFunctions {
+        logger: None,
+        allocate_memory: None,
+        free_memory: None,
+        step_finished: None,
+        component_environment: null_mut(),
+    };
+    let (references, output) = ([0, 1, 3, 4], 1000);
+    // SAFETY: valid pointers, a live instance, as many values as references.
+    unsafe {
+        let component = fmi2Instantiate(c"wheel".as_ptr(), 1, guid.as_ptr(), null(), &callbacks, 0, 0);
+        assert!(!component.is_null());
+        let slip_source = wheelrail::fmi2::variables::variables()
+            .into_iter()
+            .find(|row| row.name == "slip_source")
+            .unwrap();
+        let ok = |status: Status| assert_eq!(status, Status::OK);
+        ok(wheelrail::fmi2::functions::fmi2SetInteger(
+            component,
+            &slip_source.reference,
+            1,
+            &2,
+        ));
+        ok(fmi2SetupExperiment(component, 0, 0.0, 0.0, 0, 0.0));
+        ok(fmi2EnterInitializationMode(component));
+        ok(fmi2ExitInitializationMode(component));
+        for step in 0..STEPS {
+            let given = inputs(step + 1);
+            let values = [
+                given.wheel_speed,
+                given.normal_load,
+                given.vehicle_speed,
+                given.friction_scale,
+            ];
+            let mut value = 0.0;
+            let (count, statuses) = allocations(|| {
+                [
+                    fmi2SetReal(component, references.as_ptr(), 4, values.as_ptr()),
+                    fmi2SetRealInputDerivatives(component, &1, 1, &1, &10.0),
+                    fmi2DoStep(component, f64::from(step) * 1e-3, 1e-3, 1),
+                    fmi2GetReal(component, &output, 1, &mut value),
+                ]
+            });
+            assert_eq!(statuses, [Status::OK; 4], "step {step}");
+            assert!(step < WARM_UP || count == 0, "step {step}: {count} allocations");
+        }
+        fmi2FreeInstance(component);
+    }
+}
