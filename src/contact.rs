@@ -5,6 +5,7 @@ use crate::acceleration::Anderson;
 use crate::compliance::{self, RollingCompliance, Scales};
 use crate::dense;
 use crate::error::{Error, Result};
+use crate::friction;
 use crate::heat::{DepthBasis, FrictionState, HeatMarch, Heated, SurfaceExchange};
 use crate::injection::{self, Solver};
 use crate::mechanics::{Mechanics, MechanicsProblem, ProblemTangent, Tractions};
@@ -21,11 +22,12 @@ use serde::{Deserialize, Serialize};
 const SPLITS: usize = 100;
 /// Error of surface temperature and wear at which the split rests (η), relative to the largest temperature (at least 1 K)
 /// and to the displacement scale.
-const TOLERANCE: f64 = 1e-9;
+const TOLERANCE: f64 = 1e-11;
 /// Error of the shear at which the split rests, relative to the peak pressure.
-const SHEAR_TOLERANCE: f64 = 1e-8;
-/// Tolerance of the mechanics in the first iteration, and in the further ones relative to the last change.
+const SHEAR_TOLERANCE: f64 = 1e-10;
+/// Tolerance of the mechanics in the first iteration, in the last, and in those between relative to the last change.
 const FIRST_MECHANICS_TOLERANCE: f64 = 1e-7;
+const LAST_MECHANICS_TOLERANCE: f64 = 1e-12;
 const MECHANICS_TOLERANCE: f64 = 1e-2;
 /// Iterations after which a split that has not come to rest is accelerated.
 const ACCELERATE_FROM: usize = 6;
@@ -321,7 +323,7 @@ impl Contact<'_> {
         let mut residual = f64::INFINITY;
         for iterations in 1..=SPLITS {
             // Step 2: tractions for given temperature and wear.
-            let tolerance = (MECHANICS_TOLERANCE * residual).clamp(1e-10, FIRST_MECHANICS_TOLERANCE);
+            let tolerance = (MECHANICS_TOLERANCE * residual).clamp(LAST_MECHANICS_TOLERANCE, FIRST_MECHANICS_TOLERANCE);
             let shear_change = self.mechanics(fields, scratch, tolerance)?;
             // Step 3: wear and temperature for given tractions.
             self.march_wear(before, fields, scratch);
@@ -609,6 +611,19 @@ impl Contact<'_> {
         (largest_change(&after[temperature.clone()], &before[temperature]) / largest)
             .max(largest_change(&after[..2 * n], &before[..2 * n]))
             .max(largest_change(&after[3 * n..], &before[3 * n..]))
+    }
+
+    /// Friction coefficient and shear of the final temperature: what is left of the split's tolerance goes into the
+    /// equilibrium, and the friction power is the one that heated the rail, to round-off.
+    fn close(&self, fields: &mut Fields) {
+        let law = self.friction_state();
+        let first = self.window().start;
+        for node in 0..fields.pressure.len() {
+            let mu = law.coefficient(fields.surface_temperature[first + node]).0;
+            let saturation = friction::saturation(fields.slip[node], self.parameters.slip_regularisation);
+            fields.friction[node] = mu;
+            fields.shear[node] = -mu * fields.pressure[node] * saturation;
+        }
     }
 
     /// A contact that reaches the end of the window is cut off by it.

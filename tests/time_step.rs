@@ -57,7 +57,6 @@ fn a_run_repeats_bit_for_bit() {
 
 /// A state that is restored goes on with the same bits only if the workspace adds nothing.
 #[test]
-#[ignore = "the mechanics keep the inverse and the response of the last active set, which differ by round-off"]
 fn a_workspace_carries_nothing_from_step_to_step() {
     let inputs = |step: u32| Inputs {
         creepage: 0.02 * f64::from(step % 2),
