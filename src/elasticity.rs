@@ -5,10 +5,9 @@
 
 use crate::error::{Error, Result};
 use crate::mesh::Mesh;
-use faer::linalg::solvers::Solve;
-use faer::sparse::linalg::solvers::Llt;
+use crate::sparse_cholesky::SparseCholesky;
 use faer::sparse::{SparseColMat, Triplet};
-use faer::{Mat, Side};
+use faer::Mat;
 
 /// Displacement fields, one to a column: entry `(2 * node + direction, field)` in [m] (0 along x₁, 1 along x₂).
 pub type Fields = Mat<f64>;
@@ -60,7 +59,7 @@ pub struct Elasticity {
     pub thermal_load_x: NodeMatrix,
     /// ∫ N_i,₂ N_j: the same along x₂.
     pub thermal_load_y: NodeMatrix,
-    factor: Llt<usize, f64>,
+    factor: SparseCholesky,
     /// Free unknown of each `2 * node + direction`, `usize::MAX` where clamped.
     unknown: Vec<usize>,
     unknowns: usize,
@@ -125,7 +124,7 @@ impl Elasticity {
         let failed = Error::StiffnessNotPositiveDefinite { unknowns };
         let matrix = SparseColMat::<usize, f64>::try_new_from_triplets(unknowns, unknowns, &stiffness)
             .map_err(|_| failed.clone())?;
-        let factor = matrix.sp_cholesky(Side::Lower).map_err(|_| failed)?;
+        let factor = SparseCholesky::new(&matrix).ok_or(failed)?;
         Ok(Elasticity {
             inertia: NodeMatrix::assemble(nodes, &inertia),
             thermal_load_x: NodeMatrix::assemble(nodes, &load_x),
@@ -146,7 +145,7 @@ impl Elasticity {
                 }
             }
         }
-        self.factor.solve_in_place(reduced.as_mut());
+        self.factor.solve_in_place(&mut reduced);
         Mat::from_fn(loads.nrows(), loads.ncols(), |dof, field| match self.unknown[dof] {
             usize::MAX => 0.0,
             unknown => reduced[(unknown, field)],

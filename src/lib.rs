@@ -18,6 +18,7 @@ pub mod parameters;
 pub mod profiles;
 pub mod sensitivity;
 pub mod signals;
+pub mod sparse_cholesky;
 pub mod tangential;
 pub mod thermal_map;
 pub mod transport;

@@ -18,6 +18,8 @@ use wheelrail::signals::OUTPUTS;
 const STEP: f64 = 1e-3;
 /// Steps between two checks of the profiles.
 const PROFILE_STEPS: u64 = 1000;
+/// Steps between two that are repeated from a saved state.
+const REPEATED_STEPS: u64 = 500;
 /// Memory that may come and go with the allocator, [KiB].
 const SLACK: u64 = 256;
 
@@ -214,16 +216,21 @@ struct Tally {
     sliding: u64,
     lifted: u64,
     failed: u64,
+    repeated: u64,
     slowest: Duration,
 }
 
 fn simulate(steps: u64) {
     let api = Api::load();
-    let client = Client::new(&api);
-    client.expect(OK, client.set_integers(&[("slip_source", 2)]));
-    client.expect(OK, client.setup(0.0, None));
-    client.expect(OK, client.enter());
-    client.expect(OK, client.exit());
+    let running = || {
+        let client = Client::new(&api);
+        client.expect(OK, client.set_integers(&[("slip_source", 2)]));
+        client.expect(OK, client.setup(0.0, None));
+        client.expect(OK, client.enter());
+        client.expect(OK, client.exit());
+        client
+    };
+    let (client, other) = (running(), running());
     let inputs = [
         "vehicle_speed",
         "wheel_speed",
@@ -276,7 +283,7 @@ fn simulate(steps: u64) {
             );
             client.expect(OK, (api.get_state)(client.component, &mut handle));
         }
-        let begin = Instant::now();
+        let (begin, before) = (Instant::now(), time);
         let status = client.step(time, STEP);
         tally.slowest = tally.slowest.max(begin.elapsed());
         if status != OK {
@@ -328,6 +335,10 @@ fn simulate(steps: u64) {
             );
         }
         last.copy_from_slice(&values);
+        if step % REPEATED_STEPS == 0 && status == OK {
+            tally.repeated += 1;
+            repeat(&client, &other, handle, before);
+        }
         tally.standing += u64::from(given.vehicle_speed == 0.0);
         tally.creeping += u64::from(given.vehicle_speed != 0.0 && given.vehicle_speed.abs() < 1.0);
         tally.lifted += u64::from(given.normal_load == 0.0);
@@ -375,6 +386,22 @@ fn check(step: u64, given: &Given, traction: f64, temperature: f64) {
         temperature >= given.ambient_temperature,
         "step {step}: {temperature} K at {given:?}"
     );
+}
+
+/// Repeats a step from the state before it, in the same instance and, serialised, in another one: the same bits. The
+/// other one was left wherever the repetition before had ended.
+fn repeat(client: &Client, other: &Client, handle: Handle, time: f64) {
+    let expected = client.outputs();
+    client.expect(OK, client.restore(handle));
+    client.expect(OK, client.step(time, STEP));
+    assert_eq!(client.outputs(), expected, "repeated at {time} s");
+    let mut copy = null_mut();
+    other.expect(OK, other.deserialize(&client.serialize(handle), &mut copy));
+    other.expect(OK, other.restore(copy));
+    other.expect(OK, other.step(time, STEP));
+    assert_eq!(other.outputs(), expected, "in another instance at {time} s");
+    // SAFETY: a state of this instance.
+    other.expect(OK, unsafe { (other.api.free_state)(other.component, &mut copy) });
 }
 
 /// Where WHEELRAIL_SOAK_FAILURES names a folder, the state before a step that failed goes there, serialised.
