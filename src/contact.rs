@@ -23,6 +23,8 @@ const SPLITS: usize = 100;
 /// Error of surface temperature and wear at which the split rests (η), relative to the largest temperature (at least 1 K)
 /// and to the displacement scale.
 const TOLERANCE: f64 = 1e-11;
+/// Change that is round-off.
+const ROUND_OFF: f64 = 1e-14;
 /// Error of the shear at which the split rests, relative to the peak pressure.
 const SHEAR_TOLERANCE: f64 = 1e-10;
 /// Tolerance of the mechanics in the first iteration, in the last, and in those between relative to the last change.
@@ -338,9 +340,12 @@ impl Contact<'_> {
             } else {
                 1.0
             };
-            if residual * contraction <= TOLERANCE && shear_change * contraction <= SHEAR_TOLERANCE {
-                self.check_window(fields)?;
+            // One iteration cannot tell: the mechanics have not yet seen what it changed.
+            let seen = iterations > 1 || residual <= ROUND_OFF;
+            if seen && residual * contraction <= TOLERANCE && shear_change * contraction <= SHEAR_TOLERANCE {
                 injection::passes(Solver::Split)?;
+                self.check_window(fields)?;
+                self.close(fields);
                 return Ok(Convergence { iterations, residual });
             }
             if iterations >= ACCELERATE_FROM {

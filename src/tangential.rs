@@ -219,11 +219,11 @@ impl Tangential {
         dense::multiply(problem.pressure_response, m, &self.change, &mut self.pressure);
         dense::multiply(problem.strain_response, m, &self.change, &mut self.strain);
         let mut square = 0.0;
-        for i in 0..m {
+        for (i, shear) in shear.iter().enumerate() {
             self.pressure[i] = (problem.pressure[i] + self.pressure[i]).max(0.0);
             self.slip[i] = problem.rigid_slip + problem.strain_speed * (problem.strain[i] + self.strain[i]);
             let bound = problem.friction[i] * self.pressure[i];
-            self.residual[i] = shear[i] + self.change[i] + bound * saturation(self.slip[i], regularisation);
+            self.residual[i] = shear + self.change[i] + bound * saturation(self.slip[i], regularisation);
             square += self.residual[i] * self.residual[i];
         }
         square.sqrt()

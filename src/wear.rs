@@ -50,7 +50,7 @@ impl Softening {
     pub fn new(compliance: &DMatrix<f64>) -> Softening {
         let n = compliance.nrows();
         // The least compliant pressure alternates from node to node.
-        let sign = |i: usize| if i % 2 == 0 { 1.0 } else { -1.0 };
+        let sign = |i: usize| if i.is_multiple_of(2) { 1.0 } else { -1.0 };
         let mut alternating = 0.0;
         for i in 0..n {
             for j in 0..n {
