@@ -30,7 +30,7 @@ pub struct DepthBasis {
 }
 
 impl DepthBasis {
-    /// Basis on the given depths [m], ascending from 0.
+    /// Basis on the given depths `m`, ascending from 0.
     ///
     /// # Errors
     /// [`Error::DepthBasis`].
@@ -115,7 +115,7 @@ impl DepthBasis {
 /// q = ᾱ [ μ(θ) P − H θ ], the condition (23) with P = p |φ(s) s| and H = k ρ c_p |s| p + p / r; the wheel is at ambient.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct SurfaceExchange {
-    /// P: friction power per area and friction coefficient, [W/m²].
+    /// P: friction power per area and friction coefficient, `W/m²`.
     pub friction: f64,
     /// k ρ c_p |s| p: heat carried off by debris per kelvin, [W/(m² K)].
     pub debris: f64,
@@ -124,7 +124,7 @@ pub struct SurfaceExchange {
 }
 
 impl SurfaceExchange {
-    /// The exchange under pressure `pressure` [Pa] and slip velocity `slip` [m/s].
+    /// The exchange under pressure `pressure` `Pa` and slip velocity `slip` `m/s`.
     pub fn new(parameters: &Parameters, pressure: f64, slip: f64) -> SurfaceExchange {
         let saturation = friction::saturation(slip, parameters.slip_regularisation);
         SurfaceExchange {
@@ -145,14 +145,14 @@ impl SurfaceExchange {
 pub struct FrictionState<'a> {
     /// The law.
     pub parameters: &'a Parameters,
-    /// Ambient temperature, [K].
+    /// Ambient temperature, `K`.
     pub ambient: f64,
     /// Factor on μ.
     pub scale: f64,
 }
 
 impl FrictionState<'_> {
-    /// μ at a temperature rise [K], and dμ/dθ [1/K].
+    /// μ at a temperature rise `K`, and dμ/dθ `1/K`.
     pub fn coefficient(&self, rise: f64) -> (f64, f64) {
         let (mu, slope) = friction::coefficient(self.parameters, self.ambient + rise);
         (self.scale * mu, self.scale * slope)
@@ -170,7 +170,7 @@ pub struct HeatMarch<'a> {
     pub transport: Upwind<'a>,
     /// First column of the contact window; the exchange slice starts there.
     pub first_contact: usize,
-    /// Step Δt, [s]; infinite for the steady field.
+    /// Step Δt, `s`; infinite for the steady field.
     pub duration: f64,
     /// Friction law.
     pub friction: FrictionState<'a>,
@@ -180,9 +180,9 @@ pub struct HeatMarch<'a> {
 pub struct Heated<'a> {
     /// Modal amplitudes, columns × modes, column by column.
     pub temperature: &'a mut [f64],
-    /// Temperature rise at the surface of the columns, [K].
+    /// Temperature rise at the surface of the columns, `K`.
     pub surface: &'a mut [f64],
-    /// Heat flux into the rail at the contact nodes, [W/m²].
+    /// Heat flux into the rail at the contact nodes, `W/m²`.
     pub flux: &'a mut [f64],
 }
 

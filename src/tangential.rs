@@ -24,11 +24,11 @@ pub struct TangentialProblem<'a> {
     pub strain_response: &'a [f64],
     /// μ, m.
     pub friction: &'a [f64],
-    /// ω r₀ − V, [m/s].
+    /// ω r₀ − V, `m/s`.
     pub rigid_slip: f64,
-    /// |V| times the displacement scale over the node spacing, [m/s].
+    /// |V| times the displacement scale over the node spacing, `m/s`.
     pub strain_speed: f64,
-    /// ε, [m/s].
+    /// ε, `m/s`.
     pub regularisation: f64,
     /// Newton step at which the iteration stops, relative to the largest pressure.
     pub tolerance: f64,
@@ -39,7 +39,7 @@ pub struct TangentialProblem<'a> {
 pub struct Point<'a> {
     /// Pressure, scaled.
     pub pressure: &'a [f64],
-    /// Slip velocity, [m/s].
+    /// Slip velocity, `m/s`.
     pub slip: &'a [f64],
 }
 
@@ -92,7 +92,7 @@ impl Tangential {
         self.factored = false;
     }
 
-    /// Slip velocities of the last solve, [m/s], on the nodes of its problem.
+    /// Slip velocities of the last solve, `m/s`, on the nodes of its problem.
     pub fn slip(&self) -> &[f64] {
         &self.slip
     }

@@ -3,8 +3,8 @@
 use crate::transport::Upwind;
 use nalgebra::DMatrix;
 
-/// One implicit time step: the wear depth `after` at all columns, [m], from `before`, under the wear rate
-/// k |s| p at the contact nodes [m/s], the first of which is the column `first_contact`.
+/// One implicit time step: the wear depth `after` at all columns, `m`, from `before`, under the wear rate
+/// k |s| p at the contact nodes `m/s`, the first of which is the column `first_contact`.
 pub fn advance(
     transport: &Upwind,
     duration: f64,
@@ -71,7 +71,7 @@ impl Softening {
         &self.compliance
     }
 
-    /// Adapts to slip velocities [m/s] and step: `per_slip` is the wear rate per pressure and slip, `storage` 1/Δt and
+    /// Adapts to slip velocities `m/s` and step: `per_slip` is the wear rate per pressure and slip, `storage` 1/Δt and
     /// `advection` |V|/Δx. Returns whether the compliance changed.
     pub fn update(
         &mut self,

@@ -12,7 +12,7 @@ const PROTOTYPE: &str = "independent prototype, 61 nodes over 12 mm";
 const PAPER: &str = "the paper, section 5";
 /// Two discretisations of first order along x₁ with some 40 nodes in contact.
 const TOLERANCE: f64 = 0.03;
-/// 0 °C, the paper's ambient, [K].
+/// 0 °C, the paper's ambient, `K`.
 const AMBIENT: f64 = 273.15;
 
 /// Name and hot temperature θ_F [°C] of the cases with a temperature-dependent coefficient.
