@@ -65,7 +65,7 @@ pub struct Elasticity {
     unknowns: usize,
 }
 
-/// Gradients of the three hat functions of a triangle, `1/m`, and its area, [m²].
+/// Gradients of the three hat functions of a triangle, `1/m`, and its area, `m²`.
 fn gradients(points: [[f64; 2]; 3]) -> ([[f64; 2]; 3], f64) {
     let [p, q, r] = points;
     let twice_area = (q[0] - p[0]) * (r[1] - p[1]) - (r[0] - p[0]) * (q[1] - p[1]);

@@ -17,15 +17,15 @@ use nalgebra::{Cholesky, DMatrix, SymmetricEigen};
 /// Eigenbasis of the depth operator, m = rows − 1 modes.
 #[derive(Debug, Clone)]
 pub struct DepthBasis {
-    /// λ, ascending, [1/m²].
+    /// λ, ascending, `1/m²`.
     pub eigenvalues: Vec<f64>,
-    /// Value of each mode at the surface, φ(0), [m^-½].
+    /// Value of each mode at the surface, φ(0), `m^-½`.
     pub surface: Vec<f64>,
-    /// Integral of each mode over the depth, ∫φ, [m^½].
+    /// Integral of each mode over the depth, ∫φ, `m^½`.
     pub integral: Vec<f64>,
     /// Modes at the rows, `(row, mode)`, rows × m, the last row (bottom) zero.
     pub modes: DMatrix<f64>,
-    /// Values of the modes' stiffness rows at the bottom: heat flux through it per mode, [m^-3/2].
+    /// Values of the modes' stiffness rows at the bottom: heat flux through it per mode, `m^-3/2`.
     pub bottom_flux: Vec<f64>,
 }
 
@@ -117,9 +117,9 @@ impl DepthBasis {
 pub struct SurfaceExchange {
     /// P: friction power per area and friction coefficient, `W/m²`.
     pub friction: f64,
-    /// k ρ c_p |s| p: heat carried off by debris per kelvin, [W/(m² K)].
+    /// k ρ c_p |s| p: heat carried off by debris per kelvin, `W/(m² K)`.
     pub debris: f64,
-    /// p / r: heat conducted into the wheel per kelvin, [W/(m² K)].
+    /// p / r: heat conducted into the wheel per kelvin, `W/(m² K)`.
     pub conduction: f64,
 }
 

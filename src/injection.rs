@@ -70,7 +70,7 @@ impl Solver {
 /// Called by a solver that has converged, with everything it writes already written.
 ///
 /// # Errors
-/// [`Solver::divergence`], once, where [`diverge`] asked for it.
+/// [`Solver::divergence`], once, where `diverge` asked for it.
 #[inline(always)]
 pub fn passes(solver: Solver) -> Result<()> {
     #[cfg(feature = "divergence-injection")]

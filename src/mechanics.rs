@@ -2,7 +2,7 @@
 //! pressure, repeated until both rest (Steps 2 to 5 of section 4.1 of the paper).
 //!
 //! As long as the active set stays, the pressure is an affine function of the shear. With the active-set solver the
-//! friction problem sees that [`Response`], and two sweeps do where alternating blindly takes ten; with the paper's
+//! friction problem sees that `Response`, and two sweeps do where alternating blindly takes ten; with the paper's
 //! linearisation method the two problems alternate as printed.
 
 use crate::compliance::Compliance;

@@ -89,9 +89,9 @@ pub struct Parameters {
     pub lame_lambda: f64,
     /// Shear modulus γ (second Lamé coefficient), `Pa`.
     pub shear_modulus: f64,
-    /// Density ρ, [kg/m³].
+    /// Density ρ, `kg/m³`.
     pub density: f64,
-    /// Heat capacity c_p, [J/(kg K)].
+    /// Heat capacity c_p, `J/(kg K)`.
     pub heat_capacity: f64,
     /// Thermal diffusivity κ, `m²/s`.
     pub thermal_diffusivity: f64,
@@ -99,7 +99,7 @@ pub struct Parameters {
     pub thermal_expansion: f64,
     /// Share ᾱ of the frictional heat that enters the rail, `1`.
     pub heat_partition: f64,
-    /// Thermal contact resistance r, [K·N·s/J]; 1e12 switches the conduction into the wheel off.
+    /// Thermal contact resistance r, `K·N·s/J`; 1e12 switches the conduction into the wheel off.
     pub contact_thermal_resistance: f64,
     /// Archard's coefficient k, `1/Pa`; 0 switches wear off.
     pub wear_coefficient: f64,
@@ -668,7 +668,7 @@ impl Parameters {
         2.0 * load / (std::f64::consts::PI * self.hertz_half_length(load) * self.contact_width)
     }
 
-    /// Volumetric heat capacity ρ c_p, [J/(m³ K)].
+    /// Volumetric heat capacity ρ c_p, `J/(m³ K)`.
     pub fn volumetric_heat_capacity(&self) -> f64 {
         self.density * self.heat_capacity
     }

@@ -54,9 +54,9 @@ pub struct Outputs {
     pub rail_heat_flow: f64,
     /// Wear depth that one passage leaves behind the contact, `m`.
     pub wear_depth: f64,
-    /// Volume worn per time, [m³/s].
+    /// Volume worn per time, `m³/s`.
     pub wear_rate: f64,
-    /// Volume worn since the start, [m³].
+    /// Volume worn since the start, `m³`.
     pub worn_volume: f64,
     /// Friction work since the start, `J`.
     pub friction_energy: f64,

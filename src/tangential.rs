@@ -5,7 +5,7 @@
 //! s = (ω r₀ − V) + |V|/Δx (u₁ − u₁ of the node ahead); the bracket is called strain here.
 //!
 //! The problem is posed around the tractions of the sweep before: pressure and strain there are given, and how both
-//! respond to a change of τ (see [`crate::mechanics::Response`]). Tractions and displacements are scaled, speeds in m/s.
+//! respond to a change of τ (see `Response` of [`crate::mechanics`]). Tractions and displacements are scaled, speeds in m/s.
 
 use crate::dense;
 use crate::error::{Error, Result};
