@@ -78,7 +78,7 @@ lint: $(VENV)/ready
 	$(call say,Formatting - lints - documentation)
 	cargo fmt --check
 	cargo clippy --quiet --all-targets -- -D warnings
-	RUSTDOCFLAGS='-D warnings' cargo doc --quiet --no-deps --document-private-items
+	RUSTDOCFLAGS='-D warnings' cargo doc --quiet --no-deps
 	$(VENV)/bin/ruff check .
 	$(VENV)/bin/ruff format --check .
 

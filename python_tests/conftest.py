@@ -7,7 +7,7 @@ from pathlib import Path
 
 import fmpy
 import pytest
-from fmpy.fmi2 import FMU2Slave
+from fmpy.fmi2 import FMU2Slave, fmi2CallbackFunctions, fmi2CallbackLoggerTYPE
 
 REPOSITORY = Path(__file__).resolve().parent.parent
 
@@ -62,7 +62,25 @@ def outputs(description):
 
 
 @pytest.fixture
-def instance(unpacked, description):
+def callbacks():
+    """Return callbacks that keep the messages, in the attribute `messages`.
+
+    FMPy's own default logger is no longer callable once simulate_fmu was given another one in the same process: its
+    native proxy keeps a pointer to the last logger, freed or not (FMPy 0.3.32).
+    """
+    messages = []
+
+    def logger(_environment, _name, status, category, _format):
+        messages.append((status, category.decode()))
+
+    structure = fmi2CallbackFunctions()
+    structure.logger = fmi2CallbackLoggerTYPE(logger)
+    structure.messages = messages
+    return structure
+
+
+@pytest.fixture
+def instance(unpacked, description, callbacks):
     """Return a function that makes instances in state `instantiated`; they are freed after the test."""
     made = []
 
@@ -73,7 +91,7 @@ def instance(unpacked, description):
             modelIdentifier=description.coSimulation.modelIdentifier,
             instanceName=name,
         )
-        slave.instantiate(**options)
+        slave.instantiate(callbacks=callbacks, **options)
         made.append(slave)
         return slave
 

@@ -36,7 +36,7 @@ def status_of(call, *arguments):
         ("ambient_temperature", 0.0),
     ],
 )
-def test_values_that_cannot_be_are_discarded(instance, reference, outputs, name, value):
+def test_values_that_cannot_be_are_discarded(instance, callbacks, reference, outputs, name, value):
     """The value is refused with fmi2Discard, and the instance goes on as if it had never been offered."""
     references = [reference[n] for n in outputs]
     results = []
@@ -49,6 +49,7 @@ def test_values_that_cannot_be_are_discarded(instance, reference, outputs, name,
         slave.doStep(0.01, 0.01)
         results.append(slave.getReal(references))
     assert results[0] == results[1]
+    assert callbacks.messages == [(fmi2Discard, "logStatusWarning")]
 
 
 @pytest.mark.parametrize("step", [0.0, -1e-3, math.nan, math.inf])
@@ -84,11 +85,12 @@ def test_fixed_parameters_are_fixed_and_tunable_ones_are_not(instance, reference
     assert status_of(slave.setReal, [reference["wheel_radius"]], [0.5]) == fmi2Error
 
 
-def test_wrong_guid_is_refused(unpacked):
+def test_wrong_guid_is_refused(unpacked, callbacks):
     """A description of another build gets no instance."""
     slave = FMU2Slave(guid="{0}", unzipDirectory=str(unpacked), modelIdentifier="wheelrail", instanceName="x")
     with pytest.raises(Exception, match="instantiate"):
-        slave.instantiate()
+        slave.instantiate(callbacks=callbacks)
+    assert callbacks.messages == [(fmi2Error, "logStatusError")]
 
 
 @pytest.mark.parametrize("serialised", [False, True])

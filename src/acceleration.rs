@@ -58,10 +58,18 @@ impl Anderson {
         }
         if self.iterates > 0 {
             let slot = (self.iterates - 1) % DEPTH * size;
-            for i in 0..size {
-                self.residual_changes[slot + i] = self.residual[i] - self.last_residual[i];
-                self.image_changes[slot + i] = image[i] - self.last_image[i];
-            }
+            let subtract = |changes: &mut [f64], now: &[f64], last: &[f64]| {
+                for ((change, now), last) in changes.iter_mut().zip(now).zip(last) {
+                    *change = now - last;
+                }
+            };
+            let range = slot..slot + size;
+            subtract(
+                &mut self.residual_changes[range.clone()],
+                &self.residual,
+                &self.last_residual,
+            );
+            subtract(&mut self.image_changes[range], image, &self.last_image);
             self.stored = (self.stored + 1).min(DEPTH);
         }
         self.iterates += 1;

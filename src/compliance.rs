@@ -17,9 +17,9 @@ use nalgebra::DMatrix;
 /// The units in which the contact problem is solved.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Scales {
-    /// Hertz peak pressure p₀ at the largest load, [Pa].
+    /// Hertz peak pressure p₀ at the largest load, `Pa`.
     pub pressure: f64,
-    /// a²/r₀ at the largest load, [m].
+    /// a²/r₀ at the largest load, `m`.
     pub displacement: f64,
 }
 
@@ -48,12 +48,12 @@ pub struct Compliance {
     pub tangential_tangential: DMatrix<f64>,
 }
 
-/// The compliance at rest and its derivative with respect to ρV², [1/Pa].
+/// The compliance at rest and its derivative with respect to ρV², `1/Pa`.
 #[derive(Debug, Clone)]
 pub struct RollingCompliance {
     /// C(0).
     pub at_rest: Compliance,
-    /// dC/d(ρV²), [1/Pa].
+    /// dC/d(ρV²), `1/Pa`.
     pub inertia: Compliance,
 }
 

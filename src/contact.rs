@@ -23,6 +23,8 @@ const SPLITS: usize = 100;
 /// Error of surface temperature and wear at which the split rests (η), relative to the largest temperature (at least 1 K)
 /// and to the displacement scale.
 const TOLERANCE: f64 = 1e-11;
+/// Change that is round-off.
+const ROUND_OFF: f64 = 1e-14;
 /// Error of the shear at which the split rests, relative to the peak pressure.
 const SHEAR_TOLERANCE: f64 = 1e-10;
 /// Tolerance of the mechanics in the first iteration, in the last, and in those between relative to the last change.
@@ -31,7 +33,7 @@ const LAST_MECHANICS_TOLERANCE: f64 = 1e-12;
 const MECHANICS_TOLERANCE: f64 = 1e-2;
 /// Iterations after which a split that has not come to rest is accelerated.
 const ACCELERATE_FROM: usize = 6;
-/// Temperature that counts as much as a displacement of one unit, [K].
+/// Temperature that counts as much as a displacement of one unit, `K`.
 pub(crate) const TEMPERATURE_SCALE: f64 = 100.0;
 /// The error of an iteration is its change times the contraction; an estimate above this is not trusted.
 const TRUSTED_CONTRACTION: f64 = 0.3;
@@ -88,7 +90,7 @@ impl Rail {
         })
     }
 
-    /// Scaled pressure sum Σp of a normal load [N].
+    /// Scaled pressure sum Σp of a normal load `N`.
     pub fn scaled_load(&self, parameters: &Parameters, load: f64) -> f64 {
         load / (parameters.contact_width * self.mesh.contact_spacing() * self.scales.pressure)
     }
@@ -101,7 +103,7 @@ pub struct Conditions {
     pub inputs: Inputs,
     /// The motion they make.
     pub motion: Motion,
-    /// Length of the step, [s].
+    /// Length of the step, `s`.
     pub duration: f64,
 }
 
@@ -110,21 +112,21 @@ pub struct Conditions {
 pub struct Fields {
     /// Modal amplitudes of the temperature rise, columns × modes, column by column.
     pub temperature: Vec<f64>,
-    /// Temperature rise at the surface of the columns, [K].
+    /// Temperature rise at the surface of the columns, `K`.
     pub surface_temperature: Vec<f64>,
     /// Displacement of the contact nodes caused by the temperature, scaled, along x₁ then along x₂, 2n.
     pub thermal_displacement: Vec<f64>,
-    /// Wear depth at the columns, [m].
+    /// Wear depth at the columns, `m`.
     pub wear: Vec<f64>,
     /// Pressure, scaled, n.
     pub pressure: Vec<f64>,
     /// Shear traction on the rail, scaled, n.
     pub shear: Vec<f64>,
-    /// Slip velocity, [m/s], 0 outside the contact, n.
+    /// Slip velocity, `m/s`, 0 outside the contact, n.
     pub slip: Vec<f64>,
     /// Friction coefficient, n.
     pub friction: Vec<f64>,
-    /// Heat flux into the rail, [W/m²], n.
+    /// Heat flux into the rail, `W/m²`, n.
     pub heat_flux: Vec<f64>,
     /// Penetration δ, scaled; 0 when lifted.
     pub penetration: f64,
@@ -227,7 +229,7 @@ impl Trend {
         [&self.shear, &self.surface_temperature, &self.thermal_displacement]
     }
 
-    /// The trend between two fields `duration` [s] apart.
+    /// The trend between two fields `duration` `s` apart.
     pub fn update(&mut self, before: &Fields, after: &Fields, duration: f64) {
         let update = |trend: &mut [f64], before: &[f64], after: &[f64]| {
             for ((trend, before), after) in trend.iter_mut().zip(before).zip(after) {
@@ -247,7 +249,7 @@ impl Trend {
         );
     }
 
-    /// Moves the first guess on by `duration` [s].
+    /// Moves the first guess on by `duration` `s`.
     pub fn extrapolate(&self, fields: &mut Fields, duration: f64) {
         dense::add_multiple(&self.shear, duration, &mut fields.shear);
         dense::add_multiple(&self.surface_temperature, duration, &mut fields.surface_temperature);
@@ -344,9 +346,12 @@ impl Contact<'_> {
             } else {
                 1.0
             };
-            if residual * contraction <= TOLERANCE && shear_change * contraction <= SHEAR_TOLERANCE {
-                self.check_window(fields)?;
+            // One iteration cannot tell: the mechanics have not yet seen what it changed.
+            let seen = iterations > 1 || residual <= ROUND_OFF;
+            if seen && residual * contraction <= TOLERANCE && shear_change * contraction <= SHEAR_TOLERANCE {
                 injection::passes(Solver::Split)?;
+                self.check_window(fields)?;
+                self.close(fields);
                 return Ok(Convergence { iterations, residual });
             }
             if iterations >= ACCELERATE_FROM {

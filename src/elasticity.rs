@@ -9,7 +9,7 @@ use crate::sparse_cholesky::SparseCholesky;
 use faer::sparse::{SparseColMat, Triplet};
 use faer::Mat;
 
-/// Displacement fields, one to a column: entry `(2 * node + direction, field)` in [m] (0 along x₁, 1 along x₂).
+/// Displacement fields, one to a column: entry `(2 * node + direction, field)` in `m` (0 along x₁, 1 along x₂).
 pub type Fields = Mat<f64>;
 
 /// A sparse matrix between nodes, by rows.
@@ -65,7 +65,7 @@ pub struct Elasticity {
     unknowns: usize,
 }
 
-/// Gradients of the three hat functions of a triangle, [1/m], and its area, [m²].
+/// Gradients of the three hat functions of a triangle, `1/m`, and its area, `m²`.
 fn gradients(points: [[f64; 2]; 3]) -> ([[f64; 2]; 3], f64) {
     let [p, q, r] = points;
     let twice_area = (q[0] - p[0]) * (r[1] - p[1]) - (r[0] - p[0]) * (q[1] - p[1]);

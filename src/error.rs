@@ -106,19 +106,19 @@ pub enum Error {
     /// The scalar surface condition of one column has no bracketed root.
     #[error("the surface heat condition at x = {position} m stopped after {iterations} Newton iterations at a residual of {residual:e} K")]
     SurfaceHeatNotConverged {
-        /// Position of the column, [m].
+        /// Position of the column, `m`.
         position: f64,
         /// Iterations done.
         iterations: usize,
-        /// Residual reached, [K].
+        /// Residual reached, `K`.
         residual: f64,
     },
     /// The contact reaches the end of the window that was sized for `largest_load`.
     #[error("the contact reaches the end of the contact window (half-width {half_width} m): largest_load = {largest_load} N is too small for this penetration, wear or thermal bulge")]
     ContactLeavesWindow {
-        /// Half-width of the window, [m].
+        /// Half-width of the window, `m`.
         half_width: f64,
-        /// The load that sized it, [N].
+        /// The load that sized it, `N`.
         largest_load: f64,
     },
 }

@@ -3,10 +3,10 @@
 use crate::parameters::{FrictionLaw, Parameters};
 use std::f64::consts::FRAC_2_PI;
 
-/// Strength of cold rail steel in section 3 of the paper, [Pa].
+/// Strength of cold rail steel in section 3 of the paper, `Pa`.
 const COLD_FLOW_STRESS: f64 = 925.7e6;
 
-/// μ at an absolute temperature [K] and its derivative [1/K].
+/// μ at an absolute temperature `K` and its derivative `1/K`.
 pub fn coefficient(law: &Parameters, temperature: f64) -> (f64, f64) {
     match law.friction_law {
         FrictionLaw::Constant => (law.friction_cold, 0.0),
@@ -59,7 +59,7 @@ fn table(law: &Parameters, temperature: f64) -> (f64, f64) {
     interpolate(point(upper - 1), point(upper), temperature)
 }
 
-/// Flow stress σ₀ of rail steel, [Pa], at an absolute temperature [K], and its derivative [Pa/K] (section 3 of the
+/// Flow stress σ₀ of rail steel, `Pa`, at an absolute temperature `K`, and its derivative `Pa/K` (section 3 of the
 /// paper, after Popov et al. 2002): 925.7 MPa, above 663 K 5.936 T asinh(0.0023 exp(3074 K/T)) MPa. The paper prints 0.0025
 /// under the root and degrees Celsius; only this form is continuous: the two branches meet at 662.8 K.
 fn flow_stress(temperature: f64) -> (f64, f64) {
@@ -78,7 +78,7 @@ pub fn saturation(slip: f64, regularisation: f64) -> f64 {
     FRAC_2_PI * (slip / regularisation).atan()
 }
 
-/// dφ/ds, [s/m].
+/// dφ/ds, `s/m`.
 pub fn saturation_slope(slip: f64, regularisation: f64) -> f64 {
     FRAC_2_PI * regularisation / (regularisation * regularisation + slip * slip)
 }

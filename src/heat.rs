@@ -17,20 +17,20 @@ use nalgebra::{Cholesky, DMatrix, SymmetricEigen};
 /// Eigenbasis of the depth operator, m = rows − 1 modes.
 #[derive(Debug, Clone)]
 pub struct DepthBasis {
-    /// λ, ascending, [1/m²].
+    /// λ, ascending, `1/m²`.
     pub eigenvalues: Vec<f64>,
-    /// Value of each mode at the surface, φ(0), [m^-½].
+    /// Value of each mode at the surface, φ(0), `m^-½`.
     pub surface: Vec<f64>,
-    /// Integral of each mode over the depth, ∫φ, [m^½].
+    /// Integral of each mode over the depth, ∫φ, `m^½`.
     pub integral: Vec<f64>,
     /// Modes at the rows, `(row, mode)`, rows × m, the last row (bottom) zero.
     pub modes: DMatrix<f64>,
-    /// Values of the modes' stiffness rows at the bottom: heat flux through it per mode, [m^-3/2].
+    /// Values of the modes' stiffness rows at the bottom: heat flux through it per mode, `m^-3/2`.
     pub bottom_flux: Vec<f64>,
 }
 
 impl DepthBasis {
-    /// Basis on the given depths [m], ascending from 0.
+    /// Basis on the given depths `m`, ascending from 0.
     ///
     /// # Errors
     /// [`Error::DepthBasis`].
@@ -115,16 +115,16 @@ impl DepthBasis {
 /// q = ᾱ [ μ(θ) P − H θ ], the condition (23) with P = p |φ(s) s| and H = k ρ c_p |s| p + p / r; the wheel is at ambient.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct SurfaceExchange {
-    /// P: friction power per area and friction coefficient, [W/m²].
+    /// P: friction power per area and friction coefficient, `W/m²`.
     pub friction: f64,
-    /// k ρ c_p |s| p: heat carried off by debris per kelvin, [W/(m² K)].
+    /// k ρ c_p |s| p: heat carried off by debris per kelvin, `W/(m² K)`.
     pub debris: f64,
-    /// p / r: heat conducted into the wheel per kelvin, [W/(m² K)].
+    /// p / r: heat conducted into the wheel per kelvin, `W/(m² K)`.
     pub conduction: f64,
 }
 
 impl SurfaceExchange {
-    /// The exchange under pressure `pressure` [Pa] and slip velocity `slip` [m/s].
+    /// The exchange under pressure `pressure` `Pa` and slip velocity `slip` `m/s`.
     pub fn new(parameters: &Parameters, pressure: f64, slip: f64) -> SurfaceExchange {
         let saturation = friction::saturation(slip, parameters.slip_regularisation);
         SurfaceExchange {
@@ -145,14 +145,14 @@ impl SurfaceExchange {
 pub struct FrictionState<'a> {
     /// The law.
     pub parameters: &'a Parameters,
-    /// Ambient temperature, [K].
+    /// Ambient temperature, `K`.
     pub ambient: f64,
     /// Factor on μ.
     pub scale: f64,
 }
 
 impl FrictionState<'_> {
-    /// μ at a temperature rise [K], and dμ/dθ [1/K].
+    /// μ at a temperature rise `K`, and dμ/dθ `1/K`.
     pub fn coefficient(&self, rise: f64) -> (f64, f64) {
         let (mu, slope) = friction::coefficient(self.parameters, self.ambient + rise);
         (self.scale * mu, self.scale * slope)
@@ -170,7 +170,7 @@ pub struct HeatMarch<'a> {
     pub transport: Upwind<'a>,
     /// First column of the contact window; the exchange slice starts there.
     pub first_contact: usize,
-    /// Step Δt, [s]; infinite for the steady field.
+    /// Step Δt, `s`; infinite for the steady field.
     pub duration: f64,
     /// Friction law.
     pub friction: FrictionState<'a>,
@@ -180,9 +180,9 @@ pub struct HeatMarch<'a> {
 pub struct Heated<'a> {
     /// Modal amplitudes, columns × modes, column by column.
     pub temperature: &'a mut [f64],
-    /// Temperature rise at the surface of the columns, [K].
+    /// Temperature rise at the surface of the columns, `K`.
     pub surface: &'a mut [f64],
-    /// Heat flux into the rail at the contact nodes, [W/m²].
+    /// Heat flux into the rail at the contact nodes, `W/m²`.
     pub flux: &'a mut [f64],
 }
 

@@ -2,7 +2,7 @@
 //! pressure, repeated until both rest (Steps 2 to 5 of section 4.1 of the paper).
 //!
 //! As long as the active set stays, the pressure is an affine function of the shear. With the active-set solver the
-//! friction problem sees that [`Response`], and two sweeps do where alternating blindly takes ten; with the paper's
+//! friction problem sees that `Response`, and two sweeps do where alternating blindly takes ten; with the paper's
 //! linearisation method the two problems alternate as printed.
 
 use crate::compliance::Compliance;
@@ -37,11 +37,11 @@ pub struct MechanicsProblem<'a> {
     pub constraint: Constraint,
     /// Method for the normal problem.
     pub normal_solver: NormalSolver,
-    /// ω r₀ − V, [m/s].
+    /// ω r₀ − V, `m/s`.
     pub rigid_slip: f64,
-    /// V times the displacement scale over the node spacing, [m/s]; its sign gives the leading side.
+    /// V times the displacement scale over the node spacing, `m/s`; its sign gives the leading side.
     pub strain_speed: f64,
-    /// ε, [m/s].
+    /// ε, `m/s`.
     pub regularisation: f64,
 }
 
@@ -51,7 +51,7 @@ pub struct Tractions<'a> {
     pub pressure: &'a mut [f64],
     /// Shear traction on the rail, scaled.
     pub shear: &'a mut [f64],
-    /// Slip velocity, [m/s], 0 outside the contact.
+    /// Slip velocity, `m/s`, 0 outside the contact.
     pub slip: &'a mut [f64],
     /// Penetration, scaled.
     pub penetration: &'a mut f64,
@@ -304,9 +304,9 @@ pub struct ProblemTangent<'a> {
     pub friction: &'a [f64],
     /// Of Σp; without effect where the penetration is given.
     pub total: f64,
-    /// Of ω r₀ − V, [m/s].
+    /// Of ω r₀ − V, `m/s`.
     pub rigid_slip: f64,
-    /// Of the strain speed's magnitude, [m/s].
+    /// Of the strain speed's magnitude, `m/s`.
     pub strain_speed: f64,
 }
 

@@ -6,7 +6,7 @@
 
 use crate::parameters::{MeshKind, Parameters};
 
-/// First cell under the surface at 41 depth nodes, [m]: a tenth of the thermal skin √(κ·2a/V) of one passage.
+/// First cell under the surface at 41 depth nodes, `m`: a tenth of the thermal skin √(κ·2a/V) of one passage.
 const FIRST_CELL: f64 = 10e-6;
 /// Cells outside the window on each side at 61 contact nodes.
 const OUTER_CELLS: f64 = 24.0;
@@ -23,9 +23,9 @@ pub struct Triangle {
 /// The triangulation.
 #[derive(Debug, Clone)]
 pub struct Mesh {
-    /// Positions x₁ of the columns, ascending, [m].
+    /// Positions x₁ of the columns, ascending, `m`.
     pub x: Vec<f64>,
-    /// Depths −x₂ of the rows below the surface, ascending from 0 to h, [m].
+    /// Depths −x₂ of the rows below the surface, ascending from 0 to h, `m`.
     pub depth: Vec<f64>,
     /// First column of the contact window.
     pub first_contact: usize,
@@ -52,7 +52,7 @@ impl Mesh {
     }
 
     /// `contact_nodes` evenly spaced over ±`half_width`, `outer` growing cells on each side to ±`length`, and
-    /// `cells` growing cells over the `height`, the first of them `first_cell` thick (lengths in [m]).
+    /// `cells` growing cells over the `height`, the first of them `first_cell` thick (lengths in `m`).
     pub fn graded(
         half_width: f64,
         contact_nodes: usize,
@@ -105,18 +105,18 @@ impl Mesh {
         self.first_contact + contact_node
     }
 
-    /// Position x₁ of a contact node, [m].
+    /// Position x₁ of a contact node, `m`.
     pub fn contact_position(&self, contact_node: usize) -> f64 {
         self.x[self.contact_column(contact_node)]
     }
 
-    /// Spacing of the contact nodes, their tributary length, [m].
+    /// Spacing of the contact nodes, their tributary length, `m`.
     pub fn contact_spacing(&self) -> f64 {
         let last = self.contact_nodes - 1;
         (self.contact_position(last) - self.contact_position(0)) / last as f64
     }
 
-    /// Half-width of the contact window, [m].
+    /// Half-width of the contact window, `m`.
     pub fn window_half_width(&self) -> f64 {
         self.contact_position(self.contact_nodes - 1)
     }
@@ -127,7 +127,7 @@ impl Mesh {
         row + 1 == self.rows() || column == 0 || column + 1 == self.columns()
     }
 
-    /// Coordinates (x₁, x₂) of a node, x₂ = 0 at the surface and negative below, [m].
+    /// Coordinates (x₁, x₂) of a node, x₂ = 0 at the surface and negative below, `m`.
     pub fn coordinates(&self, node: usize) -> [f64; 2] {
         [self.x[node / self.rows()], -self.depth[node % self.rows()]]
     }

@@ -94,7 +94,7 @@ fn contact_length(rail: &Rail, fields: &Fields) -> f64 {
     }
 }
 
-/// Wear depth at the end of the window where material leaves it; at rest the deepest, [m].
+/// Wear depth at the end of the window where material leaves it; at rest the deepest, `m`.
 fn wear_left_behind(rail: &Rail, fields: &Fields, rolling_speed: f64) -> f64 {
     let mesh = &rail.mesh;
     let window = &fields.wear[mesh.first_contact..mesh.first_contact + mesh.contact_nodes];

@@ -65,9 +65,9 @@ pub struct Parameters {
     pub control: Control,
     /// Which inputs define the motion.
     pub slip_source: SlipSource,
-    /// Penetration δ under [`Control::Penetration`], [m].
+    /// Penetration δ under [`Control::Penetration`], `m`.
     pub prescribed_penetration: f64,
-    /// Load that sizes the contact window, [N].
+    /// Load that sizes the contact window, `N`.
     pub largest_load: f64,
     /// Surface nodes in the contact window.
     pub contact_nodes: usize,
@@ -77,49 +77,49 @@ pub struct Parameters {
     pub normal_solver: NormalSolver,
     /// Which triangulation.
     pub mesh: MeshKind,
-    /// Wheel radius r₀, [m].
+    /// Wheel radius r₀, `m`.
     pub wheel_radius: f64,
-    /// Height h of the strip, [m].
+    /// Height h of the strip, `m`.
     pub strip_height: f64,
-    /// Half-length L of the strip, [m].
+    /// Half-length L of the strip, `m`.
     pub strip_half_length: f64,
-    /// Width b of the equivalent line contact, [m].
+    /// Width b of the equivalent line contact, `m`.
     pub contact_width: f64,
-    /// First Lamé coefficient λ, [Pa].
+    /// First Lamé coefficient λ, `Pa`.
     pub lame_lambda: f64,
-    /// Shear modulus γ (second Lamé coefficient), [Pa].
+    /// Shear modulus γ (second Lamé coefficient), `Pa`.
     pub shear_modulus: f64,
-    /// Density ρ, [kg/m³].
+    /// Density ρ, `kg/m³`.
     pub density: f64,
-    /// Heat capacity c_p, [J/(kg K)].
+    /// Heat capacity c_p, `J/(kg K)`.
     pub heat_capacity: f64,
-    /// Thermal diffusivity κ, [m²/s].
+    /// Thermal diffusivity κ, `m²/s`.
     pub thermal_diffusivity: f64,
-    /// Coefficient of thermal expansion α, [1/K]; 0 switches the thermal bulge off.
+    /// Coefficient of thermal expansion α, `1/K`; 0 switches the thermal bulge off.
     pub thermal_expansion: f64,
-    /// Share ᾱ of the frictional heat that enters the rail, [1].
+    /// Share ᾱ of the frictional heat that enters the rail, `1`.
     pub heat_partition: f64,
-    /// Thermal contact resistance r, [K·N·s/J]; 1e12 switches the conduction into the wheel off.
+    /// Thermal contact resistance r, `K·N·s/J`; 1e12 switches the conduction into the wheel off.
     pub contact_thermal_resistance: f64,
-    /// Archard's coefficient k, [1/Pa]; 0 switches wear off.
+    /// Archard's coefficient k, `1/Pa`; 0 switches wear off.
     pub wear_coefficient: f64,
-    /// Regularisation ε of Coulomb's law (30), [m/s].
+    /// Regularisation ε of Coulomb's law (30), `m/s`.
     pub slip_regularisation: f64,
     /// The friction law.
     pub friction_law: FrictionLaw,
-    /// Friction coefficient μ₀ of the cold contact, [1].
+    /// Friction coefficient μ₀ of the cold contact, `1`.
     pub friction_cold: f64,
-    /// Friction coefficient μ_F of the hot contact, [1].
+    /// Friction coefficient μ_F of the hot contact, `1`.
     pub friction_hot: f64,
-    /// Absolute temperature θ₀ up to which μ = μ₀, [K].
+    /// Absolute temperature θ₀ up to which μ = μ₀, `K`.
     pub friction_temperature_cold: f64,
-    /// Absolute temperature θ_F from which on μ = μ_F, [K].
+    /// Absolute temperature θ_F from which on μ = μ_F, `K`.
     pub friction_temperature_hot: f64,
     /// Number of valid points of the friction table.
     pub friction_table_points: usize,
-    /// Absolute temperatures of the friction table, ascending, [K].
+    /// Absolute temperatures of the friction table, ascending, `K`.
     pub friction_table_temperature: [f64; TABLE_POINTS],
-    /// Friction coefficients of the table, [1].
+    /// Friction coefficients of the table, `1`.
     pub friction_table_coefficient: [f64; TABLE_POINTS],
     /// Couple normal and tangential displacement (Dundurs). A rigid wheel on an elastic rail is coupled; the
     /// switch exists for the comparison with Carter's theory, which has identical bodies. Not an FMI parameter.
@@ -642,50 +642,50 @@ pub const REAL_PARAMETERS: &[RealParameter] = &[
 ];
 
 impl Parameters {
-    /// Young's modulus E, [Pa].
+    /// Young's modulus E, `Pa`.
     pub fn youngs_modulus(&self) -> f64 {
         let (lambda, shear) = (self.lame_lambda, self.shear_modulus);
         shear * (3.0 * lambda + 2.0 * shear) / (lambda + shear)
     }
 
-    /// Poisson's ratio ν, [1].
+    /// Poisson's ratio ν, `1`.
     pub fn poisson_ratio(&self) -> f64 {
         self.lame_lambda / (2.0 * (self.lame_lambda + self.shear_modulus))
     }
 
-    /// Contact modulus E* = E / (1 − ν²) of the rigid wheel on the elastic rail, [Pa].
+    /// Contact modulus E* = E / (1 − ν²) of the rigid wheel on the elastic rail, `Pa`.
     pub fn contact_modulus(&self) -> f64 {
         self.youngs_modulus() / (1.0 - self.poisson_ratio().powi(2))
     }
 
-    /// Hertz half-length a = √(4 N r₀ / (π b E*)) of a line contact, [m] (Johnson, Contact Mechanics, 4.43).
+    /// Hertz half-length a = √(4 N r₀ / (π b E*)) of a line contact, `m` (Johnson, Contact Mechanics, 4.43).
     pub fn hertz_half_length(&self, load: f64) -> f64 {
         (4.0 * load * self.wheel_radius / (std::f64::consts::PI * self.contact_width * self.contact_modulus())).sqrt()
     }
 
-    /// Hertz peak pressure p₀ = 2 N / (π a b), [Pa] (Johnson, Contact Mechanics, 4.45).
+    /// Hertz peak pressure p₀ = 2 N / (π a b), `Pa` (Johnson, Contact Mechanics, 4.45).
     pub fn hertz_peak_pressure(&self, load: f64) -> f64 {
         2.0 * load / (std::f64::consts::PI * self.hertz_half_length(load) * self.contact_width)
     }
 
-    /// Volumetric heat capacity ρ c_p, [J/(m³ K)].
+    /// Volumetric heat capacity ρ c_p, `J/(m³ K)`.
     pub fn volumetric_heat_capacity(&self) -> f64 {
         self.density * self.heat_capacity
     }
 
-    /// Rayleigh wave speed c_R ≈ c_s (0.862 + 1.14 ν)/(1 + ν), [m/s] (Viktorov's approximation).
+    /// Rayleigh wave speed c_R ≈ c_s (0.862 + 1.14 ν)/(1 + ν), `m/s` (Viktorov's approximation).
     pub fn rayleigh_speed(&self) -> f64 {
         let nu = self.poisson_ratio();
         (self.shear_modulus / self.density).sqrt() * (0.862 + 1.14 * nu) / (1.0 + nu)
     }
 
-    /// Largest rolling speed |V|, 5 % of the Rayleigh speed, [m/s]: the compliance is used to first order in V²,
+    /// Largest rolling speed |V|, 5 % of the Rayleigh speed, `m/s`: the compliance is used to first order in V²,
     /// with an error of (V/c_R)⁴ ≤ 6e-6.
     pub fn largest_speed(&self) -> f64 {
         0.05 * self.rayleigh_speed()
     }
 
-    /// Half-width of the contact window, [m]: the Hertz half-length at the largest load and a margin of a fifth for
+    /// Half-width of the contact window, `m`: the Hertz half-length at the largest load and a margin of a fifth for
     /// thermal bulge, friction coupling and wear.
     pub fn window_half_width(&self) -> f64 {
         1.2 * self.hertz_half_length(self.largest_load)

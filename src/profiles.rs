@@ -6,27 +6,27 @@ use crate::contact::{Fields, Rail};
 pub const PROFILE_POINTS: usize = 61;
 /// Points below the hottest contact point.
 pub const DEPTH_POINTS: usize = 41;
-/// Depth of the lowest of them, [m]; they are spaced quadratically.
+/// Depth of the lowest of them, `m`; they are spaced quadratically.
 const LARGEST_DEPTH: f64 = 10e-3;
 
 /// Profiles across the contact window, [`PROFILE_POINTS`] points each, and the temperature in depth.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Profiles {
-    /// Position, [m].
+    /// Position, `m`.
     pub x: Vec<f64>,
-    /// Pressure, [Pa].
+    /// Pressure, `Pa`.
     pub pressure: Vec<f64>,
-    /// Shear traction on the rail, [Pa].
+    /// Shear traction on the rail, `Pa`.
     pub shear: Vec<f64>,
-    /// Slip velocity, [m/s], 0 outside the contact.
+    /// Slip velocity, `m/s`, 0 outside the contact.
     pub slip: Vec<f64>,
-    /// Absolute surface temperature, [K].
+    /// Absolute surface temperature, `K`.
     pub temperature: Vec<f64>,
-    /// Wear depth, [m].
+    /// Wear depth, `m`.
     pub wear_depth: Vec<f64>,
-    /// Depth below the hottest contact point, [`DEPTH_POINTS`] points, [m].
+    /// Depth below the hottest contact point, [`DEPTH_POINTS`] points, `m`.
     pub depth: Vec<f64>,
-    /// Absolute temperature at that depth, [K].
+    /// Absolute temperature at that depth, `K`.
     pub depth_temperature: Vec<f64>,
 }
 

@@ -7,60 +7,60 @@ use serde::{Deserialize, Serialize};
 /// The continuous inputs at one instant.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Inputs {
-    /// Angular speed ω of the wheel, positive when it rolls towards +x₁, [rad/s].
+    /// Angular speed ω of the wheel, positive when it rolls towards +x₁, `rad/s`.
     pub wheel_speed: f64,
-    /// Normal load N, [N]; 0 is a lifted wheel.
+    /// Normal load N, `N`; 0 is a lifted wheel.
     pub normal_load: f64,
-    /// Creepage ξ = (ω r₀ − V)/V, [1]; used under [`SlipSource::Creepage`].
+    /// Creepage ξ = (ω r₀ − V)/V, `1`; used under [`SlipSource::Creepage`].
     pub creepage: f64,
-    /// Speed V of the wheel's axle along the rail, [m/s]; used under [`SlipSource::VehicleSpeed`].
+    /// Speed V of the wheel's axle along the rail, `m/s`; used under [`SlipSource::VehicleSpeed`].
     pub vehicle_speed: f64,
-    /// Factor on the friction coefficient (wet or contaminated rail, sanding), [1].
+    /// Factor on the friction coefficient (wet or contaminated rail, sanding), `1`.
     pub friction_scale: f64,
-    /// Ambient temperature, [K]; the rail's and the wheel's far away from the contact.
+    /// Ambient temperature, `K`; the rail's and the wheel's far away from the contact.
     pub ambient_temperature: f64,
 }
 
 /// The outputs at one instant.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Outputs {
-    /// Force T on the wheel along x₁, [N].
+    /// Force T on the wheel along x₁, `N`.
     pub traction_force: f64,
-    /// Torque −(T r₀ + N e) on the wheel about its axle, [N·m].
+    /// Torque −(T r₀ + N e) on the wheel about its axle, `N·m`.
     pub friction_torque: f64,
-    /// Largest absolute temperature of the rail surface, [K].
+    /// Largest absolute temperature of the rail surface, `K`.
     pub peak_temperature: f64,
-    /// T / N, [1]; 0 when lifted.
+    /// T / N, `1`; 0 when lifted.
     pub traction_coefficient: f64,
-    /// ξ = (ω r₀ − V)/V, [1].
+    /// ξ = (ω r₀ − V)/V, `1`.
     pub slip_creepage: f64,
-    /// Penetration δ, [m]; 0 when lifted.
+    /// Penetration δ, `m`; 0 when lifted.
     pub penetration: f64,
-    /// Length of the contact, [m].
+    /// Length of the contact, `m`.
     pub contact_length: f64,
-    /// Position e of the pressure's resultant ahead of the axle, [m].
+    /// Position e of the pressure's resultant ahead of the axle, `m`.
     pub contact_offset: f64,
-    /// Largest contact pressure, [Pa].
+    /// Largest contact pressure, `Pa`.
     pub peak_pressure: f64,
-    /// Largest magnitude of the shear traction, [Pa].
+    /// Largest magnitude of the shear traction, `Pa`.
     pub peak_shear: f64,
-    /// Share of the contact that sticks, [1].
+    /// Share of the contact that sticks, `1`.
     pub stick_fraction: f64,
-    /// Pressure-weighted mean of μ(θ), [1].
+    /// Pressure-weighted mean of μ(θ), `1`.
     pub friction_coefficient: f64,
-    /// Friction power b ∫ |τ s| dx, [W].
+    /// Friction power b ∫ |τ s| dx, `W`.
     pub friction_power: f64,
-    /// Heat flowing into the rail through the contact, [W].
+    /// Heat flowing into the rail through the contact, `W`.
     pub rail_heat_flow: f64,
-    /// Wear depth that one passage leaves behind the contact, [m].
+    /// Wear depth that one passage leaves behind the contact, `m`.
     pub wear_depth: f64,
-    /// Volume worn per time, [m³/s].
+    /// Volume worn per time, `m³/s`.
     pub wear_rate: f64,
-    /// Volume worn since the start, [m³].
+    /// Volume worn since the start, `m³`.
     pub worn_volume: f64,
-    /// Friction work since the start, [J].
+    /// Friction work since the start, `J`.
     pub friction_energy: f64,
-    /// Distance ∫|V| dt rolled since the start, [m].
+    /// Distance ∫|V| dt rolled since the start, `m`.
     pub distance: f64,
 }
 
@@ -196,9 +196,9 @@ const ROUNDING: f64 = 1e-12;
 /// Rolling of the wheel at one instant.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Motion {
-    /// Speed V of the axle along the rail, [m/s].
+    /// Speed V of the axle along the rail, `m/s`.
     pub rolling_speed: f64,
-    /// Rigid slip ω r₀ − V, [m/s].
+    /// Rigid slip ω r₀ − V, `m/s`.
     pub rigid_slip: f64,
 }
 

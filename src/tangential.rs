@@ -5,7 +5,7 @@
 //! s = (ω r₀ − V) + |V|/Δx (u₁ − u₁ of the node ahead); the bracket is called strain here.
 //!
 //! The problem is posed around the tractions of the sweep before: pressure and strain there are given, and how both
-//! respond to a change of τ (see [`crate::mechanics::Response`]). Tractions and displacements are scaled, speeds in m/s.
+//! respond to a change of τ (see `Response` of [`crate::mechanics`]). Tractions and displacements are scaled, speeds in m/s.
 
 use crate::dense;
 use crate::error::{Error, Result};
@@ -24,11 +24,11 @@ pub struct TangentialProblem<'a> {
     pub strain_response: &'a [f64],
     /// μ, m.
     pub friction: &'a [f64],
-    /// ω r₀ − V, [m/s].
+    /// ω r₀ − V, `m/s`.
     pub rigid_slip: f64,
-    /// |V| times the displacement scale over the node spacing, [m/s].
+    /// |V| times the displacement scale over the node spacing, `m/s`.
     pub strain_speed: f64,
-    /// ε, [m/s].
+    /// ε, `m/s`.
     pub regularisation: f64,
     /// Newton step at which the iteration stops, relative to the largest pressure.
     pub tolerance: f64,
@@ -39,7 +39,7 @@ pub struct TangentialProblem<'a> {
 pub struct Point<'a> {
     /// Pressure, scaled.
     pub pressure: &'a [f64],
-    /// Slip velocity, [m/s].
+    /// Slip velocity, `m/s`.
     pub slip: &'a [f64],
 }
 
@@ -92,7 +92,7 @@ impl Tangential {
         self.factored = false;
     }
 
-    /// Slip velocities of the last solve, [m/s], on the nodes of its problem.
+    /// Slip velocities of the last solve, `m/s`, on the nodes of its problem.
     pub fn slip(&self) -> &[f64] {
         &self.slip
     }
@@ -219,11 +219,11 @@ impl Tangential {
         dense::multiply(problem.pressure_response, m, &self.change, &mut self.pressure);
         dense::multiply(problem.strain_response, m, &self.change, &mut self.strain);
         let mut square = 0.0;
-        for i in 0..m {
+        for (i, shear) in shear.iter().enumerate() {
             self.pressure[i] = (problem.pressure[i] + self.pressure[i]).max(0.0);
             self.slip[i] = problem.rigid_slip + problem.strain_speed * (problem.strain[i] + self.strain[i]);
             let bound = problem.friction[i] * self.pressure[i];
-            self.residual[i] = shear[i] + self.change[i] + bound * saturation(self.slip[i], regularisation);
+            self.residual[i] = shear + self.change[i] + bound * saturation(self.slip[i], regularisation);
             square += self.residual[i] * self.residual[i];
         }
         square.sqrt()

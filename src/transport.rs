@@ -14,22 +14,22 @@ pub struct Column {
     pub index: usize,
     /// The column upstream of it.
     pub upstream: usize,
-    /// Distance to the column upstream, [m].
+    /// Distance to the column upstream, `m`.
     pub spacing: f64,
 }
 
 impl<'a> Upwind<'a> {
-    /// March over columns at positions `x` [m] for the speed V [m/s]; V = 0 counts as forward.
+    /// March over columns at positions `x` `m` for the speed V `m/s`; V = 0 counts as forward.
     pub fn new(x: &'a [f64], speed: f64) -> Upwind<'a> {
         Upwind { x, speed }
     }
 
-    /// |V|, [m/s].
+    /// |V|, `m/s`.
     pub fn speed(&self) -> f64 {
         self.speed.abs()
     }
 
-    /// Position of a column, [m].
+    /// Position of a column, `m`.
     pub fn position(&self, column: usize) -> f64 {
         self.x[column]
     }

@@ -3,8 +3,8 @@
 use crate::transport::Upwind;
 use nalgebra::DMatrix;
 
-/// One implicit time step: the wear depth `after` at all columns, [m], from `before`, under the wear rate
-/// k |s| p at the contact nodes [m/s], the first of which is the column `first_contact`.
+/// One implicit time step: the wear depth `after` at all columns, `m`, from `before`, under the wear rate
+/// k |s| p at the contact nodes `m/s`, the first of which is the column `first_contact`.
 pub fn advance(
     transport: &Upwind,
     duration: f64,
@@ -52,7 +52,7 @@ impl Softening {
     pub fn new(compliance: &DMatrix<f64>) -> Softening {
         let n = compliance.nrows();
         // The least compliant pressure alternates from node to node.
-        let sign = |i: usize| if i % 2 == 0 { 1.0 } else { -1.0 };
+        let sign = |i: usize| if i.is_multiple_of(2) { 1.0 } else { -1.0 };
         let mut alternating = 0.0;
         for i in 0..n {
             for j in 0..n {
@@ -79,7 +79,7 @@ impl Softening {
         self.stale = true;
     }
 
-    /// Adapts to slip velocities [m/s] and step: `per_slip` is the wear rate per pressure and slip, `storage` 1/Δt and
+    /// Adapts to slip velocities `m/s` and step: `per_slip` is the wear rate per pressure and slip, `storage` 1/Δt and
     /// `advection` |V|/Δx. Returns whether the compliance changed.
     pub fn update(
         &mut self,

@@ -37,11 +37,11 @@ pub struct Workspace {
 /// Everything that changes in time.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct State {
-    /// Time since the start, [s].
+    /// Time since the start, `s`.
     pub time: f64,
     /// Inputs at the last committed instant.
     pub inputs: Inputs,
-    /// Length of the last committed sub-step, [s]; 0 before the first.
+    /// Length of the last committed sub-step, `s`; 0 before the first.
     pub duration: f64,
     /// Temperature, wear, tractions.
     pub fields: Fields,
@@ -58,7 +58,7 @@ pub struct State {
 /// A step that did not reach its end: the state stands at the last committed sub-step.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Interrupted {
-    /// Time that was committed of the step, [s]; 0 when nothing was.
+    /// Time that was committed of the step, `s`; 0 when nothing was.
     pub committed: f64,
     /// Why the next sub-step failed.
     pub error: Error,
@@ -149,7 +149,7 @@ impl Model {
             && state.inputs.check(&self.parameters).is_ok()
     }
 
-    /// Advances the state by `duration` [s]; the inputs start at `inputs` and change at `rates` per second.
+    /// Advances the state by `duration` `s`; the inputs start at `inputs` and change at `rates` per second.
     ///
     /// The step is implicit in time, of order 1. It is divided after a jump of the inputs, from a quarter of the
     /// passage of the contact window on with doubling sub-steps, and where the rates change the inputs by more
@@ -283,7 +283,7 @@ impl Model {
             ))
     }
 
-    /// Time in which rail material crosses the contact window, [s]; infinite at rest.
+    /// Time in which rail material crosses the contact window, `s`; infinite at rest.
     fn passage_time(&self, inputs: &Inputs) -> f64 {
         2.0 * self.rail.mesh.window_half_width() / inputs.motion(&self.parameters).rolling_speed.abs()
     }

@@ -71,7 +71,11 @@ fn inputs(step: u32) -> Inputs {
     Inputs {
         vehicle_speed,
         wheel_speed: vehicle_speed * (1.0 + creepage) / Parameters::default().wheel_radius,
-        normal_load: if step % 83 == 0 { 0.0 } else { 40e3 + 1.5e3 * phase },
+        normal_load: if step.is_multiple_of(83) {
+            0.0
+        } else {
+            40e3 + 1.5e3 * phase
+        },
         friction_scale: 0.3 + 0.02 * phase,
         ..Inputs::default()
     }

@@ -14,7 +14,7 @@ const SOURCE: &str = "identity of the discrete equations";
 /// The operator split rests at 1e-10 of the temperature, which moves μ, and so the friction power, by less.
 const TOLERANCE: f64 = 1e-10;
 
-/// Terms of the balance over one step, [W].
+/// Terms of the balance over one step, `W`.
 #[derive(Debug, Clone, Copy, Default)]
 struct Balance {
     stored: f64,
@@ -45,7 +45,7 @@ impl Balance {
     }
 }
 
-/// Speed [m/s], wheel's circumferential speed [m/s] and load [N] of one step; changes below a fifth, so that the step
+/// Speed `m/s`, wheel's circumferential speed `m/s` and load `N` of one step; changes below a fifth, so that the step
 /// is not divided.
 type Step = (f64, f64, f64);
 

@@ -53,7 +53,7 @@ pub fn rows() -> Result<Vec<Row>> {
     Ok(rows)
 }
 
-/// Middle of the contact zone by the resultant of the pressure, [m].
+/// Middle of the contact zone by the resultant of the pressure, `m`.
 fn middle(run: &Run) -> f64 {
     run.state.outputs.contact_offset
 }

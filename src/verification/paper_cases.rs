@@ -12,13 +12,13 @@ const PROTOTYPE: &str = "independent prototype, 61 nodes over 12 mm";
 const PAPER: &str = "the paper, section 5";
 /// Two discretisations of first order along x₁ with some 40 nodes in contact.
 const TOLERANCE: f64 = 0.03;
-/// 0 °C, the paper's ambient, [K].
+/// 0 °C, the paper's ambient, `K`.
 const AMBIENT: f64 = 273.15;
 
-/// Name and hot temperature θ_F [°C] of the cases with a temperature-dependent coefficient.
+/// Name and hot temperature θ_F `°C` of the cases with a temperature-dependent coefficient.
 pub const CASES: [(&str, f64); 3] = [("a", 150.0), ("b", 125.0), ("c", 100.0)];
 
-/// Parameters of a case: constant μ without a hot temperature [°C].
+/// Parameters of a case: constant μ without a hot temperature `°C`.
 pub fn parameters(hot: Option<f64>) -> Parameters {
     let mut parameters = Parameters {
         control: Control::Penetration,

@@ -31,7 +31,7 @@ impl Run {
         })
     }
 
-    /// One communication step of `duration` [s] under constant inputs.
+    /// One communication step of `duration` `s` under constant inputs.
     ///
     /// # Errors
     /// The reason of an interrupted step.
@@ -41,7 +41,7 @@ impl Run {
             .map_err(|interrupted| interrupted.error)
     }
 
-    /// Constant inputs, held in `steps` steps of `duration` [s] each. Returns the outputs at the end.
+    /// Constant inputs, held in `steps` steps of `duration` `s` each. Returns the outputs at the end.
     ///
     /// # Errors
     /// The reason of an interrupted step.
@@ -52,8 +52,8 @@ impl Run {
         Ok(&self.state.outputs)
     }
 
-    /// Contact nodes from the rear of the contact to its front for +V: position [m], pressure [Pa], shear traction
-    /// [Pa], slip velocity [m/s].
+    /// Contact nodes from the rear of the contact to its front for +V: position `m`, pressure `Pa`, shear traction
+    /// `Pa`, slip velocity `m/s`.
     pub fn contact_nodes(&self) -> Vec<ContactNode> {
         let (mesh, scale) = (&self.model.rail().mesh, self.model.rail().scales.pressure);
         let fields = &self.state.fields;
@@ -72,14 +72,14 @@ impl Run {
 /// The fields at one surface node of the contact window.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ContactNode {
-    /// x₁, [m].
+    /// x₁, `m`.
     pub position: f64,
-    /// Pressure, [Pa].
+    /// Pressure, `Pa`.
     pub pressure: f64,
-    /// Shear traction on the rail, [Pa].
+    /// Shear traction on the rail, `Pa`.
     pub shear: f64,
-    /// Slip velocity, [m/s]; 0 outside the contact.
+    /// Slip velocity, `m/s`; 0 outside the contact.
     pub slip: f64,
-    /// Temperature rise, [K].
+    /// Temperature rise, `K`.
     pub temperature: f64,
 }

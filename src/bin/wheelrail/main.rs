@@ -24,7 +24,7 @@ enum Command {
     Describe(describe::Describe),
     /// Simulate a scenario natively, without FMI, and write inputs and outputs as CSV.
     ///
-    /// The scenario is a table with a header: a column `time` [s], ascending, and a column for each input that changes,
+    /// The scenario is a table with a header: a column `time` `s`, ascending, and a column for each input that changes,
     /// in SI units. Between its rows the inputs are interpolated linearly; other inputs keep their start values. Lines
     /// that begin with # are comments.
     Simulate(simulate::Simulate),

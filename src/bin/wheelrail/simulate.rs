@@ -19,7 +19,7 @@ pub struct Simulate {
     /// Where time, all inputs and all outputs go.
     #[arg(short, long, value_name = "OUT.csv")]
     output: PathBuf,
-    /// Communication step, [s].
+    /// Communication step, `s`.
     #[arg(long, value_name = "SECONDS", default_value_t = 1e-3)]
     step: f64,
     /// A parameter, as thermal_expansion=0; `wheelrail describe` lists them. Repeatable.
@@ -212,7 +212,7 @@ fn progress(steps: u64) -> ProgressBar {
     ProgressBar::new(steps).with_style(style)
 }
 
-/// Rates that lead from one set of inputs to another in `time` [s].
+/// Rates that lead from one set of inputs to another in `time` `s`.
 fn rates(from: &Inputs, to: &Inputs, time: f64) -> Inputs {
     let mut rates = Inputs::ZERO;
     for signal in INPUTS {
