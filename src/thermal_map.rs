@@ -3,7 +3,7 @@
 //! The exact map is dense: 2n rows by all nodes of the mesh, memory-bound in a step. But the displacement is smooth in
 //! the depth of its cause, so that per column a few weighted integrals over the depth ("moments") carry it, and all
 //! but the first of them act close to their column only. The weights are common to all columns: the leading right
-//! singular vectors of the map over the profiles that a heated surface can make ([`heated_profiles`]). Of every
+//! singular vectors of the map over the profiles that a heated surface can make (`heated_profiles`). Of every
 //! moment of a column only the rows are kept where it matters.
 
 use crate::compliance::ThermalDisplacement;
