@@ -7,6 +7,9 @@ use wheelrail::signals::{Inputs, INPUTS, OUTPUTS};
 use wheelrail::wheel_rail::{Model, State, Workspace};
 
 const STEP: f64 = 1e-3;
+/// Relative change of the inputs in the step that is differentiated. Without it the operator split would rest after two
+/// iterations, and the difference quotient miss the derivative by the square of the contraction, up to 1e-3 whatever its step.
+const MOVE: f64 = 0.02;
 
 fn settled(model: &Model, workspace: &mut Workspace, inputs: &Inputs) -> State {
     let mut state = model.initial_state(workspace, inputs).unwrap();
@@ -16,9 +19,17 @@ fn settled(model: &Model, workspace: &mut Workspace, inputs: &Inputs) -> State {
     state
 }
 
+/// What changes the contact appreciably.
+fn nominal(model: &Model, input: usize) -> f64 {
+    match INPUTS[input].name {
+        "creepage" => 1e-3,
+        "wheel_speed" | "vehicle_speed" if model.parameters().slip_source == SlipSource::VehicleSpeed => 1e-2,
+        _ => INPUTS[input].nominal,
+    }
+}
+
 /// Central difference of all outputs with respect to one input over a step from `state`, and whether the outputs are
-/// smooth between the two ends: forward and backward differences agree, so that no node joined or left the contact and
-/// no corner of the friction law was crossed.
+/// smooth between the two ends: no node joined or left the contact and no corner of the friction law was crossed.
 fn difference(
     model: &Model,
     workspace: &mut Workspace,
@@ -26,12 +37,7 @@ fn difference(
     inputs: &Inputs,
     input: usize,
 ) -> (Vec<f64>, Vec<bool>) {
-    let signal = &INPUTS[input];
-    let nominal = match signal.name {
-        "creepage" => 1e-3,
-        "wheel_speed" | "vehicle_speed" if model.parameters().slip_source == SlipSource::VehicleSpeed => 1e-2,
-        _ => signal.nominal,
-    };
+    let (signal, nominal) = (&INPUTS[input], nominal(model, input));
     let mut run = |change: f64| {
         let mut moved = *inputs;
         (signal.set)(&mut moved, (signal.get)(inputs) + change);
@@ -60,10 +66,21 @@ fn difference(
             (output.get)(&ahead.outputs),
             (output.get)(&behind.outputs),
         );
-        let (forward, backward) = ((a - c) / h, (c - b) / h);
-        smooth.push(smooth_set && (forward - backward).abs() <= 2e-3 * forward.abs().max(backward.abs()));
+        let (forward, backward) = (a - c, c - b);
+        let (further_ahead, further_behind) = (
+            (output.get)(&further_ahead.outputs),
+            (output.get)(&further_behind.outputs),
+        );
+        // A corner shows in the first or second differences over one and two steps, wherever it lies between.
+        let further = further_ahead - further_behind;
+        let further_curvature = further_ahead - 2.0 * c + further_behind;
+        let allowed = 3e-5 * further.abs() + 4e-9 * output.nominal.max(c.abs());
+        smooth.push(
+            smooth_set
+                && (further - 2.0 * (forward + backward)).abs() <= allowed
+                && (further_curvature - 4.0 * (forward - backward)).abs() <= allowed,
+        );
         // Richardson's extrapolation takes the curvature out.
-        let further = (output.get)(&further_ahead.outputs) - (output.get)(&further_behind.outputs);
         derivative.push((8.0 * (a - b) - further) / (12.0 * h));
     }
     (derivative, smooth)
@@ -72,7 +89,11 @@ fn difference(
 fn check(parameters: Parameters, inputs: Inputs) -> usize {
     let model = Model::new(parameters).unwrap();
     let mut workspace = model.workspace();
-    let before = settled(&model, &mut workspace, &inputs);
+    let mut moved = inputs;
+    for signal in INPUTS {
+        (signal.set)(&mut moved, (signal.get)(&inputs) * (1.0 + MOVE));
+    }
+    let before = settled(&model, &mut workspace, &moved);
     let mut state = before.clone();
     model
         .step(&mut workspace, &mut state, &inputs, &Inputs::ZERO, STEP)
@@ -83,13 +104,12 @@ fn check(parameters: Parameters, inputs: Inputs) -> usize {
         let (differences, smooth) = difference(&model, &mut workspace, &before, &inputs, row);
         for (index, output) in OUTPUTS.iter().enumerate() {
             let exact = (input.get)(&sensitivities[index]);
-            let scale = output.nominal.max((output.get)(&state.outputs).abs()) / input.nominal;
+            let scale = output.nominal.max((output.get)(&state.outputs).abs()) / nominal(&model, row);
             if !smooth[index] {
                 continue;
             }
-            // Wide: at most points the two agree to 1e-4, at some in stick or at high speed a difference over so small a
-            // step deviates by up to 1e-3, for a reason not found yet. A dropped term shows at these bounds all the same.
-            let tolerance = 5e-3 * exact.abs() + 1e-4 * scale;
+            // 1e-4 of the derivative; below, the split's tolerance of 1e-9 over the relative step of a difference.
+            let tolerance = 1e-4 * exact.abs() + 4e-6 * scale;
             compared += 1;
             assert!(
                 (exact - differences[index]).abs() <= tolerance,
@@ -106,7 +126,6 @@ fn check(parameters: Parameters, inputs: Inputs) -> usize {
 proptest! {
     #![proptest_config(ProptestConfig { cases: 12, ..ProptestConfig::default() })]
     #[test]
-    #[ignore = "contact_offset, penetration and peak_pressure deviate by up to 7e-3 at some points: open"]
     fn sensitivities_are_the_derivatives_of_a_step(
         creepage in prop_oneof![Just(0.0), -0.003..0.003, 0.005..0.2, -0.2..-0.005],
         speed in 2.0..40.0,
@@ -119,8 +138,6 @@ proptest! {
         let parameters = Parameters {
             slip_source: if vehicle { SlipSource::VehicleSpeed } else { SlipSource::Creepage },
             friction_law: law,
-            // With wear on, peak pressure and penetration of a sticking contact deviate by up to 7e-4: not explained yet.
-            wear_coefficient: 0.0,
             ..Parameters::default()
         };
         let direction = if reverse { -1.0 } else { 1.0 };
