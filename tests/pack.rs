@@ -1,0 +1,193 @@
+//! `wheelrail pack`: the archive's content, several platforms in one archive, and the same bytes from the same sources.
+
+use std::fs::{read, write, File};
+use std::io::Read;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+use wheelrail::fmi2::GUID;
+use zip::{CompressionMethod, DateTime, ZipArchive};
+
+/// A folder of its own for each test.
+fn folder(name: &str) -> PathBuf {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
+    std::fs::create_dir_all(&folder).unwrap();
+    folder
+}
+
+/// What passes for a library of this build: it carries the GUID.
+fn library(path: &Path, content: &str) {
+    write(path, format!("{content}{GUID}{content}")).unwrap();
+}
+
+fn pack(folder: &Path, arguments: &[&str]) -> Output {
+    library(&folder.join("own.so"), "this platform");
+    let library = folder.join("own.so");
+    Command::new(env!("CARGO_BIN_EXE_wheelrail"))
+        .current_dir(env!("CARGO_MANIFEST_DIR"))
+        .arg("pack")
+        .arg("--library")
+        .arg(library)
+        .args(arguments)
+        .output()
+        .unwrap()
+}
+
+#[track_caller]
+fn packed(folder: &Path, name: &str, arguments: &[&str]) -> PathBuf {
+    let path = folder.join(name);
+    let output = pack(folder, &[arguments, &["--output", path.to_str().unwrap()]].concat());
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    path
+}
+
+/// The message of a refusal.
+#[track_caller]
+fn refused(folder: &Path, arguments: &[&str]) -> String {
+    let path = folder.join("refused.fmu");
+    let output = pack(folder, &[arguments, &["--output", path.to_str().unwrap()]].concat());
+    assert_eq!(output.status.code(), Some(1));
+    assert!(!path.exists());
+    String::from_utf8(output.stderr).unwrap()
+}
+
+fn binaries(path: &Path) -> Vec<String> {
+    let archive = ZipArchive::new(File::open(path).unwrap()).unwrap();
+    let names = archive
+        .file_names()
+        .filter_map(|name| name.ok()?.strip_prefix("binaries/").map(str::to_owned));
+    let mut names: Vec<_> = names.collect();
+    names.sort();
+    names
+}
+
+/// The folder of this platform's library and its name.
+fn own() -> String {
+    let (system, extension) = match std::env::consts::OS {
+        "windows" => ("win", "dll"),
+        "macos" => ("darwin", "dylib"),
+        system => (system, "so"),
+    };
+    format!("{system}{}/wheelrail.{extension}", usize::BITS)
+}
+
+#[test]
+fn the_archive_is_as_the_standard_wants_it() {
+    let folder = folder("content");
+    let path = packed(&folder, "a.fmu", &[]);
+    let mut archive = ZipArchive::new(File::open(path).unwrap()).unwrap();
+    let mut names = Vec::new();
+    for index in 0..archive.len() {
+        let mut entry = archive.by_index(index).unwrap();
+        let name = entry.name().unwrap().into_owned();
+        assert!(entry.is_file() && !entry.is_symlink(), "{name}");
+        assert!(
+            [CompressionMethod::Stored, CompressionMethod::Deflated].contains(&entry.compression()),
+            "{name}"
+        );
+        assert_eq!(entry.last_modified(), Some(DateTime::default()), "{name}");
+        let mut content = Vec::new();
+        entry.read_to_end(&mut content).unwrap();
+        if name == "modelDescription.xml" {
+            assert_eq!(content, read("modelDescription/modelDescription.xml").unwrap());
+        }
+        names.push(name);
+    }
+    for name in ["modelDescription.xml", "model.png", "documentation/index.html"] {
+        assert!(names.iter().any(|n| n == name), "{name}");
+    }
+    assert!(names.iter().any(|name| name.starts_with("documentation/licenses/")));
+    assert!(names.contains(&format!("binaries/{}", own())));
+}
+
+#[test]
+fn the_same_sources_give_the_same_bytes() {
+    let folder = folder("same");
+    let other = folder.join("other.dll");
+    library(&other, "another platform");
+    let binary = format!("win64={}", other.display());
+    let first = packed(&folder, "first.fmu", &["--binary", &binary]);
+    // The dates of the files are other ones.
+    library(&other, "another platform");
+    let second = packed(&folder, "second.fmu", &["--binary", &binary]);
+    assert_eq!(read(first).unwrap(), read(second).unwrap());
+}
+
+#[test]
+fn libraries_of_other_platforms_are_added_and_merged() {
+    let folder = folder("merged");
+    let (windows, mac) = (folder.join("w.dll"), folder.join("m.dylib"));
+    library(&windows, "windows");
+    library(&mac, "mac");
+    let win = format!("win64={}", windows.display());
+    let darwin = format!("darwin64={}", mac.display());
+    let both = packed(&folder, "both.fmu", &["--binary", &win, "--binary", &darwin]);
+    let mut expected = vec![
+        "darwin64/wheelrail.dylib".to_owned(),
+        own(),
+        "win64/wheelrail.dll".to_owned(),
+    ];
+    expected.sort();
+    assert_eq!(binaries(&both), expected);
+    // Merged from archives, in any order, it is the same archive.
+    let first = packed(&folder, "first.fmu", &["--binary", &win]);
+    let second = packed(&folder, "second.fmu", &["--binary", &darwin]);
+    for order in [[&first, &second], [&second, &first]] {
+        let [a, b] = order.map(|path| path.to_str().unwrap());
+        let merged = packed(&folder, "merged.fmu", &["--merge", a, "--merge", b]);
+        assert_eq!(read(&merged).unwrap(), read(&both).unwrap());
+    }
+}
+
+#[test]
+fn what_does_not_belong_together_is_refused() {
+    let folder = folder("refused");
+    // A library of another build.
+    let stale = folder.join("stale.dll");
+    write(&stale, "no GUID").unwrap();
+    let message = refused(&folder, &["--binary", &format!("win64={}", stale.display())]);
+    assert!(
+        message.contains("was not built with this model description") && message.contains(GUID),
+        "{message}"
+    );
+    // Two libraries for one platform.
+    let (first, second) = (folder.join("1.dll"), folder.join("2.dll"));
+    library(&first, "one");
+    library(&second, "two");
+    let platform = |path: &Path| format!("win64={}", path.display());
+    let message = refused(
+        &folder,
+        &["--binary", &platform(&first), "--binary", &platform(&second)],
+    );
+    assert!(
+        message.contains("binaries/win64/wheelrail.dll is there twice"),
+        "{message}"
+    );
+    let archive = packed(&folder, "one.fmu", &["--binary", &platform(&first)]);
+    let message = refused(
+        &folder,
+        &["--binary", &platform(&second), "--merge", archive.to_str().unwrap()],
+    );
+    assert!(message.contains("is there twice"), "{message}");
+    // An archive of other sources, something that is no archive, nothing at all.
+    let foreign = folder.join("foreign.fmu");
+    let mut writer = zip::ZipWriter::new(File::create(&foreign).unwrap());
+    let options = zip::write::SimpleFileOptions::default().compression_method(CompressionMethod::Stored);
+    writer.start_file("modelDescription.xml", options).unwrap();
+    writer.finish().unwrap();
+    let message = refused(&folder, &["--merge", foreign.to_str().unwrap()]);
+    assert!(message.contains("another modelDescription.xml"), "{message}");
+    let message = refused(&folder, &["--merge", stale.to_str().unwrap()]);
+    assert!(message.contains("stale.dll"), "{message}");
+    let message = refused(&folder, &["--merge", folder.join("missing.fmu").to_str().unwrap()]);
+    assert!(message.contains("missing.fmu"), "{message}");
+}
+
+#[test]
+fn a_platform_is_named_before_its_file() {
+    let folder = folder("usage");
+    for argument in ["win64", "=a.dll", "../x=a.dll"] {
+        let output = pack(&folder, &["--binary", argument]);
+        assert_eq!(output.status.code(), Some(2), "{argument}");
+        assert!(String::from_utf8_lossy(&output.stderr).contains("PLATFORM=FILE"));
+    }
+}
