@@ -119,10 +119,11 @@ impl<'a> Linearisation<'a> {
             if self.marches {
                 self.wear_tangent(change, &mut tangent);
                 self.temperature_tangent(change, &mut tangent);
-                self.contact
-                    .rail
-                    .thermal_map
-                    .apply(&tangent.temperature, &mut tangent.thermal_displacement);
+                self.contact.rail.thermal_map.apply(
+                    &tangent.temperature,
+                    &mut self.scratch.moments,
+                    &mut tangent.thermal_displacement,
+                );
             }
             self.contact.gather(&tangent, &self.scratch.softening, &mut image);
             residual = tangent
