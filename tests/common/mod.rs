@@ -120,10 +120,12 @@ unsafe extern "C" fn collect(
         // SAFETY: the library hands over strings ended by zero.
         unsafe { CStr::from_ptr(pointer) }.to_str().expect("UTF-8").to_owned()
     };
+    // SAFETY: ended by zero; whatever bytes the importer gave.
+    let instance_name = unsafe { CStr::from_ptr(instance_name) }.to_string_lossy().into_owned();
     // SAFETY: the environment is the journal of the client, which outlives its instance.
     let journal = unsafe { &*environment.cast::<Journal>() };
     journal.borrow_mut().push(Message {
-        instance_name: string(instance_name),
+        instance_name,
         status,
         category: string(category),
         format: string(format),
