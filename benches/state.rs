@@ -1,7 +1,7 @@
 //! What the interface costs: saving and restoring a state, its serialised form, and a step, each through the C functions of
 //! the shared library and natively, at default settings.
 
-#![allow(unsafe_code)]
+#![allow(unsafe_code, missing_docs)]
 
 #[path = "../tests/common/mod.rs"]
 mod common;

@@ -8,7 +8,7 @@ mod common;
 
 use common::{reference, Api, Client, Component, ERROR, OK};
 use std::collections::BTreeMap;
-use std::ffi::{c_int, OsString};
+use std::ffi::{c_int, CStr, CString, OsString};
 use std::fs::{read_dir, read_to_string};
 use std::path::PathBuf;
 
@@ -22,7 +22,7 @@ struct Surroundings {
     signal_handlers: Vec<usize>,
     directory: PathBuf,
     environment: BTreeMap<OsString, OsString>,
-    locale: Option<String>,
+    locale: CString,
     threads: usize,
     files: usize,
 }
@@ -36,20 +36,15 @@ impl Surroundings {
             std::arch::asm!("fnstcw [{}]", in(reg) &mut x87_control, options(nostack));
         }
         let count = |folder: &str| read_dir(folder).expect(folder).count();
-        // SAFETY: a null locale only asks.
-        let locale = unsafe { libc::setlocale(libc::LC_ALL, std::ptr::null()) };
+        // SAFETY: a null locale only asks; the answer is a string that stands until the next change.
+        let locale = unsafe { CStr::from_ptr(libc::setlocale(libc::LC_ALL, std::ptr::null())) }.to_owned();
         Surroundings {
             vector_control: vector_control & !0x3f,
             x87_control,
             signal_handlers: (1..32).map(handler).collect(),
             directory: std::env::current_dir().expect("a directory"),
             environment: std::env::vars_os().collect(),
-            // SAFETY: null or a string that stands until the next change of the locale.
-            locale: (!locale.is_null()).then(|| {
-                unsafe { std::ffi::CStr::from_ptr(locale) }
-                    .to_string_lossy()
-                    .into_owned()
-            }),
+            locale,
             threads: count("/proc/self/task"),
             files: count("/proc/self/fd"),
         }
