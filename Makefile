@@ -85,6 +85,8 @@ lint: $(VENV)/ready
 rust-test:
 	$(call say,Rust tests)
 	cargo test
+	cargo test --features panic-injection --test fmi2_panic
+	cargo test --features divergence-injection --test divergence
 
 verify: command
 	$(call say,Verification against closed forms and the paper)
