@@ -30,11 +30,11 @@ GLIBC := 2.17
 
 say = @printf '\n\033[1m== %s\033[0m\n' '$(1)'
 
-COUPLINGS := longitudinal stiff
+COUPLINGS := longitudinal stiff sweep
 WHEELSET := target/Wheelset.fmu
 
 .PHONY: fmu demo test docs bench clean lint rust-test verify python-test hosts library command couplings
-.PHONY: couplings-set-up $(addprefix coupling-,$(COUPLINGS))
+.PHONY: couplings-set-up sweep-scaling $(addprefix coupling-,$(COUPLINGS))
 
 # ---- set-up -------------------------------------------------------------------------------------------------------
 
@@ -91,6 +91,10 @@ couplings: $(addprefix coupling-,$(COUPLINGS))
 $(addprefix coupling-,$(COUPLINGS)): coupling-%: couplings-set-up
 	$(call say,Coupling: $*)
 	@$(PY) examples/$*.py
+
+# The time that the sweep takes on two workers against one.
+sweep-scaling: couplings-set-up
+	@$(PY) examples/sweep.py --scaling
 
 # ---- checks -------------------------------------------------------------------------------------------------------
 
