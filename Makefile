@@ -30,7 +30,7 @@ GLIBC := 2.17
 
 say = @printf '\n\033[1m== %s\033[0m\n' '$(1)'
 
-COUPLINGS := longitudinal stiff sweep
+COUPLINGS := longitudinal stiff multibody sweep
 WHEELSET := target/Wheelset.fmu
 
 .PHONY: fmu demo test docs bench clean lint rust-test verify python-test hosts library command couplings
