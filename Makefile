@@ -34,7 +34,7 @@ COUPLINGS := longitudinal stiff multibody sweep
 WHEELSET := target/Wheelset.fmu
 
 .PHONY: fmu demo test docs bench clean lint rust-test verify python-test hosts library command couplings
-.PHONY: couplings-set-up sweep-scaling $(addprefix coupling-,$(COUPLINGS))
+.PHONY: couplings-set-up couplings-docs sweep-scaling $(addprefix coupling-,$(COUPLINGS))
 
 # ---- set-up -------------------------------------------------------------------------------------------------------
 
@@ -91,6 +91,10 @@ couplings: $(addprefix coupling-,$(COUPLINGS))
 $(addprefix coupling-,$(COUPLINGS)): coupling-%: couplings-set-up
 	$(call say,Coupling: $*)
 	@$(PY) examples/$*.py
+
+# The pictures of the pages in docs/couplings/; commit what changes.
+couplings-docs: couplings
+	@cp results/longitudinal.png results/stiff.png results/multibody.png results/creep_curves.png docs/couplings/
 
 # The time that the sweep takes on two workers against one.
 sweep-scaling: couplings-set-up

@@ -206,8 +206,6 @@ class Bogie:
     def run(self, stop):
         """Integrate to the stop time, by generalised alpha; return the table of all steps."""
         self.stop = stop
-        # It would remark on the memory that user functions need.
-        exudyn.config.suppressWarnings = True
         settings = exudyn.SimulationSettings()
         settings.timeIntegration.numberOfSteps = round(stop / self.step_size)
         settings.timeIntegration.endTime = stop
@@ -216,7 +214,11 @@ class Bogie:
         settings.timeIntegration.newton.useModifiedNewton = True
         settings.solutionSettings.writeSolutionToFile = False
         settings.displayStatistics = False
-        if not self.mbs.SolveDynamic(settings):
+        # Quiet: it would remark on the memory that user functions take at each step.
+        exudyn.config.printToConsole = False
+        done = self.mbs.SolveDynamic(settings)
+        exudyn.config.printToConsole = True
+        if not done:
             raise RuntimeError(f"the multibody solver stopped at {self.time:g} s")
         names = [f"{name}_{axle}" for axle in ("front", "rear") for name in Axle.COLUMNS]
         names = ["time", *names, "frame_speed", "body_speed", "x", "bounce", "pitch", "body_bounce"]

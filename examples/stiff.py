@@ -107,7 +107,9 @@ def iterating(contact, speeds, forces, now, step, memory):
             memory["slope"] = np.column_stack([(residual(guess + change)[0] - left) / 1e-6 for change in changes])
         change = -np.linalg.solve(memory["slope"], left)
         after, answer = residual(guess + change)
-        while np.abs(after).max() > 2.0 * np.abs(left).max() + TOLERANCE:
+        for _ in range(10):
+            if np.abs(after).max() <= 2.0 * np.abs(left).max() + TOLERANCE:
+                break
             change *= 0.5
             after, answer = residual(guess + change)
         memory["slope"] += np.outer(after - left - memory["slope"] @ change, change) / (change @ change)

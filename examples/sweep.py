@@ -16,6 +16,7 @@ import shutil
 import sys
 import tempfile
 import time
+from contextlib import contextmanager
 from functools import cache
 from pathlib import Path
 
@@ -148,10 +149,14 @@ def gather(folder, laws=tuple(LAWS), speeds=SPEEDS, loads=LOADS):
     return pa.concat_tables([pq.read_table(part(folder, *key)) for key in itertools.product(laws, speeds, loads)])
 
 
+@contextmanager
 def local_client(workers):
     """Processes of one thread each on this machine."""
-    cluster = LocalCluster(n_workers=workers, threads_per_worker=1, dashboard_address="127.0.0.1:0")
-    return Client(cluster)
+    with (
+        LocalCluster(n_workers=workers, threads_per_worker=1, dashboard_address="127.0.0.1:0") as cluster,
+        Client(cluster) as client,
+    ):
+        yield client
 
 
 def scaling(rounds=3):
@@ -163,9 +168,13 @@ def scaling(rounds=3):
             began = time.perf_counter()
             count = sweep(client, Path(folder), quiet=True)
             seconds[workers].append(time.perf_counter() - began)
-            client.cluster.close()
+            used = sum(client.run(time.process_time).values())
         load = os.getloadavg()[0]
-        print(f"  {workers} worker(s): {count} curves in {seconds[workers][-1]:.1f} s, load {load:.1f}", flush=True)
+        print(
+            f"  {workers} worker(s): {count} curves in {seconds[workers][-1]:.1f} s,"
+            f" {used:.1f} s of processor time in the workers, load {load:.1f}",
+            flush=True,
+        )
     ratio = min(seconds[1]) / min(seconds[2])
     print(f"  best of {rounds}: {ratio:.2f} times as fast on two workers as on one, on {os.cpu_count()} cores")
 
@@ -242,8 +251,6 @@ def main():
             # Workers on this machine find it where this process does.
             client.upload_file(str(Path(__file__).with_name("helpers.py")))
         sweep(client, WORK)
-        if not chosen.scheduler:
-            client.cluster.close()
     table = gather(WORK)
     path = RESULTS / "creep_curves.parquet"
     pq.write_table(table, path)

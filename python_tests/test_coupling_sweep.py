@@ -33,7 +33,6 @@ sweep.write_part = slowly
 if __name__ == "__main__":
     with sweep.local_client(1) as client:
         count = sweep.sweep(client, Path(sys.argv[2]), **{small!r}, creepages={creepages!r})
-        client.cluster.close()
     print("computed", count, flush=True)
 """.replace("{small!r}", repr(SMALL)).replace("{creepages!r}", repr(CREEPAGES))
 
