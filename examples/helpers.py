@@ -167,6 +167,20 @@ def unpacked(fmu):
     return fmpy.extract(str(fmu), folder)
 
 
+def reused(fmu, **start_values):
+    """Return an instance as initialised: a process makes it once, and then goes back to its first state."""
+    instance, first = initialised(fmu, tuple(sorted(start_values.items())))
+    instance.restore(first)
+    return instance
+
+
+@cache
+def initialised(fmu, start_values):
+    """An instance and its state after the initialisation."""
+    instance = Instance(fmu, **dict(start_values)).start()
+    return instance, instance.save()
+
+
 def show(fraction, title):
     """A line of progress on a terminal, and nothing in a log file."""
     if sys.stdout.isatty():

@@ -213,7 +213,6 @@ class Bogie:
         settings.timeIntegration.generalizedAlpha.spectralRadius = 0.8
         settings.timeIntegration.newton.useModifiedNewton = True
         settings.solutionSettings.writeSolutionToFile = False
-        settings.displayStatistics = False
         # Quiet: it would remark on the memory that user functions take at each step.
         exudyn.config.printToConsole = False
         done = self.mbs.SolveDynamic(settings)
@@ -320,19 +319,20 @@ def draw_spring(axes, x, low, high, width):
     axes.plot(x + zigzag, np.linspace(low, high, len(zigzag)), color="#777777", linewidth=1.1)
 
 
-def strips(figure, result, track):
-    """Panels over the place of each axle; return them."""
-    panels = figure.subplots(6, 1, sharex=True)
+def strips(figure, result, track, shown=("load", "traction_force", "slip_creepage", "peak_temperature", "wear_depth")):
+    """Panels over the place of each axle, below that of the rail's height; return them."""
+    panels = figure.subplots(1 + len(shown), 1, sharex=True)
     along = np.linspace(0.0, result["place_front"][-1], 1500)
     panels[0].plot(along, 1e3 * track.height(along), color=BLACK, linewidth=1.0)
-    rows = (
-        ("load", 1e-3, 0.0, "load of a\nwheel [kN]"),
-        ("traction_force", 1e-3, 0.0, "traction of a\nwheel [kN]"),
-        ("slip_creepage", 100.0, 0.0, "creepage [%]"),
-        ("peak_temperature", 1.0, -273.15, "peak temper-\nature [°C]"),
-        ("wear_depth", 1e9, 0.0, "wear left by\na wheel [nm]"),
-    )
-    for axes, (name, factor, shift, label) in zip(panels[1:], rows, strict=True):
+    rows = {
+        "load": (1e-3, 0.0, "load of a\nwheel [kN]"),
+        "traction_force": (1e-3, 0.0, "traction of a\nwheel [kN]"),
+        "slip_creepage": (100.0, 0.0, "creepage [%]"),
+        "peak_temperature": (1.0, -273.15, "peak temper-\nature [°C]"),
+        "wear_depth": (1e9, 0.0, "wear left by\na wheel [nm]"),
+    }
+    for axes, name in zip(panels[1:], shown, strict=True):
+        factor, shift, label = rows[name]
         for side, colour in SIDES.items():
             values = factor * result[f"{name}_{side}"] + shift
             axes.plot(result[f"place_{side}"], values, color=colour, linewidth=1.0, label=f"{side} axle")
@@ -361,10 +361,10 @@ def draw(result, track):
 
 def animate(result, track, frames=90):
     """The vehicle and the strips as an animation, slowed down around the joint."""
-    figure = plt.figure(figsize=(7.6, 7.2), layout="constrained", dpi=80)
-    top, bottom = figure.subfigures(2, 1, height_ratios=[1, 1.5])
+    figure = plt.figure(figsize=(7.8, 8.0), layout="constrained", dpi=80)
+    top, bottom = figure.subfigures(2, 1, height_ratios=[1, 1.6])
     vehicle = top.subplots()
-    panels = strips(bottom, result, track)
+    panels = strips(bottom, result, track, ("load", "traction_force", "peak_temperature"))
     lines = [axes.axvline(0.0, color="#888888", linewidth=0.8) for axes in panels]
     # Four times slower from 3 m before to 5 m behind the joint.
     front = result["place_front"]

@@ -17,7 +17,6 @@ import sys
 import tempfile
 import time
 from contextlib import contextmanager
-from functools import cache
 from pathlib import Path
 
 import matplotlib.pyplot as plt
@@ -25,7 +24,7 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
 from dask.distributed import Client, LocalCluster, as_completed
-from helpers import FMU, REPOSITORY, RESULTS, WHEEL_RADIUS, Instance, save
+from helpers import FMU, REPOSITORY, RESULTS, WHEEL_RADIUS, reused, save
 from matplotlib.collections import LineCollection
 from matplotlib.colors import LogNorm
 
@@ -52,13 +51,6 @@ WORK = RESULTS / "creep_curves"
 # ---- on a worker ----------------------------------------------------------------------------------------------------
 
 
-@cache
-def contact(digest, law):
-    """Return this worker's instance for a friction law, and its state as initialised."""
-    instance = Instance(Path(tempfile.gettempdir()) / f"{digest}.fmu", friction_law=LAWS[law]).start()
-    return instance, instance.save()
-
-
 def curve(component, digest, law, speed, load, creepages):
     """Steady outputs of one curve, a list for each column; every curve starts from the same state."""
     local = Path(tempfile.gettempdir()) / f"{digest}.fmu"
@@ -67,8 +59,7 @@ def curve(component, digest, law, speed, load, creepages):
         own = local.with_suffix(f".{os.getpid()}")
         own.write_bytes(component)
         own.replace(local)
-    instance, fresh = contact(digest, law)
-    instance.restore(fresh)
+    instance = reused(local, friction_law=LAWS[law])
     columns = {name: [] for name in OUTPUTS}
     for creepage in creepages:
         instance.set(creepage=creepage, normal_load=load, wheel_speed=speed * (1.0 + creepage) / WHEEL_RADIUS)
