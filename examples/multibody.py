@@ -212,7 +212,7 @@ class Bogie:
         settings.timeIntegration.verboseMode = 0
         settings.timeIntegration.generalizedAlpha.spectralRadius = 0.8
         settings.timeIntegration.newton.useModifiedNewton = True
-        settings.solutionSettings.writeSolutionToFile = False
+        settings.solution.file.write = False
         # Quiet: it would remark on the memory that user functions take at each step.
         exudyn.config.printToConsole = False
         done = self.mbs.SolveDynamic(settings)
