@@ -26,7 +26,7 @@ const TOLERANCE: f64 = 1e-11;
 /// Change that is round-off.
 const ROUND_OFF: f64 = 1e-14;
 /// Error of the shear at which the split rests, relative to the peak pressure.
-const SHEAR_TOLERANCE: f64 = 1e-10;
+const SHEAR_TOLERANCE: f64 = 1e-11;
 /// Tolerance of the mechanics in the first iteration, in the last, and in those between relative to the last change.
 const FIRST_MECHANICS_TOLERANCE: f64 = 1e-8;
 const LAST_MECHANICS_TOLERANCE: f64 = 1e-12;

@@ -1,4 +1,80 @@
-//! wheelrail
+//! Thermoelastic rolling contact of a wheel on a rail, with friction that depends on temperature, frictional heat and
+//! wear: the library behind the FMI 2.0 co-simulation unit `WheelRailContact.fmu`.
+//!
+//! The model is that of A. Chudzikiewicz and A. Myśliński, *Thermoelastic wheel–rail contact problem with temperature
+//! dependent friction coefficient*, stepped in time. Numbers in parentheses, here and all over the code, are its
+//! equations.
+//!
+//! ```
+//! use wheelrail::parameters::Parameters;
+//! use wheelrail::signals::Inputs;
+//! use wheelrail::wheel_rail::Model;
+//!
+//! let model = Model::new(Parameters::default())?;
+//! let mut workspace = model.workspace();
+//! let inputs = Inputs { wheel_speed: 40.0, creepage: 0.01, normal_load: 60e3, ..Inputs::default() };
+//! let mut state = model.initial_state(&mut workspace, &inputs)?;
+//! for _ in 0..10 {
+//!     model.step(&mut workspace, &mut state, &inputs, &Inputs::ZERO, 1e-3)?;
+//! }
+//! assert!(state.outputs.peak_temperature > 300.0);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! # The equations
+//!
+//! Units are SI throughout. x₁ points along the rail in the direction of travel, x₂ upward; the observer moves with the
+//! wheel (14). Ω = (−L, L) × (0, h) is the rail, Γ_C its top, Γ₀ the rest of its boundary, clamped.
+//!
+//! | | equation | what | unit | where |
+//! |---|---|---|---|---|
+//! | (12), (13) | μ = μ₀ up to θ₀, linear to μ_F at θ_F, μ_F beyond | friction coefficient (the default law) | 1 | [`friction`] |
+//! | (16) | s = −V ∂u₁/∂x₁ + (ω r₀ − V) | slip velocity of the rail relative to the wheel, quasistatic | m/s | [`tangential`] |
+//! | (18), (27) | div σ(u) − ρV² u,₁₁ − α(3λ+2γ) ∇θ = 0 in Ω, u = 0 on Γ₀ | displacement of the rail | N/m³ | [`elasticity`], [`compliance`], [`thermal_map`] |
+//! | (9), (22) | u₂ + g − W ≤ 0, p ≥ 0, p (u₂ + g − W) = 0, g = δ − r₀ + √(r₀² − x₁²) | contact | m, Pa | [`contact`] |
+//! | (37) | min ½ pᵀC p − (b + δ)ᵀp, p ≥ 0 | the discrete contact problem | scaled | [`normal`] |
+//! | (10), (30) | τ = −μ(θ) p (2/π) arctan(s/ε) | friction | Pa | [`friction`], [`tangential`] |
+//! | (31) | (37) for given τ ↔ (30) for given p | mechanics for given temperature and wear | | [`mechanics`] |
+//! | (19) | ∂θ/∂t − V ∂θ/∂x₁ = κ ∂²θ/∂x₂² in Ω | temperature rise of the rail | K/s | [`heat`] |
+//! | (23) | κ ρ c_p ∂θ/∂n = ᾱ (\|τ s\| − k ρ c_p θ \|s\| p − θ p / r) on Γ_C | friction power, heat carried off by debris, conduction into the wheel | W/m² | [`heat`] |
+//! | (11), (24) | ∂W/∂t − V ∂W/∂x₁ = k \|s\| p | Archard wear | m/s | [`wear`] |
+//!
+//! Where the paper is silent or wrong as printed, the code differs from it: wear W ≥ 0 is positive; the bracket of (23) is
+//! closed such that conduction cools a hot rail; the local slip speed \|s\| stands where (23) and (24) print V; (30) has the
+//! factor 2/π; (13) ends at μ_F; heat has no condition on the outflow side. The u₁ of (9) is dropped: some µm against a
+//! contact of some mm.
+//!
+//! # Signs
+//!
+//! | quantity | positive |
+//! |---|---|
+//! | position x₁ | ahead of the axle, in the direction of travel: the leading edge for V > 0 |
+//! | pressure p | compression |
+//! | shear traction τ | on the rail along x₁ |
+//! | traction force T = −b ∫ τ dx₁ | on the wheel along x₁: drives the vehicle |
+//! | friction torque −(T r₀ + N e) | about the axle in the sense of ω for travel along +x₁ |
+//! | offset e of the pressure's resultant | ahead of the axle |
+//! | creepage ξ = (ω r₀ − V)/V | the wheel turns faster than it rolls |
+//! | slip velocity s | of the rail's surface relative to the wheel's, as V and ω r₀ count |
+//! | penetration δ | into the rail |
+//! | displacement u₂ | upward: the thermal bulge closes the gap |
+//! | wear depth W | material lost: opens the gap |
+//! | heat flux | into the rail |
+//!
+//! # Reading order
+//!
+//! 1. [`parameters`] and [`signals`]: every quantity that goes in and out, with unit, default, range and source.
+//! 2. [`mesh`], [`elasticity`], [`sparse_cholesky`], [`compliance`], [`thermal_map`]: what is computed once; after it, no
+//!    sparse system is solved.
+//! 3. [`friction`], [`normal`], [`tangential`], [`mechanics`]: tractions for given temperature and wear.
+//! 4. [`transport`], [`heat`], [`wear`]: temperature and wear for given tractions.
+//! 5. [`contact`]: the operator split over both, one implicit step; [`acceleration`] for where it does not contract.
+//! 6. [`wheel_rail`]: the stepped model, [`outputs`] and [`profiles`] from its fields, [`sensitivity`] for its derivatives.
+//! 7. [`verification`]: the closed forms and published numbers that all this is held against.
+//! 8. [`description`] and [`fmi2`]: the same model as a co-simulation unit. Nothing above knows of FMI.
+//!
+//! [`dense`] holds the small kernels of a step, [`error`] what can go wrong, [`injection`] faults for tests.
+
 pub mod acceleration;
 pub mod compliance;
 pub mod contact;

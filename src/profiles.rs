@@ -6,7 +6,7 @@ use crate::contact::{Fields, Rail};
 pub const PROFILE_POINTS: usize = 61;
 /// Points below the hottest contact point.
 pub const DEPTH_POINTS: usize = 41;
-/// Depth of the lowest of them, `m`; they are spaced quadratically.
+/// Depth of the lowest of them, `m`; their spacing grows with the square of the depth index: most lie in the heated skin.
 const LARGEST_DEPTH: f64 = 10e-3;
 
 /// Profiles across the contact window, [`PROFILE_POINTS`] points each, and the temperature in depth.
@@ -54,7 +54,7 @@ impl Profiles {
         let column = fields.column(rail, mesh.contact_column(hottest));
         let depth: Vec<f64> = (0..DEPTH_POINTS)
             .map(|i| {
-                LARGEST_DEPTH.min(0.5 * mesh.depth[mesh.rows() - 1]) * (i as f64 / (DEPTH_POINTS - 1) as f64).powi(2)
+                LARGEST_DEPTH.min(0.5 * mesh.depth[mesh.rows() - 1]) * (i as f64 / (DEPTH_POINTS - 1) as f64).powi(3)
             })
             .collect();
         let depth_temperature = depth
