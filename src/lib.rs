@@ -4,6 +4,7 @@ pub mod compliance;
 pub mod contact;
 pub mod dense;
 pub mod description;
+pub mod elastic_wheel;
 pub mod elasticity;
 pub mod error;
 pub mod fmi2;

@@ -51,6 +51,15 @@ pub enum MeshKind {
     Paper,
 }
 
+/// What the wheel is made of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Wheel {
+    /// Rigid: the paper's.
+    Rigid,
+    /// Elastic: its compliance adds to the rail's ([`crate::elastic_wheel`]).
+    Elastic,
+}
+
 /// The friction law μ(θ).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum FrictionLaw {
@@ -127,6 +136,14 @@ pub struct Parameters {
     pub friction_table_temperature: [f64; TABLE_POINTS],
     /// Friction coefficients of the table, `1`.
     pub friction_table_coefficient: [f64; TABLE_POINTS],
+    /// Rigid or elastic wheel.
+    pub wheel: Wheel,
+    /// First Lamé coefficient λ of the elastic wheel, `Pa`.
+    pub wheel_lame_lambda: f64,
+    /// Shear modulus γ of the elastic wheel, `Pa`.
+    pub wheel_shear_modulus: f64,
+    /// Density of the wheel, `kg/m³`.
+    pub wheel_density: f64,
     /// Couple normal and tangential displacement (Dundurs). A rigid wheel on an elastic rail is coupled; the
     /// switch exists for the comparison with Carter's theory, which has identical bodies. Not an FMI parameter.
     pub normal_tangential_coupling: bool,
@@ -165,6 +182,10 @@ impl Default for Parameters {
             friction_table_points: 0,
             friction_table_temperature: [0.0; TABLE_POINTS],
             friction_table_coefficient: [0.0; TABLE_POINTS],
+            wheel: Wheel::Rigid,
+            wheel_lame_lambda: 0.0,
+            wheel_shear_modulus: 0.0,
+            wheel_density: 0.0,
             normal_tangential_coupling: true,
         };
         for entry in REAL_PARAMETERS {
@@ -177,21 +198,25 @@ impl Default for Parameters {
     }
 }
 
+/// Poisson's ratio ν = λ/(2(λ + γ)).
+fn poisson_ratio(lambda: f64, shear: f64) -> f64 {
+    lambda / (2.0 * (lambda + shear))
+}
+
+/// E/(1 − ν²) = 4γ(λ + γ)/(λ + 2γ), `Pa`.
+fn plane_strain_modulus(lambda: f64, shear: f64) -> f64 {
+    4.0 * shear * (lambda + shear) / (lambda + 2.0 * shear)
+}
+
 impl Parameters {
-    /// Young's modulus E, `Pa`.
-    pub fn youngs_modulus(&self) -> f64 {
-        let (lambda, shear) = (self.lame_lambda, self.shear_modulus);
-        shear * (3.0 * lambda + 2.0 * shear) / (lambda + shear)
-    }
-
-    /// Poisson's ratio ν, `1`.
-    pub fn poisson_ratio(&self) -> f64 {
-        self.lame_lambda / (2.0 * (self.lame_lambda + self.shear_modulus))
-    }
-
-    /// Contact modulus E* = E / (1 − ν²) of the rigid wheel on the elastic rail, `Pa`.
+    /// Contact modulus E* of the pair, `Pa`: 1/E* = (1 − ν²)/E of the rail, and the same of an elastic wheel added
+    /// (Johnson, Contact Mechanics, 4.20).
     pub fn contact_modulus(&self) -> f64 {
-        self.youngs_modulus() / (1.0 - self.poisson_ratio().powi(2))
+        let wheel = match self.wheel {
+            Wheel::Rigid => 0.0,
+            Wheel::Elastic => 1.0 / plane_strain_modulus(self.wheel_lame_lambda, self.wheel_shear_modulus),
+        };
+        1.0 / (1.0 / plane_strain_modulus(self.lame_lambda, self.shear_modulus) + wheel)
     }
 
     /// Hertz half-length a = √(4 N r₀ / (π b E*)) of a line contact, `m` (Johnson, Contact Mechanics, 4.43).
@@ -209,10 +234,21 @@ impl Parameters {
         self.density * self.heat_capacity
     }
 
-    /// Rayleigh wave speed c_R ≈ c_s (0.862 + 1.14 ν)/(1 + ν), `m/s` (Viktorov's approximation).
+    /// Rayleigh wave speed c_R ≈ c_s (0.862 + 1.14 ν)/(1 + ν), `m/s` (Viktorov's approximation); the smaller one of rail and
+    /// elastic wheel.
     pub fn rayleigh_speed(&self) -> f64 {
-        let nu = self.poisson_ratio();
-        (self.shear_modulus / self.density).sqrt() * (0.862 + 1.14 * nu) / (1.0 + nu)
+        let speed = |lambda: f64, shear: f64, density: f64| {
+            let nu = poisson_ratio(lambda, shear);
+            (shear / density).sqrt() * (0.862 + 1.14 * nu) / (1.0 + nu)
+        };
+        let rail = speed(self.lame_lambda, self.shear_modulus, self.density);
+        match self.wheel {
+            Wheel::Rigid => rail,
+            Wheel::Elastic => {
+                let wheel = speed(self.wheel_lame_lambda, self.wheel_shear_modulus, self.wheel_density);
+                rail.min(wheel)
+            }
+        }
     }
 
     /// Largest rolling speed |V|, 5 % of the Rayleigh speed, `m/s`: the compliance is used to first order in V²,

@@ -1,6 +1,7 @@
 //! The one table of parameters: name, default, range, whether tunable, description. One row a line.
 
 use super::validation::check_range;
+use super::Wheel;
 use super::{Control, FrictionLaw, MeshKind, NormalSolver, Parameters, SlipSource, TABLE_POINTS};
 use crate::error::Result;
 
@@ -135,6 +136,7 @@ pub const INTEGER_PARAMETERS: &[IntegerParameter] = &[
     choice!("mesh", 1, "Triangulation: 1 graded (contact_nodes by depth_nodes), 2 paper (192 triangles, 13 surface nodes)", mesh, [MeshKind::Graded, MeshKind::Paper]),
     choice!("friction_law", 2, "Friction coefficient against temperature: 1 constant, 2 piecewise_linear, 3 flow_stress, 4 table", friction_law, [FrictionLaw::Constant, FrictionLaw::PiecewiseLinear, FrictionLaw::FlowStress, FrictionLaw::Table]),
     count!("friction_table_points", 2, 2, TABLE_POINTS as i32, "Number of points of the friction table that are used", friction_table_points),
+    choice!("wheel", 1, "Wheel: 1 rigid (the paper's), 2 elastic (wheel_lame_lambda, wheel_shear_modulus and wheel_density)", wheel, [Wheel::Rigid, Wheel::Elastic]),
 ];
 
 /// Start values of the friction table: the default piecewise linear law, then its hot end repeated.
@@ -220,4 +222,7 @@ pub const REAL_PARAMETERS: &[RealParameter] = &[
     table_point!(coefficient 7 "friction_table.coefficient[8]"),
     table_point!(coefficient 8 "friction_table.coefficient[9]"),
     table_point!(coefficient 9 "friction_table.coefficient[10]"),
+    real!("wheel_lame_lambda", "Pa", 11.66e10, 1e5, 1e13, false, "First Lame coefficient of the wheel, used where wheel is elastic", wheel_lame_lambda),
+    real!("wheel_shear_modulus", "Pa", 8.2e10, 1e5, 1e13, false, "Shear modulus (second Lame coefficient) of the wheel, used where wheel is elastic", wheel_shear_modulus),
+    real!("wheel_density", "kg/m3", 7.8e3, 1.0, 1e5, false, "Density of the wheel", wheel_density),
 ];

@@ -5,6 +5,7 @@
 
 pub mod carter;
 pub mod convergence;
+pub mod elastic_wheel;
 pub mod energy;
 pub mod flash_temperature;
 pub mod hertz;
@@ -131,6 +132,10 @@ pub const CHECKS: &[Check] = &[
     Check {
         name: "Rigid wheel on elastic rail",
         rows: rigid_wheel::rows,
+    },
+    Check {
+        name: "Elastic wheel",
+        rows: elastic_wheel::rows,
     },
     Check {
         name: "Flash temperature",
