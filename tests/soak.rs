@@ -237,6 +237,7 @@ fn simulate(steps: u64) {
         "normal_load",
         "friction_scale",
         "ambient_temperature",
+        "incoming_temperature",
     ]
     .map(reference);
     let outputs: Vec<u32> = OUTPUTS.iter().map(|row| reference(row.name)).collect();
@@ -273,6 +274,8 @@ fn simulate(steps: u64) {
             given.wheel_speed,
             given.normal_load,
             given.friction_scale,
+            given.ambient_temperature,
+            // The rail comes in at ambient.
             given.ambient_temperature,
         ];
         // SAFETY: as many values as references, and a variable.

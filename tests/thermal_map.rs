@@ -52,6 +52,7 @@ proptest! {
                 friction: if node.abs_diff(30) < contact { friction } else { 0.0 },
                 debris: 0.0,
                 conduction: 0.0,
+                wheel: 0.0,
             })
             .collect();
         let march = HeatMarch {

@@ -60,6 +60,15 @@ pub enum Wheel {
     Elastic,
 }
 
+/// Whether the contact warms the wheel.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum WheelHeating {
+    /// The wheel stays at the ambient temperature: the paper's.
+    Off,
+    /// The contact warms the wheel's rim ([`crate::rim`]).
+    On,
+}
+
 /// The friction law μ(θ).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum FrictionLaw {
@@ -144,6 +153,20 @@ pub struct Parameters {
     pub wheel_shear_modulus: f64,
     /// Density of the wheel, `kg/m³`.
     pub wheel_density: f64,
+    /// Whether the contact warms the wheel.
+    pub wheel_heating: WheelHeating,
+    /// Heat capacity of the wheel, `J/(kg K)`.
+    pub wheel_heat_capacity: f64,
+    /// Depth of the rim that warms, `m`.
+    pub rim_depth: f64,
+    /// Width of the rim that warms, `m`.
+    pub rim_width: f64,
+    /// Heat transfer coefficient from the rim to the ambient, `W/(m² K)`.
+    pub wheel_heat_transfer: f64,
+    /// Archard's coefficient of the wheel, `1/Pa`; 0 switches its wear off.
+    pub wheel_wear_coefficient: f64,
+    /// Depth over which incoming and leaving temperature spread the rail's heat, `m` ([`crate::incoming`]).
+    pub skin_depth: f64,
     /// Couple normal and tangential displacement (Dundurs). A rigid wheel on an elastic rail is coupled; the
     /// switch exists for the comparison with Carter's theory, which has identical bodies. Not an FMI parameter.
     pub normal_tangential_coupling: bool,
@@ -186,6 +209,13 @@ impl Default for Parameters {
             wheel_lame_lambda: 0.0,
             wheel_shear_modulus: 0.0,
             wheel_density: 0.0,
+            wheel_heating: WheelHeating::Off,
+            wheel_heat_capacity: 0.0,
+            rim_depth: 0.0,
+            rim_width: 0.0,
+            wheel_heat_transfer: 0.0,
+            wheel_wear_coefficient: 0.0,
+            skin_depth: 0.0,
             normal_tangential_coupling: true,
         };
         for entry in REAL_PARAMETERS {

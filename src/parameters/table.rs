@@ -1,8 +1,7 @@
 //! The one table of parameters: name, default, range, whether tunable, description. One row a line.
 
 use super::validation::check_range;
-use super::Wheel;
-use super::{Control, FrictionLaw, MeshKind, NormalSolver, Parameters, SlipSource, TABLE_POINTS};
+use super::{Control, FrictionLaw, MeshKind, NormalSolver, Parameters, SlipSource, Wheel, WheelHeating, TABLE_POINTS};
 use crate::error::Result;
 
 /// One row of the table of real parameters.
@@ -137,6 +136,7 @@ pub const INTEGER_PARAMETERS: &[IntegerParameter] = &[
     choice!("friction_law", 2, "Friction coefficient against temperature: 1 constant, 2 piecewise_linear, 3 flow_stress, 4 table", friction_law, [FrictionLaw::Constant, FrictionLaw::PiecewiseLinear, FrictionLaw::FlowStress, FrictionLaw::Table]),
     count!("friction_table_points", 2, 2, TABLE_POINTS as i32, "Number of points of the friction table that are used", friction_table_points),
     choice!("wheel", 1, "Wheel: 1 rigid (the paper's), 2 elastic (wheel_lame_lambda, wheel_shear_modulus and wheel_density)", wheel, [Wheel::Rigid, Wheel::Elastic]),
+    choice!("wheel_heating", 1, "Temperature of the wheel: 1 off (ambient, the paper's cold wheel), 2 on (the contact warms the rim)", wheel_heating, [WheelHeating::Off, WheelHeating::On]),
 ];
 
 /// Start values of the friction table: the default piecewise linear law, then its hot end repeated.
@@ -225,4 +225,10 @@ pub const REAL_PARAMETERS: &[RealParameter] = &[
     real!("wheel_lame_lambda", "Pa", 11.66e10, 1e5, 1e13, false, "First Lame coefficient of the wheel, used where wheel is elastic", wheel_lame_lambda),
     real!("wheel_shear_modulus", "Pa", 8.2e10, 1e5, 1e13, false, "Shear modulus (second Lame coefficient) of the wheel, used where wheel is elastic", wheel_shear_modulus),
     real!("wheel_density", "kg/m3", 7.8e3, 1.0, 1e5, false, "Density of the wheel", wheel_density),
+    real!("wheel_heat_capacity", "J/(kg.K)", 460.0, 1.0, 1e5, false, "Specific heat capacity of the wheel", wheel_heat_capacity),
+    real!("rim_depth", "m", 0.03, 1e-3, 1.0, false, "Depth of the ring of the wheel that the contact warms, used where wheel_heating is on", rim_depth),
+    real!("rim_width", "m", 0.135, 1e-3, 1.0, false, "Width of the ring of the wheel that the contact warms, used where wheel_heating is on", rim_width),
+    real!("wheel_heat_transfer", "W/(m2.K)", 30.0, 0.0, 1e5, false, "Heat transfer coefficient from tread and flanks of the ring to the ambient, used where wheel_heating is on", wheel_heat_transfer),
+    real!("wheel_wear_coefficient", "1/Pa", 0.0, 0.0, 1e-9, false, "Archard wear coefficient of the wheel; 0 switches its wear off", wheel_wear_coefficient),
+    real!("skin_depth", "m", 5e-3, 1e-4, 0.1, false, "Depth over which incoming_temperature and leaving_temperature spread the rail's heat: sqrt(pi*thermal_diffusivity*t) for rail that was heated the time t before it enters", skin_depth),
 ];

@@ -63,7 +63,39 @@ impl Parameters {
                 "the contact window of the largest load must stay below half the strip's height",
             ));
         }
-        Ok(())
+        self.validate_sizes()
+    }
+
+    /// Lengths that must fit into others.
+    fn validate_sizes(&self) -> Result<()> {
+        let fits = |first, first_value, second, second_value, share: f64, requirement| {
+            if first_value <= share * second_value {
+                return Ok(());
+            }
+            Err(Error::Combination {
+                first,
+                first_value,
+                second,
+                second_value,
+                requirement,
+            })
+        };
+        fits(
+            "rim_depth",
+            self.rim_depth,
+            "wheel_radius",
+            self.wheel_radius,
+            1.0,
+            "the rim must not be deeper than the wheel's radius",
+        )?;
+        fits(
+            "skin_depth",
+            self.skin_depth,
+            "strip_height",
+            self.strip_height,
+            0.25,
+            "the skin must not be deeper than a quarter of the strip",
+        )
     }
 
     /// The part of [`Parameters::validate`] that tunable parameters can violate.
