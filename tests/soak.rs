@@ -242,7 +242,7 @@ fn simulate(steps: u64) {
     .map(reference);
     let outputs: Vec<u32> = OUTPUTS.iter().map(|row| reference(row.name)).collect();
     let column = |name: &str| OUTPUTS.iter().position(|row| row.name == name).expect("an output");
-    let totals = ["worn_volume", "friction_energy", "distance"].map(column);
+    let totals = ["worn_volume", "friction_energy", "distance", "wheel_wear_depth"].map(column);
     let not_negative = [
         "peak_pressure",
         "peak_shear",
