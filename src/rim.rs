@@ -149,8 +149,9 @@ pub fn temperature_tangent(
 
 /// Limit of the iteration between rail and rim.
 const ITERATIONS: usize = 50;
-/// Change of T_w at which it rests, `K`: some units of round-off of the absolute temperature.
-const TOLERANCE: f64 = 1e-12;
+/// Change of T_w at which it rests, relative to the absolute temperature: some ten times what the surface condition of a
+/// column is solved to.
+const TOLERANCE: f64 = 1e-13;
 
 /// Secant method for T_w = rim(rail(T_w)); its first step is that of the plain iteration.
 #[derive(Debug, Clone, Copy)]
@@ -183,7 +184,7 @@ impl FixedPoint {
     pub fn rests(&mut self, image: f64) -> Result<bool> {
         let residual = image - self.temperature;
         self.iterations += 1;
-        if residual.abs() <= TOLERANCE * (1.0 + 1e-3 * image.abs()) {
+        if residual.abs() <= TOLERANCE * image.abs() {
             return Ok(true);
         }
         if self.iterations == ITERATIONS {

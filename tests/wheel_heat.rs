@@ -4,7 +4,7 @@ use wheelrail::parameters::{FrictionLaw, Parameters, WheelHeating};
 use wheelrail::signals::Inputs;
 use wheelrail::verification::Run;
 
-/// A ring of 1 mm by 1 mm, 10 J/K, that takes up to N/r = 60 kW/K from the rail.
+/// A ring of 1 mm by 1 mm, 10 J/K, that takes from N/r = 60 W/K to 60 MW/K from the rail.
 fn thin(contact_thermal_resistance: f64) -> Parameters {
     Parameters {
         wheel_heating: WheelHeating::On,
@@ -22,19 +22,20 @@ fn sliding() -> Inputs {
     }
 }
 
-/// However long the step against the time constant of the ring (C r/(ᾱ N): from 0.3 s down to 0.3 ms here), its temperature
+/// However long the step against the time constant of the ring (C r/(ᾱ N): from 0.3 s down to 0.3 µs here), its temperature
 /// rises to its limit without overshoot, and the limit does not depend on the step.
 #[test]
 fn a_long_step_at_a_thin_rim_does_not_oscillate() {
-    for resistance in [1000.0, 10.0, 1.0] {
+    for resistance in [1000.0, 10.0, 1e-3] {
         let mut limits = Vec::new();
         for (duration, steps) in [(1.0, 60), (10.0, 12), (1000.0, 8)] {
             let mut run = Run::new(&thin(resistance), &sliding()).unwrap();
             let mut last = run.state.outputs.wheel_temperature;
             for _ in 0..steps {
                 let now = run.hold(&sliding(), duration, 1).unwrap().wheel_temperature;
+                // Round-off: at 60 MW/K, 1e-12 K is 60 µW, some 1e-4 K of the ring.
                 assert!(
-                    now >= last - 1e-6 * (last - 293.15),
+                    now >= last - 1e-5 * (last - 293.15),
                     "{resistance} {duration}: {last} {now}"
                 );
                 last = now;

@@ -61,7 +61,8 @@ pub fn rows() -> Result<Vec<Row>> {
 fn creep_curve() -> Result<Vec<Row>> {
     let load = Inputs::default().normal_load;
     let mut rows = Vec::new();
-    for (creepage, expected, computed) in curve(Parameters::default().contact_nodes, load, &carter::CREEPAGES)? {
+    let mut run = like_bodies(Parameters::default().contact_nodes)?;
+    for (creepage, expected, computed) in curve(&mut run, load, &carter::CREEPAGES)? {
         rows.push(Row::absolute(
             format!("T/(mu N) at creepage {creepage}, wheel of the rail's material"),
             "1",
@@ -90,8 +91,9 @@ fn creep_curve() -> Result<Vec<Row>> {
 fn mean_error(contact_nodes: usize) -> Result<f64> {
     const LOADS: [f64; 6] = [40e3, 45e3, 50e3, 55e3, 60e3, 65e3];
     let (mut sum, mut count) = (0.0, 0.0);
+    let mut run = like_bodies(contact_nodes)?;
     for load in LOADS {
-        for (_, expected, computed) in curve(contact_nodes, load, &[0.001, 0.002, 0.003])? {
+        for (_, expected, computed) in curve(&mut run, load, &[0.001, 0.002, 0.003])? {
             sum += (computed - expected).abs();
             count += 1.0;
         }
@@ -99,8 +101,8 @@ fn mean_error(contact_nodes: usize) -> Result<f64> {
     Ok(sum / count)
 }
 
-/// Creepage, Carter's T/(μN) and ours at the given creepages, for like bodies without heat or wear in the gap.
-fn curve(contact_nodes: usize, normal_load: f64, creepages: &[f64]) -> Result<Vec<(f64, f64, f64)>> {
+/// Like bodies without heat or wear in the gap.
+fn like_bodies(contact_nodes: usize) -> Result<Run> {
     let parameters = Parameters {
         friction_law: FrictionLaw::Constant,
         slip_regularisation: 1e-4,
@@ -109,12 +111,17 @@ fn curve(contact_nodes: usize, normal_load: f64, creepages: &[f64]) -> Result<Ve
         contact_nodes,
         ..like()
     };
+    Run::new(&parameters, &Inputs::default())
+}
+
+/// Creepage, Carter's T/(μN) and ours at the given creepages.
+fn curve(run: &mut Run, normal_load: f64, creepages: &[f64]) -> Result<Vec<(f64, f64, f64)>> {
+    let parameters = run.model.parameters().clone();
     let inputs = |creepage| Inputs {
         creepage,
         normal_load,
         ..Inputs::default()
     };
-    let mut run = Run::new(&parameters, &inputs(0.0))?;
     let mut points = Vec::new();
     for &creepage in creepages {
         let computed = run.hold(&inputs(creepage), 1e-3, 1)?.traction_coefficient / parameters.friction_cold;

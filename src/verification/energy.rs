@@ -112,6 +112,7 @@ pub fn rows() -> Result<Vec<Row>> {
     let warm = Parameters {
         wheel: Wheel::Elastic,
         wheel_heating: WheelHeating::On,
+        heat_partition: 0.6,
         contact_thermal_resistance: 10.0,
         // A thin rim: its temperature moves with every step.
         rim_depth: 1e-3,
