@@ -48,7 +48,7 @@ impl RealParameter {
     /// Refuses a value that is not finite or outside the range.
     ///
     /// # Errors
-    /// [`Error::OutOfRange`].
+    /// [`crate::error::Error::OutOfRange`].
     pub fn check(&self, value: f64) -> Result<()> {
         check_range(self.name, value, self.minimum, self.maximum, self.unit)
     }
@@ -58,7 +58,7 @@ impl IntegerParameter {
     /// Refuses a value outside the range.
     ///
     /// # Errors
-    /// [`Error::OutOfRange`].
+    /// [`crate::error::Error::OutOfRange`].
     pub fn check(&self, value: i32) -> Result<()> {
         check_range(
             self.name,
