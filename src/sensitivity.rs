@@ -27,6 +27,14 @@ const TOLERANCE: f64 = 1e-9;
 /// Relative step of the central difference of the outputs along the tangent. The outputs are sums, products and
 /// ratios of the fields: truncation is 1e-14, round-off 1e-9.
 const OUTPUT_STEP: f64 = 1e-7;
+/// The same for fields of which the outputs are linear functions or the largest value: temperature, displacement, wear and
+/// flux. Larger, so that a change of the rail that hardly moves the tractions is not lost in their round-off.
+const LINEAR_OUTPUT_STEP: f64 = 1e-5;
+/// Steps in the order of [`Fields::vectors`].
+const OUTPUT_STEPS: [f64; 9] = {
+    let (linear, other) = (LINEAR_OUTPUT_STEP, OUTPUT_STEP);
+    [linear, linear, linear, linear, other, other, other, other, linear]
+};
 
 /// The linearised step.
 pub struct Linearisation<'a> {
@@ -343,15 +351,16 @@ impl<'a> Linearisation<'a> {
     /// Derivatives of the outputs along the tangents of inputs and fields.
     fn output_tangent(&self, change: &InputTangent, tangent: &Fields) -> Outputs {
         let (contact, fields) = (&self.contact, &*self.fields);
-        // A step that moves every field by at most OUTPUT_STEP of its largest value.
+        // A step that moves no field by more than its share of its largest value.
         let step = fields
             .vectors()
             .iter()
             .zip(tangent.vectors())
-            .map(|(field, tangent)| largest(field) / largest(tangent))
-            .filter(|ratio| ratio.is_finite() && *ratio > 0.0)
+            .zip(OUTPUT_STEPS)
+            .map(|((field, tangent), share)| share * largest(field) / largest(tangent))
+            .filter(|step| step.is_finite() && *step > 0.0)
             .fold(f64::INFINITY, f64::min);
-        let step = OUTPUT_STEP * if step.is_finite() { step } else { 1.0 };
+        let step = if step.is_finite() { step } else { OUTPUT_STEP };
         let duration = contact.conditions.duration;
         let moved = |step: f64| {
             let mut fields = fields.clone();

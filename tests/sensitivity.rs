@@ -9,6 +9,10 @@ use wheelrail::wheel_rail::{Model, State, Workspace};
 /// Relative change of the inputs in the step that is differentiated. Without it the operator split would rest after two
 /// iterations, and the difference quotient miss the derivative by the square of the contraction, up to 1e-3 whatever its step.
 const MOVE: f64 = 0.02;
+/// The same for load and temperatures: what comes in changes the tractions little, so it takes a larger move until the
+/// split rests at the fourth iteration (measured: 3e-4 off at the third, 2e-7 at the fourth).
+const LARGE_MOVE: f64 = -0.1;
+const LONG: f64 = 0.05;
 
 fn settled(model: &Model, workspace: &mut Workspace, inputs: &Inputs, step: f64) -> State {
     let mut state = model.initial_state(workspace, inputs).unwrap();
@@ -91,7 +95,11 @@ fn check(parameters: Parameters, inputs: Inputs, step: f64) -> usize {
     let mut workspace = model.workspace();
     let mut moved = inputs;
     for signal in INPUTS {
-        (signal.set)(&mut moved, (signal.get)(&inputs) * (1.0 + MOVE));
+        let share = match signal.name {
+            "normal_load" | "ambient_temperature" | "incoming_temperature" => LARGE_MOVE,
+            _ => MOVE,
+        };
+        (signal.set)(&mut moved, (signal.get)(&inputs) * (1.0 + share));
     }
     let before = settled(&model, &mut workspace, &moved, step);
     let mut state = before.clone();
@@ -167,7 +175,7 @@ proptest! {
             ..Inputs::default()
         };
         // In a long step what comes in reaches the contact and the other end. 192 pairs; the rest crosses a corner.
-        let step = if long { 0.05 } else { 1e-3 };
+        let step = if long { LONG } else { 1e-3 };
         prop_assert!(check(parameters, inputs, step) >= 96);
     }
 }
