@@ -9,7 +9,7 @@ use crate::friction;
 use crate::heat::{DepthBasis, FrictionState, HeatMarch, Heated, SurfaceExchange};
 use crate::incoming::Incoming;
 use crate::injection::{self, Solver};
-use crate::mechanics::{Mechanics, MechanicsProblem, ProblemTangent, Tractions};
+use crate::mechanics::{Mechanics, MechanicsProblem, ProblemTangent, Sweep, Tractions};
 use crate::mesh::Mesh;
 use crate::normal::Constraint;
 use crate::parameters::{Control, Parameters, WheelHeating};
@@ -30,11 +30,9 @@ const ROUND_OFF: f64 = 1e-14;
 /// Error of the shear at which the split rests, relative to the peak pressure.
 const SHEAR_TOLERANCE: f64 = 1e-10;
 /// Tolerance of the mechanics in the first iteration, in the last, and in those between relative to the last change.
-const FIRST_MECHANICS_TOLERANCE: f64 = 1e-7;
+const FIRST_MECHANICS_TOLERANCE: f64 = 1e-8;
 const LAST_MECHANICS_TOLERANCE: f64 = 1e-12;
-const MECHANICS_TOLERANCE: f64 = 1e-2;
-/// Iterations after which a split that has not come to rest is accelerated.
-const ACCELERATE_FROM: usize = 6;
+const MECHANICS_TOLERANCE: f64 = 1e-4;
 /// Temperature that counts as much as a displacement of one unit, `K`.
 pub(crate) const TEMPERATURE_SCALE: f64 = 100.0;
 /// The error of an iteration is its change times the contraction; an estimate above this is not trusted.
@@ -222,6 +220,8 @@ pub struct Trend {
     pub surface_temperature: Vec<f64>,
     /// Of the thermal displacement, 2n.
     pub thermal_displacement: Vec<f64>,
+    /// Of the wear depth, columns.
+    pub wear: Vec<f64>,
 }
 
 impl Trend {
@@ -232,12 +232,18 @@ impl Trend {
             shear: fields.shear,
             surface_temperature: fields.surface_temperature,
             thermal_displacement: fields.thermal_displacement,
+            wear: fields.wear,
         }
     }
 
     /// The vectors, in the order of their declaration.
-    pub fn vectors(&self) -> [&Vec<f64>; 3] {
-        [&self.shear, &self.surface_temperature, &self.thermal_displacement]
+    pub fn vectors(&self) -> [&Vec<f64>; 4] {
+        [
+            &self.shear,
+            &self.surface_temperature,
+            &self.thermal_displacement,
+            &self.wear,
+        ]
     }
 
     /// The trend between two fields `duration` `s` apart.
@@ -258,6 +264,7 @@ impl Trend {
             &before.thermal_displacement,
             &after.thermal_displacement,
         );
+        update(&mut self.wear, &before.wear, &after.wear);
     }
 
     /// Moves the first guess on by `duration` `s`.
@@ -265,6 +272,7 @@ impl Trend {
         dense::add_multiple(&self.shear, duration, &mut fields.shear);
         dense::add_multiple(&self.surface_temperature, duration, &mut fields.surface_temperature);
         dense::add_multiple(&self.thermal_displacement, duration, &mut fields.thermal_displacement);
+        dense::add_multiple(&self.wear, duration, &mut fields.wear);
     }
 }
 
@@ -291,6 +299,7 @@ pub struct Scratch {
     exchange: Vec<SurfaceExchange>,
     wear_rate: Vec<f64>,
     mode: Vec<f64>,
+    pub(crate) moments: Vec<f64>,
     /// What the mechanics see of heat and wear in this iteration, and what heat and wear give for the next one:
     /// [`Contact::gather`].
     iterate: Vec<f64>,
@@ -309,6 +318,7 @@ impl Scratch {
             exchange: vec![SurfaceExchange::default(); n],
             wear_rate: vec![0.0; n],
             mode: vec![0.0; rail.basis.len()],
+            moments: vec![0.0; rail.thermal_map.scratch_len(rail.mesh.columns())],
             iterate: vec![0.0; gathered(n)],
             image: vec![0.0; gathered(n)],
             anderson: Anderson::new(gathered(n)),
@@ -348,7 +358,7 @@ impl Contact<'_> {
         for iterations in 1..=SPLITS {
             // Step 2: tractions for given temperature and wear.
             let tolerance = (MECHANICS_TOLERANCE * residual).clamp(LAST_MECHANICS_TOLERANCE, FIRST_MECHANICS_TOLERANCE);
-            let shear_change = self.mechanics(fields, scratch, tolerance)?;
+            let sweep = self.sweep_mechanics(fields, scratch, tolerance)?;
             // Step 3: wear and temperature for given tractions.
             self.march_wear(before, fields, scratch);
             self.march_heat(before, fields, scratch)?;
@@ -363,16 +373,14 @@ impl Contact<'_> {
                 1.0
             };
             // One iteration cannot tell: the mechanics have not yet seen what it changed.
-            let seen = iterations > 1 || residual <= ROUND_OFF;
-            if seen && residual * contraction <= TOLERANCE && shear_change * contraction <= SHEAR_TOLERANCE {
+            let seen = (iterations > 1 || residual <= ROUND_OFF) && !sweep.set_changed;
+            if seen && residual * contraction <= TOLERANCE && sweep.shear_change * contraction <= SHEAR_TOLERANCE {
                 injection::passes(Solver::Split)?;
                 self.check_window(fields)?;
                 self.close(before, fields);
                 return Ok(Convergence { iterations, residual });
             }
-            if iterations >= ACCELERATE_FROM {
-                scratch.anderson.next(&scratch.iterate, &mut scratch.image);
-            }
+            scratch.anderson.next(&scratch.iterate, &mut scratch.image);
             std::mem::swap(&mut scratch.iterate, &mut scratch.image);
         }
         Err(Error::SplitNotConverged {
@@ -391,7 +399,8 @@ impl Contact<'_> {
         self.soften(fields, scratch);
         self.gather(fields, &scratch.softening, &mut scratch.iterate);
         for _ in 0..SPLITS {
-            if self.mechanics(fields, scratch, TOLERANCE)? <= TOLERANCE {
+            let sweep = self.sweep_mechanics(fields, scratch, TOLERANCE)?;
+            if sweep.shear_change <= TOLERANCE && !sweep.set_changed {
                 return self.check_window(fields);
             }
         }
@@ -423,19 +432,22 @@ impl Contact<'_> {
     }
 
     /// (31): tractions for given temperature and wear. The convective inertia is that of the tractions before, and so at
-    /// rest where the split is. Returns the relative change of the shear.
-    fn mechanics(&self, fields: &mut Fields, scratch: &mut Scratch, tolerance: f64) -> Result<f64> {
+    /// rest where the split is.
+    fn sweep_mechanics(&self, fields: &mut Fields, scratch: &mut Scratch, tolerance: f64) -> Result<Sweep> {
         let constraint = self.constraint();
         if constraint == Constraint::Total(0.0) {
             fields.pressure.fill(0.0);
             fields.shear.fill(0.0);
             fields.slip.fill(0.0);
             fields.penetration = 0.0;
-            return Ok(0.0);
+            return Ok(Sweep {
+                shear_change: 0.0,
+                set_changed: false,
+            });
         }
         self.update_mechanics_data(fields, scratch);
         let (problem, mut tractions, mechanics) = self.mechanics_problem(fields, scratch);
-        mechanics.solve(&problem, &mut tractions, tolerance)
+        mechanics.sweep(&problem, &mut tractions, tolerance)
     }
 
     /// Friction coefficient, profile and displacement for given temperature, wear and inertia.
@@ -588,9 +600,11 @@ impl Contact<'_> {
                 break;
             }
         }
-        self.rail
-            .thermal_map
-            .apply(&fields.temperature, &mut fields.thermal_displacement);
+        self.rail.thermal_map.apply(
+            &fields.temperature,
+            &mut scratch.moments,
+            &mut fields.thermal_displacement,
+        );
         Ok(())
     }
 

@@ -12,19 +12,41 @@ pub fn vectorised<R>(kernel: impl FnOnce() -> R) -> R {
     pulp::Arch::new().dispatch(kernel)
 }
 
-/// `out += factor · A x`, skipping zero entries of `x`.
+/// `out += factor · A x`, skipping where `x` is zero.
 pub fn multiply_add(matrix: &DMatrix<f64>, x: &[f64], factor: f64, out: &mut [f64]) {
     let rows = matrix.nrows();
     vectorised(
         #[inline(always)]
         || {
-            for (column, &x) in matrix.as_slice().chunks_exact(rows).zip(x) {
-                if x != 0.0 {
-                    add_multiple(column, factor * x, out);
+            for (columns, x) in matrix.as_slice().chunks(QUAD * rows).zip(x.chunks(QUAD)) {
+                if x.iter().any(|&x| x != 0.0) {
+                    add_columns(columns, x, factor, &mut out[..rows]);
                 }
             }
         },
     );
+}
+
+/// Columns that are added together: `out` is loaded and stored once for them.
+const QUAD: usize = 4;
+
+/// `out += factor · columns · x`, for [`QUAD`] columns or the rest of them.
+#[inline(always)]
+fn add_columns(columns: &[f64], x: &[f64], factor: f64, out: &mut [f64]) {
+    let n = out.len();
+    let [a, b, c, d] = *x else {
+        for (column, x) in columns.chunks_exact(n.max(1)).zip(x) {
+            add_multiple(column, factor * x, out);
+        }
+        return;
+    };
+    let (a, b, c, d) = (factor * a, factor * b, factor * c, factor * d);
+    let (first, rest) = columns.split_at(n);
+    let (second, rest) = rest.split_at(n);
+    let (third, fourth) = rest.split_at(n);
+    for ((((out, p), q), r), s) in out.iter_mut().zip(first).zip(second).zip(third).zip(fourth) {
+        *out += a * p + b * q + (c * r + d * s);
+    }
 }
 
 /// `out += factor · x`.
@@ -114,8 +136,8 @@ pub fn multiply(a: &[f64], n: usize, x: &[f64], out: &mut [f64]) {
         #[inline(always)]
         || {
             out[..n].fill(0.0);
-            for (column, &x) in a[..n * n].chunks_exact(n.max(1)).zip(x) {
-                add_multiple(column, x, &mut out[..n]);
+            for (columns, x) in a[..n * n].chunks((QUAD * n).max(1)).zip(x[..n].chunks(QUAD)) {
+                add_columns(columns, x, 1.0, &mut out[..n]);
             }
         },
     );

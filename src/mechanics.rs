@@ -67,8 +67,19 @@ struct Response {
     follows: bool,
     /// ∂p/∂τ.
     pressure: Vec<f64>,
+    /// ∂δ/∂τ, m.
+    penetration: Vec<f64>,
     /// ∂(u₁ − u₁ of the node ahead)/∂τ.
     strain: Vec<f64>,
+}
+
+/// What a sweep changed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Sweep {
+    /// Largest change of the shear, relative to the peak pressure.
+    pub shear_change: f64,
+    /// Whether other nodes are under pressure than before.
+    pub set_changed: bool,
 }
 
 /// Solvers and scratch.
@@ -102,6 +113,7 @@ impl Mechanics {
                 load_given: true,
                 follows: true,
                 pressure: vec![0.0; nodes * nodes],
+                penetration: vec![0.0; nodes],
                 strain: vec![0.0; nodes * nodes],
             },
             profile: vector(),
@@ -126,29 +138,39 @@ impl Mechanics {
         self.response.nodes.clear();
     }
 
-    /// Solves from the given tractions until the shear changes by less than `tolerance`, relative to the peak pressure. Returns the largest change of the shear in the first sweep: how far the
-    /// tractions were from rest.
+    /// Solves from the given tractions until the shear changes by less than `tolerance`, relative to the peak pressure.
     ///
     /// # Errors
     /// The first solver that does not converge, [`Error::MechanicsNotConverged`].
-    pub fn solve(&mut self, problem: &MechanicsProblem, tractions: &mut Tractions, tolerance: f64) -> Result<f64> {
-        let mut first = None;
+    pub fn solve(&mut self, problem: &MechanicsProblem, tractions: &mut Tractions, tolerance: f64) -> Result<()> {
         let mut residual = f64::INFINITY;
         for _ in 0..SWEEPS {
-            let set_changed = self.solve_normal(problem, tractions)?;
-            let change = self.solve_friction(problem, tractions, tolerance)?;
-            let largest = tractions.pressure.iter().fold(f64::MIN_POSITIVE, |m, p| p.max(m));
-            residual = change / largest;
-            let first = *first.get_or_insert(residual);
-            if residual <= tolerance && !set_changed {
-                injection::passes(Solver::Mechanics)?;
-                return Ok(first);
+            let sweep = self.sweep(problem, tractions, tolerance)?;
+            residual = sweep.shear_change;
+            if residual <= tolerance && !sweep.set_changed {
+                return Ok(());
             }
         }
         Err(Error::MechanicsNotConverged {
             iterations: SWEEPS,
             residual,
             tolerance,
+        })
+    }
+
+    /// One sweep: normal problem, then friction with the pressure that follows, to `tolerance` relative to the peak
+    /// pressure. With the active-set solver that is the solution as long as the active set stays.
+    ///
+    /// # Errors
+    /// The first solver that does not converge.
+    pub fn sweep(&mut self, problem: &MechanicsProblem, tractions: &mut Tractions, tolerance: f64) -> Result<Sweep> {
+        let set_changed = self.solve_normal(problem, tractions)?;
+        let change = self.solve_friction(problem, tractions, tolerance)?;
+        injection::passes(Solver::Mechanics)?;
+        let largest = tractions.pressure.iter().fold(f64::MIN_POSITIVE, |m, p| p.max(m));
+        Ok(Sweep {
+            shear_change: change / largest,
+            set_changed,
         })
     }
 
@@ -195,16 +217,8 @@ impl Mechanics {
         Ok(self.nodes != self.nodes_before)
     }
 
-    /// (30) for given pressure and its response. Returns the largest change of the shear.
+    /// (30) for given pressure and its response; pressure and penetration follow. Returns the largest change of the shear.
     fn solve_friction(&mut self, problem: &MechanicsProblem, tractions: &mut Tractions, tolerance: f64) -> Result<f64> {
-        // Within the bound from the start: a shear left over from a much larger pressure would swamp this one's strain.
-        let mut clamped = 0.0_f64;
-        for (node, shear) in tractions.shear.iter_mut().enumerate() {
-            let bound = problem.friction[node] * tractions.pressure[node];
-            let within = shear.clamp(-bound, bound);
-            clamped = clamped.max((*shear - within).abs());
-            *shear = within;
-        }
         self.displacement.copy_from_slice(problem.displacement);
         let compliance = problem.compliance;
         dense::multiply_add(
@@ -241,14 +255,24 @@ impl Mechanics {
             },
             &mut self.shear[..m],
         )?;
+        for (row, &node) in self.nodes.iter().enumerate() {
+            *tractions.penetration += self.response.penetration[row] * (self.shear[row] - tractions.shear[node]);
+        }
+        // What is left after this is shear on nodes that are no longer under pressure.
+        for &node in &self.nodes {
+            tractions.shear[node] = 0.0;
+        }
+        let dropped = tractions.shear.iter().fold(0.0, |m: f64, v| v.abs().max(m));
+        let point = self.tangential.point();
         tractions.shear.fill(0.0);
         tractions.slip.fill(0.0);
         for (row, &node) in self.nodes.iter().enumerate() {
             tractions.shear[node] = self.shear[row];
-            tractions.slip[node] = self.tangential.slip()[row];
+            tractions.slip[node] = point.slip[row];
+            tractions.pressure[node] = point.pressure[row];
         }
         injection::passes(Solver::Tangential)?;
-        Ok(change.max(clamped))
+        Ok(change.max(dropped))
     }
 
     /// ∂p/∂τ = Π C_nt with Π = C_AA⁻¹, under a given load Π = C_AA⁻¹ − C_AA⁻¹1 1ᵀC_AA⁻¹ / (1ᵀC_AA⁻¹1), and the strain of
@@ -264,6 +288,7 @@ impl Mechanics {
             let range = column * m..(column + 1) * m;
             let (pressure, strain) = (&mut response.pressure[range.clone()], &mut response.strain[range]);
             pressure.fill(0.0);
+            response.penetration[column] = 0.0;
             if response.follows {
                 for (row, &node) in nodes.iter().enumerate() {
                     self.pressure[row] = compliance.normal_tangential[(node, loaded)];
@@ -272,6 +297,7 @@ impl Mechanics {
                 if response.load_given {
                     let total = pressure.iter().sum::<f64>() / unit_sum;
                     dense::add_multiple(unit, -total, pressure);
+                    response.penetration[column] = -total;
                 }
             }
             // Only the columns of nodes under pressure are read.

@@ -129,10 +129,11 @@ impl<'a> Linearisation<'a> {
             if self.marches {
                 self.wear_tangent(change, &mut tangent);
                 self.temperature_tangent(change, iterate[size - 1] * TEMPERATURE_SCALE, &mut tangent);
-                self.contact
-                    .rail
-                    .thermal_map
-                    .apply(&tangent.temperature, &mut tangent.thermal_displacement);
+                self.contact.rail.thermal_map.apply(
+                    &tangent.temperature,
+                    &mut self.scratch.moments,
+                    &mut tangent.thermal_displacement,
+                );
                 self.wheel_tangent(change, &mut tangent);
             } else {
                 tangent.wheel_temperature = change.inputs.ambient_temperature;

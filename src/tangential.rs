@@ -92,11 +92,6 @@ impl Tangential {
         self.factored = false;
     }
 
-    /// Slip velocities of the last solve, `m/s`, on the nodes of its problem.
-    pub fn slip(&self) -> &[f64] {
-        &self.slip
-    }
-
     /// Pressure and slip at the point of the last solve.
     pub fn point(&self) -> Point<'_> {
         Point {
@@ -121,11 +116,11 @@ impl Tangential {
     /// [`Error::TangentialNotConverged`].
     pub fn solve(&mut self, problem: &TangentialProblem, shear: &mut [f64]) -> Result<f64> {
         let m = shear.len();
-        self.change[..m].fill(0.0);
+        self.start(problem, shear);
         let mut last = self.newton(problem, problem.regularisation, shear);
         if last.is_err() {
             // From a large ε, where the law is nearly linear, down to the one asked for.
-            self.change[..m].fill(0.0);
+            self.start(problem, shear);
             let mut iterations = last.unwrap_or_else(|steps| steps);
             for half_decades in (0..=CONTINUATION).rev() {
                 self.forget();
@@ -148,6 +143,14 @@ impl Tangential {
                 residual: largest(&self.residual[..m]) / largest(&problem.pressure[..m]),
                 tolerance: problem.tolerance,
             }),
+        }
+    }
+
+    /// Starts within the bound: a shear left over from a much larger pressure lies far from the solution.
+    fn start(&mut self, problem: &TangentialProblem, shear: &[f64]) {
+        for (node, shear) in shear.iter().enumerate() {
+            let bound = problem.friction[node] * problem.pressure[node];
+            self.change[node] = shear.clamp(-bound, bound) - shear;
         }
     }
 
