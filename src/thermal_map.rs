@@ -121,6 +121,11 @@ impl ThermalMap {
 
     /// The displacement of the field into `displacement` (2n), by way of the moments of its columns (columns × moments).
     pub fn apply(&self, amplitudes: &[f64], moments: &mut [f64], displacement: &mut [f64]) {
+        // A rail that does not expand.
+        if self.moments == 0 {
+            displacement.fill(0.0);
+            return;
+        }
         // Upstream, the rail has not been heated since it entered.
         let warm = |column: &[f64]| column[0] != 0.0;
         let mut columns = amplitudes.chunks_exact(self.modes);
