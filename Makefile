@@ -2,6 +2,7 @@
 #
 #   make fmu     target/WheelRailContact.fmu
 #   make demo    the paper's cases and a braking manoeuvre through FMPy: results/
+#   make couplings  the component in vehicle models, masters and sweeps: results/, one page each in docs/couplings/
 #   make test    formatting, lints, documentation, all Rust tests, `wheelrail verify`, all Python tests
 #   make docs    the generated tables of README.md and of the documentation page
 #   make bench   run times: a step, a cold start, both against the number of contact nodes
@@ -29,7 +30,11 @@ GLIBC := 2.17
 
 say = @printf '\n\033[1m== %s\033[0m\n' '$(1)'
 
-.PHONY: fmu demo test docs bench clean lint rust-test verify python-test hosts library command
+COUPLINGS := longitudinal stiff multibody sweep
+WHEELSET := target/Wheelset.fmu
+
+.PHONY: fmu demo test docs bench clean lint rust-test verify python-test hosts library command couplings
+.PHONY: couplings-set-up couplings-docs sweep-scaling $(addprefix coupling-,$(COUPLINGS))
 
 # ---- set-up -------------------------------------------------------------------------------------------------------
 
@@ -38,6 +43,11 @@ $(VENV)/ready: requirements.txt
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "Python 3.11 or newer is needed, this is " + sys.version)'
 	$(PYTHON) -m venv $(VENV)
 	$(PY) -m pip install --quiet --disable-pip-version-check -r requirements.txt
+	@touch $@
+
+$(VENV)/couplings: requirements-couplings.txt $(VENV)/ready
+	$(call say,Packages for the couplings)
+	$(PY) -m pip install --quiet --disable-pip-version-check -r requirements-couplings.txt
 	@touch $@
 
 # Hosts that need more than a Python package: each has a test that is skipped, with the reason, where this fails.
@@ -69,6 +79,27 @@ demo: fmu
 	$(call say,Written)
 	@ls -l results/*.csv results/*.png | awk '{ print $$NF, "(" $$5, "bytes)" }'
 
+# ---- couplings: `make couplings` or one of them, `make coupling-stiff` for example --------------------------------
+
+$(WHEELSET): examples/wheelset.py $(VENV)/couplings
+	@$(PY) -m pythonfmu build -f examples/wheelset.py -d target
+
+couplings-set-up: fmu hosts $(VENV)/couplings $(WHEELSET)
+
+couplings: $(addprefix coupling-,$(COUPLINGS))
+
+$(addprefix coupling-,$(COUPLINGS)): coupling-%: couplings-set-up
+	$(call say,Coupling: $*)
+	@$(PY) examples/$*.py
+
+# The pictures of the pages in docs/couplings/; commit what changes.
+couplings-docs: couplings
+	@cp results/longitudinal.png results/stiff.png results/multibody.png results/creep_curves.png docs/couplings/
+
+# The time that the sweep takes on two workers against one.
+sweep-scaling: couplings-set-up
+	@$(PY) examples/sweep.py --scaling
+
 # ---- checks -------------------------------------------------------------------------------------------------------
 
 test: lint rust-test verify python-test
@@ -85,12 +116,14 @@ lint: $(VENV)/ready
 rust-test:
 	$(call say,Rust tests)
 	cargo test
+	cargo test --features panic-injection --test fmi2_panic
+	cargo test --features divergence-injection --test divergence
 
 verify: command
 	$(call say,Verification against closed forms and the paper)
 	$(WHEELRAIL) verify
 
-python-test: fmu hosts
+python-test: fmu hosts couplings-set-up
 	$(call say,Python tests)
 	$(PY) -m pytest
 

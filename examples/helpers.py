@@ -1,11 +1,16 @@
-"""What the examples share: where things are, a simulation with progress, tables and the look of the pictures."""
+"""What the examples share: where things are, simulation with progress, an instance, tables and the look of pictures."""
 
+import atexit
 import csv
+import shutil
 import sys
+import tempfile
+from functools import cache
 from pathlib import Path
 
 import fmpy
 import matplotlib
+from fmpy.fmi2 import FMU2Slave
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
@@ -83,6 +88,103 @@ def simulate(title, step, stop_time, output, start_values, signals=None):
     if sys.stdout.isatty():
         print()
     return result
+
+
+class Instance:
+    """An instance of a co-simulation FMU, its variables by name: what a master written by hand needs.
+
+    FMPy's class below it speaks in value references and may be used beside it: `instance.slave`.
+    """
+
+    def __init__(self, fmu, name="instance", **start_values):
+        """Unpack, instantiate, set parameters and inputs, and initialise."""
+        if not Path(fmu).exists():
+            sys.exit(f"{fmu} is not there: run `make fmu` first, and for a coupling `make couplings`")
+        description = fmpy.read_model_description(str(fmu), validate=False)
+        self.reference = {variable.name: variable.valueReference for variable in description.modelVariables}
+        self.type = {variable.name: variable.type for variable in description.modelVariables}
+        self.slave = FMU2Slave(
+            guid=description.guid,
+            unzipDirectory=unpacked(fmu),
+            modelIdentifier=description.coSimulation.modelIdentifier,
+            instanceName=name,
+        )
+        self.slave.instantiate()
+        self.slave.setupExperiment(startTime=0.0)
+        self.time = 0.0
+        self.set(**start_values)
+        self.slave.enterInitializationMode()
+
+    def start(self):
+        """Leave the initialisation: from here on, step."""
+        self.slave.exitInitializationMode()
+        return self
+
+    def set(self, **values):
+        """Set variables, Integer or Real."""
+        for name, value in values.items():
+            set_value = self.slave.setInteger if self.type[name] == "Integer" else self.slave.setReal
+            set_value([self.reference[name]], [value])
+
+    def get(self, *names):
+        """Return the values of Real variables."""
+        return self.slave.getReal([self.reference[name] for name in names])
+
+    def step(self, step):
+        """Step on in time."""
+        self.slave.doStep(self.time, step)
+        self.time += step
+
+    def derivative(self, outputs, known):
+        """Partial derivatives of outputs with respect to one input."""
+        unknown = [self.reference[name] for name in outputs]
+        return self.slave.getDirectionalDerivative(unknown, [self.reference[known]], [1.0])
+
+    def save(self):
+        """Return the state as it is now."""
+        return self.slave.getFMUState(), self.time
+
+    def restore(self, saved):
+        """Go back to a saved state, which is kept."""
+        self.slave.setFMUState(saved[0])
+        self.time = saved[1]
+
+    def forget(self, saved):
+        """Free a saved state."""
+        self.slave.freeFMUState(saved[0])
+
+    def close(self):
+        """Terminate and free. The library stays loaded: another instance may be using it."""
+        self.slave.terminate()
+        self.slave.fmi2FreeInstance(self.slave.component)
+
+
+@cache
+def unpacked(fmu):
+    """Unpack an FMU, once in a process; the folder goes when the process ends."""
+    folder = tempfile.mkdtemp(prefix="fmu-")
+    atexit.register(shutil.rmtree, folder, ignore_errors=True)
+    return fmpy.extract(str(fmu), folder)
+
+
+def reused(fmu, **start_values):
+    """Return an instance as initialised: a process makes it once, and then goes back to its first state."""
+    instance, first = initialised(fmu, tuple(sorted(start_values.items())))
+    instance.restore(first)
+    return instance
+
+
+@cache
+def initialised(fmu, start_values):
+    """An instance and its state after the initialisation."""
+    instance = Instance(fmu, **dict(start_values)).start()
+    return instance, instance.save()
+
+
+def show(fraction, title):
+    """A line of progress on a terminal, and nothing in a log file."""
+    if sys.stdout.isatty():
+        print(f"  {title}: {100.0 * fraction:3.0f} %", end="\r" if fraction < 1.0 else "\n", flush=True)
 
 
 def profile(result, name, row=-1):

@@ -56,6 +56,7 @@ def native(simulate_natively, tmp_path_factory):
 @pytest.mark.parametrize(
     ("script", "python"),
     [
+        pytest.param("fmpy_simulate.py", sys.executable, id="FMPy, simulate_fmu"),
         pytest.param("fmpy_slave.py", sys.executable, id="FMPy, low level"),
         pytest.param("fmpy_container.py", sys.executable, id="FMPy, FMU container"),
         pytest.param("libcosim.py", sys.executable, id="libcosim"),

@@ -33,6 +33,10 @@ const SHEAR_TOLERANCE: f64 = 1e-10;
 const FIRST_MECHANICS_TOLERANCE: f64 = 1e-8;
 const LAST_MECHANICS_TOLERANCE: f64 = 1e-12;
 const MECHANICS_TOLERANCE: f64 = 1e-4;
+/// Change of the thermal displacement that is left out, relative to [`TOLERANCE`].
+const UNFELT: f64 = 0.1;
+/// Iterations after which a split that has not come to rest is accelerated.
+const ACCELERATE_FROM: usize = 2;
 /// Temperature that counts as much as a displacement of one unit, `K`.
 pub(crate) const TEMPERATURE_SCALE: f64 = 100.0;
 /// The error of an iteration is its change times the contraction; an estimate above this is not trusted.
@@ -300,6 +304,8 @@ pub struct Scratch {
     wear_rate: Vec<f64>,
     mode: Vec<f64>,
     pub(crate) moments: Vec<f64>,
+    /// The heat flux of the last application of the thermal map.
+    mapped_flux: Vec<f64>,
     /// What the mechanics see of heat and wear in this iteration, and what heat and wear give for the next one:
     /// [`Contact::gather`].
     iterate: Vec<f64>,
@@ -319,6 +325,7 @@ impl Scratch {
             wear_rate: vec![0.0; n],
             mode: vec![0.0; rail.basis.len()],
             moments: vec![0.0; rail.thermal_map.scratch_len(rail.mesh.columns())],
+            mapped_flux: vec![0.0; n],
             iterate: vec![0.0; gathered(n)],
             image: vec![0.0; gathered(n)],
             anderson: Anderson::new(gathered(n)),
@@ -361,7 +368,7 @@ impl Contact<'_> {
             let sweep = self.sweep_mechanics(fields, scratch, tolerance)?;
             // Step 3: wear and temperature for given tractions.
             self.march_wear(before, fields, scratch);
-            self.march_heat(before, fields, scratch)?;
+            self.march_heat(before, fields, scratch, iterations == 1)?;
             self.soften(fields, scratch);
             self.gather(fields, &scratch.softening, &mut scratch.image);
             // Step 4: rest? The next change would be smaller by the contraction.
@@ -380,7 +387,9 @@ impl Contact<'_> {
                 self.close(before, fields);
                 return Ok(Convergence { iterations, residual });
             }
-            scratch.anderson.next(&scratch.iterate, &mut scratch.image);
+            if iterations >= ACCELERATE_FROM {
+                scratch.anderson.next(&scratch.iterate, &mut scratch.image);
+            }
             std::mem::swap(&mut scratch.iterate, &mut scratch.image);
         }
         Err(Error::SplitNotConverged {
@@ -583,9 +592,9 @@ impl Contact<'_> {
         }
     }
 
-    /// (19), (23) together with the rim's temperature: what the rail gives to the wheel and what the wheel takes is the same
-    /// heat. With a cold wheel this is one march.
-    fn march_heat(&self, before: &Fields, fields: &mut Fields, scratch: &mut Scratch) -> Result<()> {
+    /// (19), (23) together with the rim's temperature, and the thermal displacement; `first` in the first iteration. What the
+    /// rail gives to the wheel and what the wheel takes is the same heat. With a cold wheel this is one march.
+    fn march_heat(&self, before: &Fields, fields: &mut Fields, scratch: &mut Scratch, first: bool) -> Result<()> {
         let ambient = self.conditions.inputs.ambient_temperature;
         let guess = scratch.iterate[gathered(fields.pressure.len()) - 1] * TEMPERATURE_SCALE;
         let mut wheel = rim::FixedPoint::new(match self.parameters.wheel_heating {
@@ -600,11 +609,17 @@ impl Contact<'_> {
                 break;
             }
         }
-        self.rail.thermal_map.apply(
-            &fields.temperature,
-            &mut scratch.moments,
-            &mut fields.thermal_displacement,
-        );
+        // Flux that changes from one iteration to the next moves the surface less than in proportion to all that the flux
+        // has heated so far: the last iteration of a step need not apply the map.
+        let moved = largest_change(&fields.heat_flux, &scratch.mapped_flux) * largest(&fields.thermal_displacement);
+        if first || moved > UNFELT * TOLERANCE * largest(&scratch.mapped_flux) {
+            self.rail.thermal_map.apply(
+                &fields.temperature,
+                &mut scratch.moments,
+                &mut fields.thermal_displacement,
+            );
+            scratch.mapped_flux.copy_from_slice(&fields.heat_flux);
+        }
         Ok(())
     }
 
@@ -729,6 +744,10 @@ impl Contact<'_> {
         }
         Ok(())
     }
+}
+
+fn largest(values: &[f64]) -> f64 {
+    values.iter().fold(0.0, |m: f64, v| v.abs().max(m))
 }
 
 fn largest_change(now: &[f64], last: &[f64]) -> f64 {

@@ -227,34 +227,44 @@ impl HeatMarch<'_> {
         let mut response = 0.0;
         for column in self.transport.columns() {
             let advection = self.transport.speed() / column.spacing;
+            let (own, upstream) = split_columns(after.temperature, column.index, column.upstream, m);
+            let old = &before[column.index * m..][..m];
+            let contact = column.index.wrapping_sub(self.first_contact);
+            let heating = exchange.get(contact).filter(|exchange| !exchange.is_open());
+            // Rail that has not been heated since it entered.
+            if heating.is_none() && old[0] == 0.0 && upstream[0] == 0.0 {
+                own.fill(0.0);
+                after.surface[column.index] = 0.0;
+                if let Some(flux) = after.flux.get_mut(contact) {
+                    *flux = 0.0;
+                }
+                continue;
+            }
             // The denominators are those of the last column where the spacing is the same (all over the window).
             if (column.spacing - spacing).abs() > 1e-9 * column.spacing || spacing.is_nan() {
                 spacing = column.spacing;
-                for (inverse, eigenvalue) in inverse.iter_mut().zip(&self.basis.eigenvalues) {
+                for (inverse, eigenvalue) in inverse.iter_mut().zip(&self.basis.eigenvalues[..m]) {
                     *inverse = 1.0 / (storage + advection + parameters.thermal_diffusivity * eigenvalue);
                 }
                 response = surface.iter().zip(&*inverse).map(|(s, i)| s * s * i).sum::<f64>() / capacity;
             }
-            let (own, upstream) = split_columns(after.temperature, column.index, column.upstream, m);
-            let old = &before[column.index * m..(column.index + 1) * m];
             for mode in 0..m {
                 own[mode] = (storage * old[mode] + advection * upstream[mode]) * inverse[mode];
             }
             let unheated = dense::dot(own, surface);
             after.surface[column.index] = unheated;
-            let contact = column.index.wrapping_sub(self.first_contact);
-            let Some(exchange) = exchange.get(contact) else {
+            let Some(exchange) = heating else {
+                if let Some(flux) = after.flux.get_mut(contact) {
+                    *flux = 0.0;
+                }
                 continue;
             };
-            if exchange.is_open() {
-                after.flux[contact] = 0.0;
-                continue;
-            }
             let q = self.surface_flux(exchange, unheated, response, column.index)?;
             after.flux[contact] = q;
             after.surface[column.index] += response * q;
+            let heat = q / capacity;
             for mode in 0..m {
-                own[mode] += q / capacity * surface[mode] * inverse[mode];
+                own[mode] += heat * surface[mode] * inverse[mode];
             }
         }
         Ok(())
@@ -305,9 +315,9 @@ impl HeatMarch<'_> {
 fn split_columns(field: &mut [f64], own: usize, other: usize, m: usize) -> (&mut [f64], &[f64]) {
     if own < other {
         let (left, right) = field.split_at_mut(other * m);
-        (&mut left[own * m..(own + 1) * m], &right[..m])
+        (&mut left[own * m..][..m], &right[..m])
     } else {
         let (left, right) = field.split_at_mut(own * m);
-        (&mut right[..m], &left[other * m..(other + 1) * m])
+        (&mut right[..m], &left[other * m..][..m])
     }
 }

@@ -144,8 +144,11 @@ impl ThermalMap {
                 {
                     self.column_moments(column, moments);
                 }
-                for (gains, displacement) in self.gains.chunks_exact(count * self.moments).zip(displacement) {
-                    *displacement = dot_single(&gains[first * self.moments..], moments);
+                let row = count * self.moments;
+                for (rows, displacement) in self.gains.chunks_exact(2 * row).zip(displacement.chunks_exact_mut(2)) {
+                    let (one, two) = rows.split_at(row);
+                    let (one, two) = (&one[first * self.moments..], &two[first * self.moments..]);
+                    displacement.copy_from_slice(&dot_pair(one, two, moments));
                 }
             },
         );
@@ -173,24 +176,27 @@ impl ThermalMap {
     }
 }
 
-/// Σ x y as [`dense::dot`], with x in single precision.
+/// Σ x z and Σ y z as [`dense::dot`], with x and y in single precision: z is loaded once for two rows.
 #[inline(always)]
-fn dot_single(x: &[f32], y: &[f64]) -> f64 {
-    const SUMS: usize = 16;
-    let mut sums = [0.0; SUMS];
-    let (x_blocks, y_blocks) = (x.chunks_exact(SUMS), y.chunks_exact(SUMS));
-    let tail: f64 = y_blocks
-        .remainder()
-        .iter()
-        .zip(&x[y.len() - y_blocks.remainder().len()..])
-        .map(|(y, x)| y * f64::from(*x))
-        .sum();
-    for (x, y) in x_blocks.zip(y_blocks) {
+fn dot_pair(x: &[f32], y: &[f32], z: &[f64]) -> [f64; 2] {
+    const SUMS: usize = 8;
+    let (mut x_sums, mut y_sums) = ([0.0; SUMS], [0.0; SUMS]);
+    let whole = z.len() - z.len() % SUMS;
+    for ((x, y), z) in x[..whole]
+        .chunks_exact(SUMS)
+        .zip(y[..whole].chunks_exact(SUMS))
+        .zip(z[..whole].chunks_exact(SUMS))
+    {
         for lane in 0..SUMS {
-            sums[lane] += f64::from(x[lane]) * y[lane];
+            x_sums[lane] += f64::from(x[lane]) * z[lane];
+            y_sums[lane] += f64::from(y[lane]) * z[lane];
         }
     }
-    tail + sums.iter().sum::<f64>()
+    let finish = |sums: [f64; SUMS], x: &[f32]| {
+        let tail: f64 = x[whole..].iter().zip(&z[whole..]).map(|(x, z)| f64::from(*x) * z).sum();
+        tail + sums.iter().sum::<f64>()
+    };
+    [finish(x_sums, x), finish(y_sums, y)]
 }
 
 /// The displacement of the field by the exact map, for comparison: 2n values.

@@ -19,7 +19,8 @@ const JUMP: f64 = 0.2;
 const FIRST_SUBSTEP: f64 = 0.25;
 /// Largest number of sub-steps of equal length while the inputs change at given rates.
 const RAMP_SUBSTEPS: f64 = 50.0;
-
+/// Shortest time that a step takes, `s`: rates of change over less would overflow, and no quantity can tell the difference.
+const SHORTEST_STEP: f64 = 1e-100;
 /// Times that a sub-step which does not converge is quartered, in one step.
 const RETRIES: usize = 4;
 
@@ -169,6 +170,11 @@ impl Model {
         rates: &Inputs,
         duration: f64,
     ) -> std::result::Result<(), Interrupted> {
+        let duration = if duration > 0.0 {
+            duration.max(SHORTEST_STEP)
+        } else {
+            duration
+        };
         let start = state.time;
         let mut committed = 0.0;
         let interrupted = |committed, error| Interrupted { committed, error };

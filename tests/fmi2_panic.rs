@@ -29,6 +29,11 @@ fn a_panic_becomes_an_error_with_a_message() {
     client.expect(OK, client.step(0.0, 1e-3));
     assert_eq!(client.outputs(), bystander.outputs());
     client.expect(OK, client.reset());
+    drop((client, bystander));
+    drop(api);
+    // Nothing of the panic is left in the thread that would have to be destroyed.
+    #[cfg(target_os = "linux")]
+    assert!(!common::is_mapped());
 }
 
 #[test]

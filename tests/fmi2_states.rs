@@ -54,8 +54,8 @@ fn in_state(api: &Api, state: State) -> Client<'_> {
     }
 }
 
-/// No input is known that stops a step after a committed part, so *stepFailed* comes from a serialised state that
-/// says so.
+/// Steps that stop after a committed part are rare (tests/fmi2_steps.rs looks for them), so *stepFailed* comes from a
+/// serialised state that says so.
 fn step_failed(api: &Api) -> Client<'_> {
     let client = Client::running(api, &[]);
     let handle = client.save();

@@ -87,15 +87,24 @@ fn the_archive_is_as_the_standard_wants_it() {
         assert_eq!(entry.last_modified(), Some(DateTime::default()), "{name}");
         let mut content = Vec::new();
         entry.read_to_end(&mut content).unwrap();
-        if name == "modelDescription.xml" {
-            assert_eq!(content, read("modelDescription/modelDescription.xml").unwrap());
+        // The licences in the archive are those of the repository, whole.
+        let own = match &*name {
+            "modelDescription.xml" => Some("modelDescription/modelDescription.xml"),
+            "documentation/licenses/LICENSE-APACHE" => Some("LICENSE-APACHE"),
+            "documentation/licenses/LICENSE-MIT" => Some("LICENSE-MIT"),
+            _ => None,
+        };
+        if let Some(path) = own {
+            assert_eq!(content, read(path).unwrap(), "{name}");
         }
         names.push(name);
     }
     for name in ["modelDescription.xml", "model.png", "documentation/index.html"] {
         assert!(names.iter().any(|n| n == name), "{name}");
     }
-    assert!(names.iter().any(|name| name.starts_with("documentation/licenses/")));
+    for name in ["LICENSE-APACHE", "LICENSE-MIT", "THIRD-PARTY.txt"] {
+        assert!(names.contains(&format!("documentation/licenses/{name}")), "{name}");
+    }
     assert!(names.contains(&format!("binaries/{}", own())));
 }
 

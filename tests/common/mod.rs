@@ -93,6 +93,16 @@ pub fn library_path() -> PathBuf {
     test.with_file_name(name)
 }
 
+/// Whether the library is in the memory of this process. A thread-local value with a destructor would keep it there after it
+/// was closed, until the thread ends: the system counts the destructors that are still to be called (glibc 2.18 and above;
+/// an older one would crash then).
+#[cfg(target_os = "linux")]
+pub fn is_mapped() -> bool {
+    let maps = std::fs::read_to_string("/proc/self/maps").expect("maps");
+    maps.lines()
+        .any(|line| line.ends_with(&*library_path().to_string_lossy()))
+}
+
 /// One message at the logger.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Message {
@@ -120,10 +130,12 @@ unsafe extern "C" fn collect(
         // SAFETY: the library hands over strings ended by zero.
         unsafe { CStr::from_ptr(pointer) }.to_str().expect("UTF-8").to_owned()
     };
+    // SAFETY: ended by zero; whatever bytes the importer gave.
+    let instance_name = unsafe { CStr::from_ptr(instance_name) }.to_string_lossy().into_owned();
     // SAFETY: the environment is the journal of the client, which outlives its instance.
     let journal = unsafe { &*environment.cast::<Journal>() };
     journal.borrow_mut().push(Message {
-        instance_name: string(instance_name),
+        instance_name,
         status,
         category: string(category),
         format: string(format),

@@ -153,11 +153,11 @@ impl Simulate {
         let parameters = self.parameters()?;
         let scenario = Scenario::read(&self.scenario, &parameters)?;
         let model = Model::new(parameters).map_err(Error::Parameter)?;
-        let mut table = Table::create(&self.output)?;
-
         let mut workspace = model.workspace();
         let mut inputs = scenario.at(scenario.start());
         let mut state = model.initial_state(&mut workspace, &inputs).map_err(Error::Start)?;
+        // Not before everything that can be refused: no file is left behind then.
+        let mut table = Table::create(&self.output)?;
         table.write(scenario.start(), &inputs, &state)?;
 
         // A remainder below a millionth of a step is rounding of the scenario's times.

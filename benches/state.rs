@@ -1,0 +1,113 @@
+//! What the interface costs: saving and restoring a state, its serialised form, and a step, each through the C functions of
+//! the shared library and natively, at default settings.
+
+#![allow(unsafe_code, missing_docs)]
+
+#[path = "../tests/common/mod.rs"]
+mod common;
+
+use common::{Api, Client, OK};
+use criterion::{criterion_group, criterion_main, Criterion};
+use std::hint::black_box;
+use std::ptr::null_mut;
+use wheelrail::parameters::Parameters;
+use wheelrail::signals::Inputs;
+use wheelrail::verification::Run;
+use wheelrail::wheel_rail::State;
+
+const CREEPAGE: f64 = 0.004;
+/// Communication step, [s].
+const STEP: f64 = 1e-3;
+/// Steps from cold until the measurements begin: 0.1 s.
+const WARM_UP: u32 = 100;
+
+/// An instance in *stepComplete* after the warm-up, and its time.
+fn instance(api: &Api) -> (Client<'_>, f64) {
+    let client = Client::new(api);
+    client.expect(OK, client.setup(0.0, None));
+    client.expect(OK, client.enter());
+    client.expect(OK, client.set(&[("creepage", CREEPAGE)]));
+    client.expect(OK, client.exit());
+    let mut time = 0.0;
+    for _ in 0..WARM_UP {
+        client.expect(OK, client.step(time, STEP));
+        time += STEP;
+    }
+    (client, time)
+}
+
+fn inputs() -> Inputs {
+    Inputs {
+        creepage: CREEPAGE,
+        ..Inputs::default()
+    }
+}
+
+/// The same without the interface.
+fn native() -> Run {
+    let mut run = Run::new(&Parameters::default(), &inputs()).expect("a model");
+    run.hold(&inputs(), STEP, WARM_UP as usize).expect("steps");
+    run
+}
+
+fn state(c: &mut Criterion) {
+    let api = Api::load();
+    let (client, _) = instance(&api);
+    let component = client.component;
+    let (mut handle, mut other) = (client.save(), null_mut());
+    let bytes = client.serialize(handle);
+    let mut buffer = bytes.clone();
+    client.expect(OK, client.deserialize(&bytes, &mut other));
+    println!("a serialised state has {} bytes", bytes.len());
+
+    let mut group = c.benchmark_group("state, through the interface");
+    // SAFETY: a live instance, its states, and room for the bytes.
+    unsafe {
+        group.bench_function("save", |b| b.iter(|| (api.get_state)(component, &mut handle)));
+        group.bench_function("save and free", |b| {
+            b.iter(|| {
+                let mut fresh = null_mut();
+                (api.get_state)(component, &mut fresh);
+                (api.free_state)(component, &mut fresh)
+            });
+        });
+        group.bench_function("restore", |b| b.iter(|| (api.set_state)(component, handle)));
+        group.bench_function("serialise", |b| {
+            b.iter(|| (api.serialize)(component, handle, buffer.as_mut_ptr().cast(), buffer.len()));
+        });
+        group.bench_function("deserialise", |b| b.iter(|| client.deserialize(&bytes, &mut other)));
+    }
+    group.finish();
+
+    let mut run = native();
+    let mut copy = run.state.clone();
+    let payload = postcard::to_allocvec(&run.state).expect("bytes");
+    let mut group = c.benchmark_group("state, natively");
+    group.bench_function("save", |b| b.iter(|| copy = black_box(&run.state).clone()));
+    group.bench_function("restore", |b| b.iter(|| run.state = black_box(&copy).clone()));
+    group.bench_function("serialise", |b| b.iter(|| postcard::to_allocvec(black_box(&run.state))));
+    group.bench_function("deserialise", |b| {
+        b.iter(|| postcard::from_bytes::<State>(black_box(&payload)));
+    });
+    group.finish();
+}
+
+/// The rail warms up on in both runs in the same way: the difference is the interface.
+fn step(c: &mut Criterion) {
+    let mut group = c.benchmark_group("step of 1 ms");
+    let api = Api::load();
+    let (client, start) = instance(&api);
+    let mut time = start;
+    group.bench_function("through the interface", |b| {
+        b.iter(|| {
+            client.expect(OK, client.step(time, STEP));
+            time += STEP;
+        });
+    });
+    let mut run = native();
+    group.bench_function("natively", |b| b.iter(|| run.step(&inputs(), STEP).expect("a step")));
+    group.finish();
+}
+
+criterion_group!(benches, state, step);
+criterion_main!(benches);

@@ -1,0 +1,255 @@
+"""Creep curves over friction law, speed and load, as a Dask job.
+
+    .venv/bin/python examples/sweep.py                          two workers on this machine (or `make coupling-sweep`)
+    .venv/bin/python examples/sweep.py --scheduler tcp://...    an existing cluster
+    .venv/bin/python examples/sweep.py --scaling                the time that two workers take against one
+
+A task is one curve: the steady traction at a list of creepages. Finished curves are written at once, a Parquet file
+each, and not computed again: after a kill, the same command goes on. docs/couplings/sweep.md.
+"""
+
+import argparse
+import hashlib
+import itertools
+import os
+import shutil
+import sys
+import tempfile
+import time
+from contextlib import contextmanager
+from pathlib import Path
+
+import matplotlib.pyplot as plt
+import numpy as np
+import pyarrow as pa
+import pyarrow.parquet as pq
+from dask.distributed import Client, LocalCluster, as_completed
+from helpers import FMU, REPOSITORY, RESULTS, WHEEL_RADIUS, reused, save
+from matplotlib.collections import LineCollection
+from matplotlib.colors import LogNorm
+
+LAWS = {"constant": 1, "piecewise_linear": 2, "flow_stress": 3}
+SPEEDS = (2.0, 5.0, 10.0, 15.0, 20.0, 30.0, 40.0, 50.0)  # m/s
+LOADS = (20e3, 40e3, 60e3, 70e3, 80e3, 100e3)  # N
+CREEPAGES = tuple(float(value) for value in np.geomspace(1e-4, 0.5, 32))
+OUTPUTS = {
+    "traction_force": "N",
+    "traction_coefficient": "1",
+    "friction_coefficient": "1",
+    "peak_temperature": "K",
+    "peak_pressure": "Pa",
+    "stick_fraction": "1",
+    "friction_power": "W",
+    "wear_rate": "m3/s",
+}
+# A step that is long against the rail's passage through the model, so that a few of them are the steady state.
+STEP = 5.0  # s
+STEADY = 1e-9  # largest relative change over a step
+WORK = RESULTS / "creep_curves"
+
+
+# ---- on a worker ----------------------------------------------------------------------------------------------------
+
+
+def curve(component, digest, law, speed, load, creepages):
+    """Steady outputs of one curve, a list for each column; every curve starts from the same state."""
+    local = Path(tempfile.gettempdir()) / f"{digest}.fmu"
+    if not local.exists():
+        # Another process on the same machine may be doing the same.
+        own = local.with_suffix(f".{os.getpid()}")
+        own.write_bytes(component)
+        own.replace(local)
+    instance = reused(local, friction_law=LAWS[law])
+    columns = {name: [] for name in OUTPUTS}
+    for creepage in creepages:
+        instance.set(creepage=creepage, normal_load=load, wheel_speed=speed * (1.0 + creepage) / WHEEL_RADIUS)
+        before = np.zeros(len(OUTPUTS))
+        for _ in range(50):
+            instance.step(STEP)
+            now = np.array(instance.get(*OUTPUTS))
+            if np.allclose(now, before, rtol=STEADY, atol=0.0):
+                break
+            before = now
+        else:
+            raise RuntimeError(f"{law}, {speed} m/s, {load} N, creepage {creepage}: not steady after {50 * STEP} s")
+        for name, value in zip(OUTPUTS, now, strict=True):
+            columns[name].append(value)
+    return columns
+
+
+# ---- on the client --------------------------------------------------------------------------------------------------
+
+
+def part(folder, law, speed, load):
+    """The file of one curve."""
+    return folder / f"{law}-{speed:g}-{load:g}.parquet"
+
+
+def is_done(path, stamp):
+    """Whether a curve was computed by the same component at the same creepages."""
+    return path.exists() and pq.read_schema(path).metadata.get(b"stamp") == stamp
+
+
+def write_part(path, stamp, law, speed, load, creepages, columns):
+    """Write one curve; the file is there as a whole or not at all."""
+    count = len(creepages)
+    names = {"speed": ("m/s", [speed] * count), "normal_load": ("N", [load] * count), "creepage": ("1", creepages)}
+    names |= {name: (unit, columns[name]) for name, unit in OUTPUTS.items()}
+    fields = [pa.field("friction_law", pa.string())]
+    fields += [pa.field(name, pa.float64(), metadata={"unit": unit}) for name, (unit, _) in names.items()]
+    arrays = [pa.array([law] * count), *(pa.array(values, pa.float64()) for _, values in names.values())]
+    schema = pa.schema(fields, metadata={"stamp": stamp})
+    unfinished = path.with_suffix(".unfinished")
+    pq.write_table(pa.Table.from_arrays(arrays, schema=schema), unfinished)
+    unfinished.replace(path)
+
+
+def sweep(client, folder, laws=tuple(LAWS), speeds=SPEEDS, loads=LOADS, creepages=CREEPAGES, quiet=False):
+    """Compute the curves that are not there yet; return how many those were."""
+    folder.mkdir(parents=True, exist_ok=True)
+    component = FMU.read_bytes()
+    digest = hashlib.sha256(component).hexdigest()
+    stamp = hashlib.sha256(f"{digest} {creepages} {STEP} {STEADY}".encode()).hexdigest().encode()
+    curves = list(itertools.product(laws, speeds, loads))
+    missing = [key for key in curves if not is_done(part(folder, *key), stamp)]
+    if len(missing) < len(curves):
+        print(f"  {len(curves) - len(missing)} of {len(curves)} curves are there from before", flush=True)
+    if not missing:
+        return 0
+    data = client.scatter(component, broadcast=True)
+    futures = {client.submit(curve, data, digest, *key, creepages, pure=False): key for key in missing}
+    began = time.perf_counter()
+    for number, future in enumerate(as_completed(futures), 1):
+        key = futures[future]
+        write_part(part(folder, *key), stamp, *key, creepages, future.result())
+        if not quiet:
+            report(number, len(missing), time.perf_counter() - began)
+    return len(missing)
+
+
+def report(number, count, seconds):
+    """A line of progress: in place on a terminal, every tenth in a log."""
+    if sys.stdout.isatty() or number * 10 // count > (number - 1) * 10 // count:
+        left = seconds / number * (count - number)
+        end = "\r" if sys.stdout.isatty() and number < count else "\n"
+        print(f"  {number} of {count} curves, {number / seconds:.1f} a second, {left:.0f} s left ", end=end, flush=True)
+
+
+def gather(folder, laws=tuple(LAWS), speeds=SPEEDS, loads=LOADS):
+    """All curves as one table, in the order of the grid."""
+    return pa.concat_tables([pq.read_table(part(folder, *key)) for key in itertools.product(laws, speeds, loads)])
+
+
+@contextmanager
+def local_client(workers):
+    """Processes of one thread each on this machine."""
+    with (
+        LocalCluster(n_workers=workers, threads_per_worker=1, dashboard_address="127.0.0.1:0") as cluster,
+        Client(cluster) as client,
+    ):
+        yield client
+
+
+def scaling(rounds=3):
+    """Time the whole sweep, from nothing, on one worker and on two, in turns; the workers are started before."""
+    seconds = {1: [], 2: []}
+    for workers in (1, 2) * rounds:
+        with local_client(workers) as client, tempfile.TemporaryDirectory() as folder:
+            client.wait_for_workers(workers)
+            began = time.perf_counter()
+            count = sweep(client, Path(folder), quiet=True)
+            seconds[workers].append(time.perf_counter() - began)
+            used = sum(client.run(time.process_time).values())
+        load = os.getloadavg()[0]
+        print(
+            f"  {workers} worker(s): {count} curves in {seconds[workers][-1]:.1f} s,"
+            f" {used:.1f} s of processor time in the workers, load {load:.1f}",
+            flush=True,
+        )
+    ratio = min(seconds[1]) / min(seconds[2])
+    print(f"  best of {rounds}: {ratio:.2f} times as fast on two workers as on one, on {os.cpu_count()} cores")
+
+
+# ---- the picture ----------------------------------------------------------------------------------------------------
+
+
+def draw(table):
+    """Draw traction against creepage, coloured by temperature: speeds above, loads below, a column for each law."""
+    data = {name: np.array(table[name].to_pylist()) for name in table.column_names}
+    laws = {"constant": "constant", "piecewise_linear": "piecewise linear", "flow_stress": "flow stress"}
+    speeds, loads = (2.0, 5.0, 10.0, 20.0, 50.0), (20e3, 40e3, 60e3, 80e3, 100e3)
+    figure, panels = plt.subplots(2, 3, figsize=(11.0, 7.0), sharex=True, sharey=True, layout="constrained")
+    colours = LogNorm(20.0, 800.0)
+    for column, (law, title) in enumerate(laws.items()):
+        for row, (name, values) in enumerate((("speed", speeds), ("normal_load", loads))):
+            axes = panels[row, column]
+            fixed = data["normal_load"] == 60e3 if name == "speed" else data["speed"] == 20.0
+            ends = []
+            for value in values:
+                chosen = (data["friction_law"] == law) & fixed & (data[name] == value)
+                x, y = 100 * data["creepage"][chosen], data["traction_coefficient"][chosen]
+                points = np.column_stack([x, y])
+                lines = LineCollection(np.stack([points[:-1], points[1:]], axis=1), cmap="plasma", norm=colours)
+                temperature = data["peak_temperature"][chosen] - 273.15
+                lines.set_array(0.5 * (temperature[1:] + temperature[:-1]))
+                lines.set_linewidth(2.0)
+                axes.add_collection(lines)
+                ends.append((x[-1], y[-1]))
+            label_ends(axes, values, ends, "m/s" if name == "speed" else "kN", 1.0 if name == "speed" else 1e3)
+            axes.set_xscale("log")
+            axes.set(xlim=(0.01, 400), ylim=(0.2, 0.47))
+            axes.set_xticks([0.01, 0.1, 1, 10], ["0.01", "0.1", "1", "10"])
+            axes.set_title(f"{title} friction, " + ("60 kN" if name == "speed" else "20 m/s"))
+    for axes in panels[:, 0]:
+        axes.set_ylabel("traction / load [1]")
+    for axes in panels[1]:
+        axes.set_xlabel("creepage [%]")
+    bar = figure.colorbar(plt.cm.ScalarMappable(colours, "plasma"), ax=panels, shrink=0.7, extend="max")
+    bar.set_ticks([20, 50, 100, 200, 400, 800], labels=["20", "50", "100", "200", "400", "800"])
+    bar.minorticks_off()
+    bar.set_label("peak temperature of the rail [°C]")
+    save(figure, "creep_curves.png")
+
+
+def label_ends(axes, values, ends, unit, scale):
+    """Label the first and the last of a family of curves at their right ends, or all by one where they meet."""
+    first, last = f"{values[0] / scale:g}", f"{values[-1] / scale:g}"
+    apart = abs(ends[0][1] - ends[-1][1]) > 0.012
+    labels = (
+        [(f"{first} {unit}", ends[0]), (f"{last} {unit}", ends[-1])] if apart else [(f"{first}–{last} {unit}", ends[0])]
+    )
+    for text, place in labels:
+        axes.annotate(text, place, (4, 0), "data", "offset points", va="center", fontsize=7.5)
+
+
+def main():
+    """Sweep, gather, draw."""
+    options = argparse.ArgumentParser(description="Creep curves over friction law, speed and load as a Dask job")
+    options.add_argument("--scheduler", help="address of a Dask scheduler; without one, workers on this machine")
+    options.add_argument("--workers", type=int, default=2, help="workers on this machine (2)")
+    options.add_argument("--fresh", action="store_true", help="forget the curves that are there from before")
+    options.add_argument("--scaling", action="store_true", help="measure two workers against one instead")
+    chosen = options.parse_args()
+    if not FMU.exists():
+        sys.exit(f"{FMU} is not there: run `make fmu` first")
+    if chosen.scaling:
+        scaling()
+        return
+    if chosen.fresh:
+        shutil.rmtree(WORK, ignore_errors=True)
+    with Client(chosen.scheduler) if chosen.scheduler else local_client(chosen.workers) as client:
+        if chosen.scheduler:
+            # Workers on this machine find it where this process does.
+            client.upload_file(str(Path(__file__).with_name("helpers.py")))
+        sweep(client, WORK)
+    table = gather(WORK)
+    path = RESULTS / "creep_curves.parquet"
+    pq.write_table(table, path)
+    print(
+        f"  wrote {path.relative_to(REPOSITORY)}: {table.num_rows} points on {len(list(WORK.glob('*.parquet')))} curves"
+    )
+    draw(table)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,112 @@
+"""examples/sweep.py: creep curves that fall with temperature; a killed sweep goes on and gives the same bits."""
+
+import hashlib
+import itertools
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pyarrow.parquet as pq
+import pytest
+
+REPOSITORY = Path(__file__).resolve().parent.parent
+sys.path.insert(0, str(REPOSITORY / "examples"))
+
+import sweep  # noqa: E402
+
+CREEPAGES = tuple(float(value) for value in np.geomspace(1e-3, 0.5, 20))
+SMALL = {"laws": ("constant", "piecewise_linear"), "speeds": (5.0, 20.0), "loads": (40e3, 60e3, 80e3)}
+# The same small sweep in a process of its own; slow, so that it can be killed half-way.
+PROGRAM = """
+import sys, time
+from pathlib import Path
+sys.path.insert(0, sys.argv[1])
+import sweep
+write = sweep.write_part
+def slowly(*arguments):
+    write(*arguments)
+    print("written", flush=True)
+    time.sleep(float(sys.argv[3]))
+sweep.write_part = slowly
+if __name__ == "__main__":
+    with sweep.local_client(1) as client:
+        count = sweep.sweep(client, Path(sys.argv[2]), **{small!r}, creepages={creepages!r})
+    print("computed", count, flush=True)
+""".replace("{small!r}", repr(SMALL)).replace("{creepages!r}", repr(CREEPAGES))
+
+
+@pytest.fixture(scope="module")
+def curves():
+    """Return one curve of each law, at 20 m/s and 60 kN, computed here without Dask."""
+    component = sweep.FMU.read_bytes()
+    digest = hashlib.sha256(component).hexdigest()
+    columns = {law: sweep.curve(component, digest, law, 20.0, 60e3, CREEPAGES) for law in sweep.LAWS}
+    return {law: {name: np.array(values) for name, values in curve.items()} for law, curve in columns.items()}
+
+
+def test_traction_falls_with_temperature(curves):
+    """Constant friction: the curve rises to the limit and stays. Falling friction: it passes a maximum and falls."""
+    constant = curves["constant"]["traction_coefficient"]
+    # A thousandth: the regularisation.
+    assert np.all(np.diff(constant) > -1e-3 * 0.45)
+    assert constant[-1] == pytest.approx(0.45, rel=2e-3)
+    falling = curves["piecewise_linear"]
+    top = np.argmax(falling["traction_coefficient"])
+    assert 0 < top < len(CREEPAGES) - 8
+    assert np.all(np.diff(falling["traction_coefficient"][top:]) < 0.0)
+    assert falling["traction_coefficient"][-1] == pytest.approx(0.25, rel=0.02)
+    assert np.all(np.diff(falling["peak_temperature"]) > 0.0)
+    # It falls where the rail is hotter than 50 °C only.
+    assert falling["peak_temperature"][top + 1] > 323.15
+
+
+def test_traction_is_within_friction(curves):
+    """Traction is at most the mean friction coefficient times the load, and most of it in full sliding."""
+    for law, curve in curves.items():
+        assert np.all(curve["traction_coefficient"] <= curve["friction_coefficient"] * (1.0 + 1e-9)), law
+        assert curve["traction_coefficient"][-1] > 0.99 * curve["friction_coefficient"][-1], law
+
+
+def test_killed_sweep_goes_on(tmp_path):
+    """Killed after some curves, it computes only the others; together they are the bits computed without Dask."""
+    broken, whole = tmp_path / "broken", tmp_path / "whole"
+    examples = str(REPOSITORY / "examples")
+    program = tmp_path / "program.py"
+    program.write_text(PROGRAM)
+    process = subprocess.Popen(
+        [sys.executable, program, examples, broken, "0.3"], stdout=subprocess.PIPE, text=True, start_new_session=True
+    )
+    written = (line for line in process.stdout if line == "written\n")
+    for _ in range(4):
+        next(written)
+    process.send_signal(signal.SIGKILL)
+    process.wait()
+    process.stdout.close()
+    before = {path.name: path.stat().st_mtime_ns for path in broken.glob("*.parquet")}
+    assert 4 <= len(before) <= 6
+
+    def complete(folder):
+        done = subprocess.run(
+            [sys.executable, program, examples, folder, "0"], capture_output=True, text=True, timeout=120
+        )
+        assert done.returncode == 0, done.stderr
+        return int(done.stdout.split("computed")[1])
+
+    assert complete(broken) == 12 - len(before)
+    after = {path.name: path.stat().st_mtime_ns for path in broken.glob("*.parquet")}
+    assert len(after) == 12
+    assert before.items() <= after.items()
+    # Here, without Dask.
+    component = sweep.FMU.read_bytes()
+    digest = hashlib.sha256(component).hexdigest()
+    whole.mkdir()
+    for key in itertools.product(*SMALL.values()):
+        columns = sweep.curve(component, digest, *key, CREEPAGES)
+        sweep.write_part(sweep.part(whole, *key), b"stamp", *key, CREEPAGES, columns)
+    table = sweep.gather(whole, **SMALL)
+    assert sweep.gather(broken, **SMALL).replace_schema_metadata().equals(table.replace_schema_metadata())
+    assert table.num_rows == 12 * len(CREEPAGES)
+    assert table.schema.field("traction_force").metadata == {b"unit": b"N"}
+    assert pq.read_schema(next(whole.glob("*.parquet"))).metadata[b"stamp"]

@@ -1,0 +1,214 @@
+//! `wheelrail simulate` and its refusals: the message names file, line, variable, value and what is allowed, the exit status
+//! is 1, and no file of results is left behind.
+
+use std::fs::{create_dir_all, read_to_string, remove_file, write};
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+use wheelrail::signals::{INPUTS, OUTPUTS};
+
+const GOOD: &str = "time,normal_load,creepage\n0,60e3,0\n0.002,60e3,0.001\n";
+
+/// A folder of its own for each test, with a scenario in it.
+struct Place {
+    scenario: PathBuf,
+    output: PathBuf,
+}
+
+impl Place {
+    fn new(name: &str, scenario: &str) -> Place {
+        let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("cli").join(name);
+        create_dir_all(&folder).unwrap();
+        let place = Place {
+            scenario: folder.join("scenario.csv"),
+            output: folder.join("out.csv"),
+        };
+        write(&place.scenario, scenario).unwrap();
+        let _ = remove_file(&place.output);
+        place
+    }
+
+    fn simulate(&self, options: &[&str]) -> Output {
+        Command::new(env!("CARGO_BIN_EXE_wheelrail"))
+            .arg("simulate")
+            .arg(&self.scenario)
+            .arg("--output")
+            .arg(&self.output)
+            // A coarse mesh: the physics is tested elsewhere.
+            .args(["--set", "contact_nodes=17", "--set", "depth_nodes=11"])
+            .args(options)
+            .output()
+            .unwrap()
+    }
+
+    /// Expects a refusal whose message has all `parts`.
+    #[track_caller]
+    fn refused(&self, options: &[&str], parts: &[&str]) {
+        let output = self.simulate(options);
+        let message = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(1), "{message}");
+        assert!(message.starts_with("wheelrail: "), "{message}");
+        for part in parts {
+            assert!(message.contains(part), "{message} lacks {part}");
+        }
+        assert!(!self.output.exists(), "a file of results was left behind: {message}");
+        assert_eq!(output.stdout, b"");
+    }
+}
+
+#[test]
+fn a_scenario_becomes_a_table_of_inputs_and_outputs() {
+    let place = Place::new("good", GOOD);
+    let output = place.simulate(&[]);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let table = read_to_string(&place.output).unwrap();
+    let mut lines = table.lines();
+    let inputs = INPUTS.iter().map(|row| row.name);
+    let outputs = OUTPUTS.iter().map(|row| row.name);
+    let headings: Vec<&str> = ["time"].into_iter().chain(inputs).chain(outputs).collect();
+    assert_eq!(lines.next().unwrap().split(',').collect::<Vec<_>>(), headings);
+    let rows: Vec<Vec<f64>> = lines
+        .map(|line| line.split(',').map(|cell| cell.parse().unwrap()).collect())
+        .collect();
+    assert_eq!(rows.iter().map(|row| row[0]).collect::<Vec<_>>(), [0.0, 1e-3, 2e-3]);
+    let creepage = headings.iter().position(|name| *name == "creepage").unwrap();
+    assert_eq!(rows[1][creepage], 5e-4);
+}
+
+#[test]
+fn files_that_cannot_be_read_are_refused() {
+    let mut place = Place::new("unreadable", GOOD);
+    let folder = place.scenario.parent().unwrap().to_owned();
+    place.scenario = folder.join("missing.csv");
+    place.refused(&[], &["missing.csv", "No such file"]);
+    // A folder opens, but does not read.
+    place.scenario = folder;
+    place.refused(&[], &["unreadable", "directory"]);
+}
+
+#[test]
+fn a_table_of_results_that_cannot_be_written_is_refused() {
+    let mut place = Place::new("unwritable", GOOD);
+    place.output = place.output.with_file_name("missing").join("out.csv");
+    place.refused(&[], &["missing/out.csv", "No such file"]);
+}
+
+#[test]
+fn scenarios_that_are_none_are_refused() {
+    let range = ["allowed is", " to "];
+    let cases: &[(&str, &str, &[&str])] = &[
+        ("empty", "", &["there is no column \"time\""]),
+        (
+            "missing_column",
+            "normal_load\n1\n2\n",
+            &["there is no column \"time\""],
+        ),
+        (
+            "unknown_column",
+            "time,mass\n0,1\n1,1\n",
+            &["column \"mass\" is not an input", "normal_load", "wheel_speed"],
+        ),
+        (
+            "two_columns",
+            "time,creepage,creepage\n0,0,0\n1,0,0\n",
+            &["column \"creepage\" is there twice"],
+        ),
+        (
+            "words",
+            "time,creepage\n0,0\n1,fast\n",
+            &["line 3", "column \"creepage\"", "\"fast\" is not a number"],
+        ),
+        (
+            "ragged",
+            "time,creepage\n0,0\n1\n",
+            &["scenario.csv", "record", "fields"],
+        ),
+        (
+            "one_row",
+            "time,creepage\n0,0\n",
+            &["at least two rows, this one has 1"],
+        ),
+        (
+            "backwards",
+            "time\n0\n1\n0.5\n",
+            &["line 4", "column \"time\"", "0.5 is not after 1"],
+        ),
+        ("twice", "time\n0\n0\n", &["line 3", "0 is not after 0"]),
+        ("endless", "time\n0\ninf\n", &["line 3", "inf is not after 0"]),
+        ("no_time", "time\nnan\n1\n", &["line 2", "NaN is not after"]),
+        (
+            "heavy",
+            "time,normal_load\n0,6e4\n1,1e9\n",
+            &[&["line 3", "normal_load = 1000000000", " N"], &range[..]].concat(),
+        ),
+        (
+            "negative",
+            "time,normal_load\n0,-1\n1,6e4\n",
+            &[&["line 2", "normal_load = -1"], &range[..]].concat(),
+        ),
+        (
+            "not_a_number",
+            "time,creepage\n0,NaN\n1,0\n",
+            &[&["line 2", "creepage = NaN"], &range[..]].concat(),
+        ),
+        (
+            "infinite",
+            "time,wheel_speed\n0,-inf\n1,0\n",
+            &[&["line 2", "wheel_speed = -inf", "rad/s"], &range[..]].concat(),
+        ),
+    ];
+    for (name, scenario, parts) in cases {
+        Place::new(name, scenario).refused(&[], parts);
+    }
+    let bytes = Place::new("bytes", "");
+    write(&bytes.scenario, b"time,creepage\n0,\xff\xfe\n1,0\n").unwrap();
+    bytes.refused(&[], &["scenario.csv", "UTF-8"]);
+}
+
+#[test]
+fn parameters_that_cannot_be_are_refused() {
+    let place = Place::new("parameters", GOOD);
+    place.refused(&["--set", "mass=1"], &["\"mass\"", "wheelrail describe"]);
+    place.refused(&["--set", "density"], &["--set \"density\"", "name=value"]);
+    place.refused(
+        &["--set", "density=heavy"],
+        &["density = \"heavy\"", "not a real number"],
+    );
+    place.refused(
+        &["--set", "contact_nodes=61.5"],
+        &["contact_nodes = \"61.5\"", "not an integer"],
+    );
+    place.refused(&["--set", "density=-1"], &["density = -1", "allowed is", "kg/m3"]);
+    place.refused(
+        &["--set", "wheel_radius=NaN"],
+        &["wheel_radius = NaN", "allowed is", " to ", "m"],
+    );
+    place.refused(&["--set", "contact_nodes=0"], &["contact_nodes = 0", "allowed is"]);
+    place.refused(
+        &["--set", "friction_hot=0.5"],
+        &["friction_hot = 0.5", "friction_cold = 0.45", "must not exceed"],
+    );
+    // A load that is allowed, but not under this parameter.
+    place.refused(
+        &["--set", "largest_load=5e4"],
+        &["line 2", "normal_load = 60000", "50000"],
+    );
+}
+
+#[test]
+fn steps_that_cannot_be_are_refused() {
+    let place = Place::new("steps", GOOD);
+    for step in ["0", "-1e-3", "NaN", "inf"] {
+        place.refused(&[&format!("--step={step}")], &["--step", "positive, finite"]);
+    }
+}
+
+/// What the command line itself cannot read is answered with status 2 and the usage.
+#[test]
+fn wrong_usage_is_answered_with_the_usage() {
+    let place = Place::new("usage", GOOD);
+    for options in [&["--step", "long"][..], &["--speed", "1"], &["--set"]] {
+        let output = place.simulate(options);
+        assert_eq!(output.status.code(), Some(2), "{options:?}");
+        assert!(!output.stderr.is_empty() && !place.output.exists());
+    }
+}
