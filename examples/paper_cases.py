@@ -43,6 +43,7 @@ def roll(case):
         "wheel_speed": SPEED * (1.0 + CREEPAGE) / WHEEL_RADIUS,
         "creepage": CREEPAGE,
         "ambient_temperature": AMBIENT,
+        "incoming_temperature": AMBIENT,
     }
     result = simulate(f"case {case}", STEP, STOP, OUTPUTS + names, start_values)
     late = np.ptp(result["peak_temperature"][-20:])

@@ -23,6 +23,8 @@ INPUTS = {
     "vehicle_speed": 10.0,
     "friction_scale": 0.9,
     "ambient_temperature": 280.0,
+    "incoming_temperature": 285.0,
+    "incoming_wear_depth": 1e-7,
 }
 # Real parameters only: CoFmuPy sets everything through fmi2SetReal.
 PARAMETERS = {"friction_cold": 0.4, "thermal_expansion": 1.1e-5, "heat_partition": 0.45}

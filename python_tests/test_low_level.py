@@ -34,6 +34,8 @@ def status_of(call, *arguments):
         ("normal_load", 1.3e5),
         ("vehicle_speed", 500.0),
         ("ambient_temperature", 0.0),
+        ("incoming_temperature", 0.0),
+        ("incoming_wear_depth", -1e-9),
     ],
 )
 def test_values_that_cannot_be_are_discarded(instance, callbacks, reference, outputs, name, value):

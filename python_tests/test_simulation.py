@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 REPOSITORY = Path(__file__).resolve().parent.parent
-TOTALS = ["worn_volume", "friction_energy", "distance"]
+TOTALS = ["worn_volume", "friction_energy", "distance", "wheel_wear_depth"]
 
 
 def test_input_from_csv(fmu, outputs):

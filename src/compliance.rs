@@ -8,10 +8,11 @@
 //! Everything is scaled: tractions by p₀, displacements by a²/r₀ of the largest load. Raw compliances of
 //! 1e-11 m/N beside a 1 would wreck the row of the load constraint.
 
+use crate::elastic_wheel;
 use crate::elasticity::{Elasticity, Fields};
 use crate::error::Result;
 use crate::mesh::Mesh;
-use crate::parameters::Parameters;
+use crate::parameters::{Parameters, Wheel};
 use nalgebra::DMatrix;
 
 /// The units in which the contact problem is solved.
@@ -75,7 +76,8 @@ impl Compliance {
     }
 }
 
-/// The unit-load fields at the contact nodes and what follows from them: compliance and thermal displacement.
+/// The unit-load fields at the contact nodes and what follows from them: compliance of the pair and thermal displacement
+/// of the rail.
 ///
 /// # Errors
 /// [`crate::error::Error::StiffnessNotPositiveDefinite`].
@@ -88,20 +90,30 @@ pub fn build(
     let window = mesh.first_contact..mesh.first_contact + mesh.contact_nodes;
     let fields = rail.unit_load_fields(mesh, window);
 
+    let mut compliance = rolling_compliance(mesh, parameters, scales, &rail, &fields);
+    if parameters.wheel == Wheel::Elastic {
+        elastic_wheel::add(&mut compliance, mesh, parameters, scales)?;
+    }
+    let thermal_stress = parameters.thermal_expansion * (3.0 * parameters.lame_lambda + 2.0 * parameters.shear_modulus);
+    let thermal = thermal_displacement(&rail, &fields) * (thermal_stress / scales.displacement);
+    Ok((compliance, thermal))
+}
+
+/// Compliance of a body from its forms and its fields of the unit loads.
+pub(crate) fn rolling_compliance(
+    mesh: &Mesh,
+    parameters: &Parameters,
+    scales: &Scales,
+    body: &Elasticity,
+    fields: &Fields,
+) -> RollingCompliance {
     // A nodal force is the traction times the tributary length.
     let traction = scales.pressure * mesh.contact_spacing() / scales.displacement;
     let coupling = parameters.normal_tangential_coupling;
-    let at_rest = surface_displacement(mesh, &fields) * traction;
-    let inertia = inertia_form(&rail, &fields) * traction;
-    let thermal_stress = parameters.thermal_expansion * (3.0 * parameters.lame_lambda + 2.0 * parameters.shear_modulus);
-    let thermal = thermal_displacement(&rail, &fields) * (thermal_stress / scales.displacement);
-    Ok((
-        RollingCompliance {
-            at_rest: Compliance::from_blocks(&at_rest, coupling),
-            inertia: Compliance::from_blocks(&inertia, coupling),
-        },
-        thermal,
-    ))
+    RollingCompliance {
+        at_rest: Compliance::from_blocks(&(surface_displacement(mesh, fields) * traction), coupling),
+        inertia: Compliance::from_blocks(&(inertia_form(body, fields) * traction), coupling),
+    }
 }
 
 /// The fields at the contact nodes: 2n × 2n, symmetric.

@@ -7,11 +7,13 @@ use crate::dense;
 use crate::error::{Error, Result};
 use crate::friction;
 use crate::heat::{DepthBasis, FrictionState, HeatMarch, Heated, SurfaceExchange};
+use crate::incoming::Incoming;
 use crate::injection::{self, Solver};
 use crate::mechanics::{Mechanics, MechanicsProblem, ProblemTangent, Sweep, Tractions};
 use crate::mesh::Mesh;
 use crate::normal::Constraint;
-use crate::parameters::{Control, Parameters};
+use crate::parameters::{Control, Parameters, WheelHeating};
+use crate::rim::{self, ContactHeat};
 use crate::signals::{Inputs, Motion};
 use crate::thermal_map::{self, ThermalMap};
 use crate::transport::Upwind;
@@ -52,6 +54,8 @@ pub struct Rail {
     pub basis: DepthBasis,
     /// Thermal displacement of the contact nodes.
     pub thermal_map: ThermalMap,
+    /// Profile of the temperature that enters.
+    pub incoming: Incoming,
     /// Profile of the wheel √(r₀² − x²) − r₀ at the contact nodes, scaled. The u₁ in (9) is dropped: it moves the contact
     /// by its own size, some µm, against a half-length of some mm.
     pub profile: Vec<f64>,
@@ -74,6 +78,7 @@ impl Rail {
             parameters.thermal_diffusivity,
             thermal_map::TOLERANCE,
         );
+        let incoming = Incoming::new(&mesh.depth, &basis, parameters.skin_depth);
         let r0 = parameters.wheel_radius;
         let profile = (0..mesh.contact_nodes)
             .map(|i| {
@@ -88,6 +93,7 @@ impl Rail {
             compliance,
             basis,
             thermal_map,
+            incoming,
             profile,
         })
     }
@@ -132,10 +138,12 @@ pub struct Fields {
     pub heat_flux: Vec<f64>,
     /// Penetration δ, scaled; 0 when lifted.
     pub penetration: f64,
+    /// Temperature of the wheel's rim, absolute, `K`.
+    pub wheel_temperature: f64,
 }
 
 impl Fields {
-    /// A cold, unworn rail without contact.
+    /// A cold, unworn rail without contact; the wheel's temperature is 0 K.
     pub fn new(rail: &Rail) -> Fields {
         let (n, columns) = (rail.mesh.contact_nodes, rail.mesh.columns());
         Fields {
@@ -149,6 +157,7 @@ impl Fields {
             friction: vec![0.0; n],
             heat_flux: vec![0.0; n],
             penetration: 0.0,
+            wheel_temperature: 0.0,
         }
     }
 
@@ -187,6 +196,7 @@ impl Fields {
             own.copy_from_slice(other);
         }
         self.penetration = other.penetration;
+        self.wheel_temperature = other.wheel_temperature;
     }
 
     /// Adds a multiple of other fields of the same sizes.
@@ -195,6 +205,7 @@ impl Fields {
             dense::add_multiple(other, factor, own);
         }
         self.penetration += factor * other.penetration;
+        self.wheel_temperature += factor * other.wheel_temperature;
     }
 
     /// Modal amplitudes of one column.
@@ -278,6 +289,11 @@ pub struct Convergence {
     pub residual: f64,
 }
 
+/// Values that the split iterates on ([`Contact::gather`]) with n contact nodes.
+pub(crate) fn gathered(n: usize) -> usize {
+    4 * n + 1
+}
+
 /// Buffers of a split.
 pub struct Scratch {
     pub(crate) softening: Softening,
@@ -310,9 +326,9 @@ impl Scratch {
             mode: vec![0.0; rail.basis.len()],
             moments: vec![0.0; rail.thermal_map.scratch_len(rail.mesh.columns())],
             mapped_flux: vec![0.0; n],
-            iterate: vec![0.0; 4 * n],
-            image: vec![0.0; 4 * n],
-            anderson: Anderson::new(4 * n),
+            iterate: vec![0.0; gathered(n)],
+            image: vec![0.0; gathered(n)],
+            anderson: Anderson::new(gathered(n)),
             softening: Softening::new(&rail.compliance.at_rest.normal_normal),
         }
     }
@@ -368,7 +384,7 @@ impl Contact<'_> {
             if seen && residual * contraction <= TOLERANCE && sweep.shear_change * contraction <= SHEAR_TOLERANCE {
                 injection::passes(Solver::Split)?;
                 self.check_window(fields)?;
-                self.close(fields);
+                self.close(before, fields);
                 return Ok(Convergence { iterations, residual });
             }
             if iterations >= ACCELERATE_FROM {
@@ -556,8 +572,10 @@ impl Contact<'_> {
         {
             *rate = self.parameters.wear_coefficient * slip.abs() * pressure * self.rail.scales.pressure;
         }
+        let transport = self.upwind();
+        fields.wear[transport.inflow()] = self.conditions.inputs.incoming_wear_depth;
         wear::advance(
-            &self.upwind(),
+            &transport,
             self.conditions.duration,
             self.rail.mesh.first_contact,
             &scratch.wear_rate,
@@ -566,15 +584,61 @@ impl Contact<'_> {
         );
     }
 
-    /// (19), (23), and the thermal displacement; `first` in the first iteration.
+    /// Temperature rise θ_w of the wheel in (23) at the rim's temperature, `K`.
+    pub(crate) fn wheel_rise(&self, wheel_temperature: f64) -> f64 {
+        match self.parameters.wheel_heating {
+            WheelHeating::Off => 0.0,
+            WheelHeating::On => wheel_temperature - self.conditions.inputs.ambient_temperature,
+        }
+    }
+
+    /// (19), (23) together with the rim's temperature, and the thermal displacement; `first` in the first iteration. What the
+    /// rail gives to the wheel and what the wheel takes is the same heat. With a cold wheel this is one march.
     fn march_heat(&self, before: &Fields, fields: &mut Fields, scratch: &mut Scratch, first: bool) -> Result<()> {
+        let ambient = self.conditions.inputs.ambient_temperature;
+        let guess = scratch.iterate[gathered(fields.pressure.len()) - 1] * TEMPERATURE_SCALE;
+        let mut wheel = rim::FixedPoint::new(match self.parameters.wheel_heating {
+            WheelHeating::Off => ambient,
+            WheelHeating::On => guess,
+        });
+        loop {
+            self.march_rail(before, fields, scratch, self.wheel_rise(wheel.temperature()))?;
+            self.warm_wheel(before, fields);
+            if wheel.rests(fields.wheel_temperature)? {
+                injection::passes(Solver::WheelHeat)?;
+                break;
+            }
+        }
+        // Flux that changes from one iteration to the next moves the surface less than in proportion to all that the flux
+        // has heated so far: the last iteration of a step need not apply the map.
+        let moved = largest_change(&fields.heat_flux, &scratch.mapped_flux) * largest(&fields.thermal_displacement);
+        if first || moved > UNFELT * TOLERANCE * largest(&scratch.mapped_flux) {
+            self.rail.thermal_map.apply(
+                &fields.temperature,
+                &mut scratch.moments,
+                &mut fields.thermal_displacement,
+            );
+            scratch.mapped_flux.copy_from_slice(&fields.heat_flux);
+        }
+        Ok(())
+    }
+
+    /// (19), (23) with the wheel at θ_w.
+    fn march_rail(&self, before: &Fields, fields: &mut Fields, scratch: &mut Scratch, wheel_rise: f64) -> Result<()> {
+        let (inputs, m) = (&self.conditions.inputs, self.rail.basis.len());
         for (exchange, (pressure, slip)) in scratch
             .exchange
             .iter_mut()
             .zip(fields.pressure.iter().zip(&fields.slip))
         {
-            *exchange = SurfaceExchange::new(self.parameters, pressure * self.rail.scales.pressure, *slip);
+            *exchange = SurfaceExchange::new(self.parameters, pressure * self.rail.scales.pressure, *slip, wheel_rise);
         }
+        let inflow = self.upwind().inflow();
+        self.rail.incoming.enter(
+            inputs.incoming_temperature - inputs.ambient_temperature,
+            &mut fields.temperature[inflow * m..(inflow + 1) * m],
+            &mut fields.surface_temperature[inflow],
+        );
         HeatMarch {
             basis: &self.rail.basis,
             transport: self.upwind(),
@@ -591,19 +655,18 @@ impl Contact<'_> {
                 flux: &mut fields.heat_flux,
             },
             &mut scratch.mode,
-        )?;
-        // Flux that changes from one iteration to the next moves the surface less than in proportion to all that the flux
-        // has heated so far: the last iteration of a step need not apply the map.
-        let moved = largest_change(&fields.heat_flux, &scratch.mapped_flux) * largest(&fields.thermal_displacement);
-        if first || moved > UNFELT * TOLERANCE * largest(&scratch.mapped_flux) {
-            self.rail.thermal_map.apply(
-                &fields.temperature,
-                &mut scratch.moments,
-                &mut fields.thermal_displacement,
-            );
-            scratch.mapped_flux.copy_from_slice(&fields.heat_flux);
-        }
-        Ok(())
+        )
+    }
+
+    /// The rim's temperature under what the contact gives to it.
+    fn warm_wheel(&self, before: &Fields, fields: &mut Fields) {
+        fields.wheel_temperature = rim::temperature(
+            self.parameters,
+            before.wheel_temperature,
+            self.conditions.inputs.ambient_temperature,
+            self.conditions.duration,
+            &ContactHeat::new(self.rail, self.parameters, fields),
+        );
     }
 
     /// Adapts the normal compliance to the wear of the step.
@@ -624,12 +687,15 @@ impl Contact<'_> {
     }
 
     /// What the mechanics see of heat and wear: thermal displacement (2n), temperature (n) in hundreds of kelvin, a change
-    /// that matters to the friction law, and the part of the wear that is not in the normal compliance (n).
+    /// that matters to the friction law, and the part of the wear that is not in the normal compliance (n). Last what the
+    /// heat sees of the wheel, its temperature in hundreds of kelvin.
     pub(crate) fn gather(&self, fields: &Fields, softening: &Softening, values: &mut [f64]) {
         let n = self.rail.mesh.contact_nodes;
         let window = self.window();
         let (displacement, rest) = values.split_at_mut(2 * n);
-        let (temperature, wear) = rest.split_at_mut(n);
+        let (temperature, rest) = rest.split_at_mut(n);
+        let (wear, wheel) = rest.split_at_mut(n);
+        wheel[0] = fields.wheel_temperature / TEMPERATURE_SCALE;
         displacement.copy_from_slice(&fields.thermal_displacement);
         for (value, temperature) in temperature.iter_mut().zip(&fields.surface_temperature[window.clone()]) {
             *value = temperature / TEMPERATURE_SCALE;
@@ -640,8 +706,8 @@ impl Contact<'_> {
         softening.subtract_proportional(&fields.pressure, wear);
     }
 
-    /// ‖Δθ‖ relative to the largest temperature (at least 1 K), and the change of thermal displacement and wear relative to
-    /// the displacement scale.
+    /// ‖Δθ‖ relative to the largest temperature (at least 1 K), the change of thermal displacement and wear relative to
+    /// the displacement scale, and that of the wheel's temperature in hundreds of kelvin.
     fn change(&self, before: &[f64], after: &[f64]) -> f64 {
         let n = self.rail.mesh.contact_nodes;
         let temperature = 2 * n..3 * n;
@@ -654,8 +720,8 @@ impl Contact<'_> {
     }
 
     /// Friction coefficient and shear of the final temperature: what is left of the split's tolerance goes into the
-    /// equilibrium, and the friction power is the one that heated the rail, to round-off.
-    fn close(&self, fields: &mut Fields) {
+    /// equilibrium, and the friction power is the one that heated rail and wheel, to round-off.
+    fn close(&self, before: &Fields, fields: &mut Fields) {
         let law = self.friction_state();
         let first = self.window().start;
         for node in 0..fields.pressure.len() {
@@ -664,6 +730,7 @@ impl Contact<'_> {
             fields.friction[node] = mu;
             fields.shear[node] = -mu * fields.pressure[node] * saturation;
         }
+        self.warm_wheel(before, fields);
     }
 
     /// A contact that reaches the end of the window is cut off by it.

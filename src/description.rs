@@ -11,7 +11,7 @@ use serde::Serialize;
 mod units;
 
 /// Outputs that add up over the steps: at a communication point they depend on no input, and they begin at 0.
-const TOTALS: [&str; 3] = ["worn_volume", "friction_energy", "distance"];
+const TOTALS: [&str; 4] = ["worn_volume", "friction_energy", "distance", "wheel_wear_depth"];
 
 /// The complete text of `modelDescription.xml`.
 ///

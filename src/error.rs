@@ -113,6 +113,14 @@ pub enum Error {
         /// Residual reached, `K`.
         residual: f64,
     },
+    /// Rail and wheel did not agree on the wheel's temperature.
+    #[error("the temperature of the wheel stopped after {iterations} iterations at a change of {residual:e} K")]
+    WheelHeatNotConverged {
+        /// Iterations done.
+        iterations: usize,
+        /// Last change, `K`.
+        residual: f64,
+    },
     /// The contact reaches the end of the window that was sized for `largest_load`.
     #[error("the contact reaches the end of the contact window (half-width {half_width} m): largest_load = {largest_load} N is too small for this penetration, wear or thermal bulge")]
     ContactLeavesWindow {

@@ -112,7 +112,7 @@ impl DepthBasis {
 }
 
 /// What heats and cools one column's surface, at the rail temperature θ (rise):
-/// q = ᾱ [ μ(θ) P − H θ ], the condition (23) with P = p |φ(s) s| and H = k ρ c_p |s| p + p / r; the wheel is at ambient.
+/// q = ᾱ [ μ(θ) P + S − H θ ], the condition (23) with P = p |φ(s) s|, S = θ_w p / r and H = k ρ c_p |s| p + p / r.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct SurfaceExchange {
     /// P: friction power per area and friction coefficient, `W/m²`.
@@ -121,16 +121,21 @@ pub struct SurfaceExchange {
     pub debris: f64,
     /// p / r: heat conducted into the wheel per kelvin, `W/(m² K)`.
     pub conduction: f64,
+    /// S: heat conducted from a wheel at θ_w into rail at ambient, `W/m²`.
+    pub wheel: f64,
 }
 
 impl SurfaceExchange {
-    /// The exchange under pressure `pressure` `Pa` and slip velocity `slip` `m/s`.
-    pub fn new(parameters: &Parameters, pressure: f64, slip: f64) -> SurfaceExchange {
+    /// The exchange under pressure `pressure` `Pa` and slip velocity `slip` `m/s` with a wheel at `wheel_rise` `K` over the
+    /// ambient.
+    pub fn new(parameters: &Parameters, pressure: f64, slip: f64, wheel_rise: f64) -> SurfaceExchange {
         let saturation = friction::saturation(slip, parameters.slip_regularisation);
+        let conduction = pressure / parameters.contact_thermal_resistance;
         SurfaceExchange {
             friction: pressure * (saturation * slip).abs(),
             debris: parameters.wear_coefficient * parameters.volumetric_heat_capacity() * slip.abs() * pressure,
-            conduction: pressure / parameters.contact_thermal_resistance,
+            conduction,
+            wheel: conduction * wheel_rise,
         }
     }
 
@@ -187,8 +192,8 @@ pub struct Heated<'a> {
 }
 
 impl HeatMarch<'_> {
-    /// From the modal amplitudes `before` to the field `after` under the exchange at the contact nodes. `scratch`
-    /// holds one value a mode.
+    /// From the modal amplitudes `before` to the field `after` under the exchange at the contact nodes. The inflow column
+    /// of `after` holds what enters. `scratch` holds one value a mode.
     ///
     /// # Errors
     /// [`Error::SurfaceHeatNotConverged`].
@@ -216,9 +221,6 @@ impl HeatMarch<'_> {
         let parameters = self.friction.parameters;
         let (m, capacity) = (self.basis.len(), parameters.volumetric_heat_capacity());
         let storage = 1.0 / self.duration;
-        let inflow = self.transport.inflow();
-        after.temperature[inflow * m..(inflow + 1) * m].fill(0.0);
-        after.surface[inflow] = 0.0;
         let surface = &self.basis.surface[..m];
         let inverse = &mut scratch[..m];
         let mut spacing = f64::NAN;
@@ -274,6 +276,7 @@ impl HeatMarch<'_> {
         let gain = response * parameters.heat_partition;
         let loss = exchange.debris + exchange.conduction;
         let damping = 1.0 + gain * loss;
+        let unheated = unheated + gain * exchange.wheel;
         // Without friction θ is unheated / damping, with the largest μ it is the upper end.
         let largest = self.friction.scale * friction::largest_coefficient(parameters);
         let mut low = unheated / damping;
@@ -286,7 +289,7 @@ impl HeatMarch<'_> {
             residual = damping * theta - unheated - gain * mu * exchange.friction;
             if residual.abs() <= tolerance * damping || high - low <= tolerance {
                 injection::passes(Solver::SurfaceHeat)?;
-                return Ok(parameters.heat_partition * (mu * exchange.friction - loss * theta));
+                return Ok(parameters.heat_partition * (mu * exchange.friction + exchange.wheel - loss * theta));
             }
             if residual > 0.0 {
                 high = theta;

@@ -18,17 +18,20 @@ pub enum Solver {
     Split,
     /// [`crate::heat`].
     SurfaceHeat,
+    /// [`crate::rim`].
+    WheelHeat,
 }
 
 impl Solver {
     /// All of them.
-    pub const ALL: [Solver; 6] = [
+    pub const ALL: [Solver; 7] = [
         Solver::ActiveSet,
         Solver::Pschenichnyj,
         Solver::Tangential,
         Solver::Mechanics,
         Solver::Split,
         Solver::SurfaceHeat,
+        Solver::WheelHeat,
     ];
 
     /// What the solver says where it does not converge.
@@ -63,6 +66,7 @@ impl Solver {
                 iterations,
                 residual,
             },
+            Solver::WheelHeat => Error::WheelHeatNotConverged { iterations, residual },
         }
     }
 }

@@ -3,7 +3,9 @@
 use crate::contact::{Fields, Rail};
 use crate::friction;
 use crate::parameters::Parameters;
+use crate::rim::ContactHeat;
 use crate::signals::{Inputs, Outputs};
+use crate::transport::Upwind;
 
 /// The outputs that follow from the fields and the inputs at one instant; the totals are 0.
 pub fn instantaneous(rail: &Rail, parameters: &Parameters, fields: &Fields, inputs: &Inputs) -> Outputs {
@@ -13,7 +15,7 @@ pub fn instantaneous(rail: &Rail, parameters: &Parameters, fields: &Fields, inpu
     let n = rail.mesh.contact_nodes;
 
     let (mut total, mut moment, mut shear, mut weighted) = (0.0, 0.0, 0.0, 0.0);
-    let (mut friction_power, mut wear, mut heat) = (0.0, 0.0, 0.0);
+    let (mut friction_power, mut heat) = (0.0, 0.0);
     let (mut peak_pressure, mut peak_shear) = (0.0_f64, 0.0_f64);
     let (mut contact_nodes, mut sticking) = (0.0, 0.0);
     for node in 0..n {
@@ -27,7 +29,6 @@ pub fn instantaneous(rail: &Rail, parameters: &Parameters, fields: &Fields, inpu
         shear += tau;
         weighted += p * fields.friction[node];
         friction_power += (tau * slip).abs();
-        wear += p * slip.abs();
         peak_pressure = peak_pressure.max(p);
         peak_shear = peak_shear.max(tau.abs());
         contact_nodes += 1.0;
@@ -35,13 +36,16 @@ pub fn instantaneous(rail: &Rail, parameters: &Parameters, fields: &Fields, inpu
             sticking += 1.0;
         }
     }
-    let peak_rise = fields.surface_temperature.iter().fold(0.0, |m: f64, t| t.max(m));
+    let surface = fields.surface_temperature.iter();
+    let peak_rise = surface.fold(f64::NEG_INFINITY, |m: f64, t| t.max(m));
     let ambient = inputs.ambient_temperature;
     let load = force * total;
     let traction_force = -force * shear;
     let per_total = |value: f64| if total > 0.0 { value / total } else { 0.0 };
     let offset = per_total(moment);
     let cold = friction::coefficient(parameters, ambient + peak_rise).0 * inputs.friction_scale;
+    let outflow = Upwind::new(&rail.mesh.x, motion.rolling_speed).outflow();
+    let wheel_rise = fields.wheel_temperature - ambient;
     Outputs {
         traction_force,
         friction_torque: -(traction_force * parameters.wheel_radius + load * offset),
@@ -62,11 +66,23 @@ pub fn instantaneous(rail: &Rail, parameters: &Parameters, fields: &Fields, inpu
         friction_power: force * friction_power,
         rail_heat_flow: parameters.contact_width * spacing * heat,
         wear_depth: wear_left_behind(rail, fields, motion.rolling_speed),
-        wear_rate: force * parameters.wear_coefficient * wear,
+        wear_rate: parameters.wear_coefficient * sliding_power(rail, parameters, fields),
         worn_volume: 0.0,
         friction_energy: 0.0,
         distance: 0.0,
+        wheel_temperature: fields.wheel_temperature,
+        wheel_heat_flow: ContactHeat::new(rail, parameters, fields).flow(wheel_rise),
+        wheel_wear_depth: 0.0,
+        leaving_temperature: ambient + rail.incoming.equivalent_rise(&rail.basis, fields.column(rail, outflow)),
+        leaving_wear_depth: fields.wear[outflow],
     }
+}
+
+/// b ∫ |s| p dx, to which wear is proportional, `W`.
+pub fn sliding_power(rail: &Rail, parameters: &Parameters, fields: &Fields) -> f64 {
+    let nodes = fields.pressure.iter().zip(&fields.slip);
+    let sum: f64 = nodes.map(|(p, slip)| p * slip.abs()).sum();
+    parameters.contact_width * rail.mesh.contact_spacing() * rail.scales.pressure * sum
 }
 
 /// Distance between the ends of the contact. At an end the pressure falls like the root of the distance, so its

@@ -7,14 +7,15 @@
 //! infinitesimal change. Held fixed are the fields at the beginning of the sub-step and its length.
 
 use crate::acceleration::Anderson;
-use crate::contact::{Contact, Fields, Scratch, TEMPERATURE_SCALE};
+use crate::contact::{gathered, Contact, Fields, Scratch, TEMPERATURE_SCALE};
 use crate::error::{Error, Result};
 use crate::friction;
 use crate::heat::SurfaceExchange;
 use crate::mechanics::{ProblemTangent, Tractions};
 use crate::normal::Constraint;
 use crate::outputs;
-use crate::parameters::SlipSource;
+use crate::parameters::{SlipSource, WheelHeating};
+use crate::rim::{self, ContactHeat};
 use crate::signals::{Inputs, Outputs, INPUTS, OUTPUTS};
 
 /// Iterations of the linear split.
@@ -26,6 +27,14 @@ const TOLERANCE: f64 = 1e-9;
 /// Relative step of the central difference of the outputs along the tangent. The outputs are sums, products and
 /// ratios of the fields: truncation is 1e-14, round-off 1e-9.
 const OUTPUT_STEP: f64 = 1e-7;
+/// The same for fields of which the outputs are linear functions or the largest value: temperature, displacement, wear and
+/// flux. Larger, so that a change of the rail that hardly moves the tractions is not lost in their round-off.
+const LINEAR_OUTPUT_STEP: f64 = 1e-5;
+/// Steps in the order of [`Fields::vectors`].
+const OUTPUT_STEPS: [f64; 9] = {
+    let (linear, other) = (LINEAR_OUTPUT_STEP, OUTPUT_STEP);
+    [linear, linear, linear, linear, other, other, other, other, linear]
+};
 
 /// The linearised step.
 pub struct Linearisation<'a> {
@@ -109,8 +118,9 @@ impl<'a> Linearisation<'a> {
         let n = self.contact.rail.mesh.contact_nodes;
         let mut tangent = Fields::new(self.contact.rail);
         let mut last = tangent.clone();
-        let (mut iterate, mut image) = (vec![0.0; 4 * n], vec![0.0; 4 * n]);
-        let mut anderson = Anderson::new(4 * n);
+        let size = gathered(n);
+        let (mut iterate, mut image) = (vec![0.0; size], vec![0.0; size]);
+        let mut anderson = Anderson::new(size);
         let mut residual = f64::INFINITY;
         for iteration in 0..SPLITS {
             if !self.lifted {
@@ -118,12 +128,15 @@ impl<'a> Linearisation<'a> {
             }
             if self.marches {
                 self.wear_tangent(change, &mut tangent);
-                self.temperature_tangent(change, &mut tangent);
+                self.temperature_tangent(change, iterate[size - 1] * TEMPERATURE_SCALE, &mut tangent);
                 self.contact.rail.thermal_map.apply(
                     &tangent.temperature,
                     &mut self.scratch.moments,
                     &mut tangent.thermal_displacement,
                 );
+                self.wheel_tangent(change, &mut tangent);
+            } else {
+                tangent.wheel_temperature = change.inputs.ambient_temperature;
             }
             self.contact.gather(&tangent, &self.scratch.softening, &mut image);
             residual = tangent
@@ -131,6 +144,7 @@ impl<'a> Linearisation<'a> {
                 .iter()
                 .zip(last.vectors())
                 .map(|(now, last)| relative_change(now, last))
+                .chain([relative_change(&[tangent.wheel_temperature], &[last.wheel_temperature])])
                 .fold(0.0, f64::max);
             if residual <= TOLERANCE {
                 return Ok(tangent);
@@ -225,6 +239,7 @@ impl<'a> Linearisation<'a> {
         let transport = contact.upwind();
         let first = contact.window().start;
         let fields = &*self.fields;
+        tangent.wear[transport.inflow()] = change.inputs.incoming_wear_depth;
         for column in transport.columns() {
             let advection = transport.speed() / column.spacing;
             let node = column.index.wrapping_sub(first);
@@ -239,8 +254,8 @@ impl<'a> Linearisation<'a> {
         }
     }
 
-    /// (19), (23).
-    fn temperature_tangent(&self, change: &InputTangent, tangent: &mut Fields) {
+    /// (19), (23), at the given change of the wheel's temperature, `K`.
+    fn temperature_tangent(&self, change: &InputTangent, wheel_tangent: f64, tangent: &mut Fields) {
         let contact = &self.contact;
         let (parameters, basis) = (contact.parameters, &contact.rail.basis);
         let (m, capacity) = (basis.len(), parameters.volumetric_heat_capacity());
@@ -249,6 +264,17 @@ impl<'a> Linearisation<'a> {
         let first = contact.window().start;
         let fields = &*self.fields;
         let law = contact.friction_state();
+        let inflow = transport.inflow();
+        contact.rail.incoming.enter(
+            change.inputs.incoming_temperature - change.inputs.ambient_temperature,
+            &mut tangent.temperature[inflow * m..(inflow + 1) * m],
+            &mut tangent.surface_temperature[inflow],
+        );
+        let wheel_rise = contact.wheel_rise(fields.wheel_temperature);
+        let wheel_rise_tangent = match parameters.wheel_heating {
+            WheelHeating::Off => 0.0,
+            WheelHeating::On => wheel_tangent - change.inputs.ambient_temperature,
+        };
         for column in transport.columns() {
             let advection = transport.speed() / column.spacing;
             let advection_tangent = self.advection_tangent(change, column.spacing);
@@ -272,7 +298,7 @@ impl<'a> Linearisation<'a> {
             let (pressure, slip) = (pressure * contact.rail.scales.pressure, fields.slip[node]);
             let pressure_tangent = tangent.pressure[node] * contact.rail.scales.pressure;
             let slip_tangent = tangent.slip[node];
-            let exchange = SurfaceExchange::new(parameters, pressure, slip);
+            let exchange = SurfaceExchange::new(parameters, pressure, slip, wheel_rise);
             let loss = exchange.debris + exchange.conduction;
             let rise = fields.surface_temperature[column.index];
             let (mu, slope) = law.coefficient(rise);
@@ -293,7 +319,9 @@ impl<'a> Linearisation<'a> {
                 + scale_tangent * exchange.friction
                 + mu * power_tangent
                 - loss_tangent * rise
-                - loss * unheated;
+                - loss * unheated
+                + pressure_tangent / parameters.contact_thermal_resistance * wheel_rise
+                + exchange.conduction * wheel_rise_tangent;
             let flux = partition * source / (1.0 - partition * response * (slope * exchange.friction - loss));
             tangent.heat_flux[node] = flux;
             tangent.surface_temperature[column.index] += response * flux;
@@ -304,23 +332,48 @@ impl<'a> Linearisation<'a> {
         }
     }
 
+    /// The rim's temperature.
+    fn wheel_tangent(&self, change: &InputTangent, tangent: &mut Fields) {
+        let contact = &self.contact;
+        let (rail, parameters) = (contact.rail, contact.parameters);
+        tangent.wheel_temperature = rim::temperature_tangent(
+            parameters,
+            self.fields.wheel_temperature,
+            (
+                contact.conditions.inputs.ambient_temperature,
+                change.inputs.ambient_temperature,
+            ),
+            contact.conditions.duration,
+            &ContactHeat::new(rail, parameters, self.fields),
+            &ContactHeat::tangent(rail, parameters, self.fields, tangent),
+        );
+    }
+
     /// Derivatives of the outputs along the tangents of inputs and fields.
     fn output_tangent(&self, change: &InputTangent, tangent: &Fields) -> Outputs {
         let (contact, fields) = (&self.contact, &*self.fields);
-        // A step that moves every field by at most OUTPUT_STEP of its largest value.
+        // A step that moves no field by more than its share of its largest value.
         let step = fields
             .vectors()
             .iter()
             .zip(tangent.vectors())
-            .map(|(field, tangent)| largest(field) / largest(tangent))
-            .filter(|ratio| ratio.is_finite() && *ratio > 0.0)
+            .zip(OUTPUT_STEPS)
+            .map(|((field, tangent), share)| share * largest(field) / largest(tangent))
+            .filter(|step| step.is_finite() && *step > 0.0)
             .fold(f64::INFINITY, f64::min);
-        let step = OUTPUT_STEP * if step.is_finite() { step } else { 1.0 };
+        let step = if step.is_finite() { step } else { OUTPUT_STEP };
+        let duration = contact.conditions.duration;
         let moved = |step: f64| {
             let mut fields = fields.clone();
             fields.add_multiple(step, tangent);
             let inputs = contact.conditions.inputs.advanced(&change.inputs, step);
-            outputs::instantaneous(contact.rail, contact.parameters, &fields, &inputs)
+            let mut outputs = outputs::instantaneous(contact.rail, contact.parameters, &fields, &inputs);
+            outputs.wheel_wear_depth = duration
+                * rim::wear_rate(
+                    contact.parameters,
+                    outputs::sliding_power(contact.rail, contact.parameters, &fields),
+                );
+            outputs
         };
         let (ahead, behind) = (moved(step), moved(-step));
         let mut derivative = Outputs::default();
@@ -332,7 +385,6 @@ impl<'a> Linearisation<'a> {
         }
         // Counted in nodes: constant but for jumps.
         derivative.stick_fraction = 0.0;
-        let duration = contact.conditions.duration;
         let direction = if contact.conditions.motion.rolling_speed >= 0.0 {
             1.0
         } else {

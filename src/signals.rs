@@ -19,6 +19,10 @@ pub struct Inputs {
     pub friction_scale: f64,
     /// Ambient temperature, `K`; the rail's and the wheel's far away from the contact.
     pub ambient_temperature: f64,
+    /// Temperature of the rail's skin where it enters, `K` ([`crate::incoming`]).
+    pub incoming_temperature: f64,
+    /// Wear depth of the rail where it enters, `m`.
+    pub incoming_wear_depth: f64,
 }
 
 /// The outputs at one instant.
@@ -52,7 +56,7 @@ pub struct Outputs {
     pub friction_power: f64,
     /// Heat flowing into the rail through the contact, `W`.
     pub rail_heat_flow: f64,
-    /// Wear depth that one passage leaves behind the contact, `m`.
+    /// Wear depth behind the contact, what came in with the rail included, `m`.
     pub wear_depth: f64,
     /// Volume worn per time, `m³/s`.
     pub wear_rate: f64,
@@ -62,6 +66,16 @@ pub struct Outputs {
     pub friction_energy: f64,
     /// Distance ∫|V| dt rolled since the start, `m`.
     pub distance: f64,
+    /// Temperature T_w of the wheel's rim, `K` ([`crate::rim`]).
+    pub wheel_temperature: f64,
+    /// Heat flowing into the wheel through the contact, `W`.
+    pub wheel_heat_flow: f64,
+    /// Radius that the wheel has lost by wear since the start, `m`.
+    pub wheel_wear_depth: f64,
+    /// Temperature of the rail's skin where it leaves, `K` ([`crate::incoming`]).
+    pub leaving_temperature: f64,
+    /// Wear depth of the rail where it leaves, `m`.
+    pub leaving_wear_depth: f64,
 }
 
 /// One row of the table of inputs.
@@ -147,6 +161,8 @@ pub const INPUTS: &[InputSignal] = &[
     input!(vehicle_speed, "m/s", 10.0, -1e3, 1e3, 10.0, "Speed of the wheel's axle along the rail, used where slip_source is vehicle_speed"),
     input!(friction_scale, "1", 1.0, 0.0, 2.0, 1.0, "Factor on the friction coefficient for a wet, contaminated or sanded rail"),
     input!(ambient_temperature, "K", 293.15, 100.0, 1000.0, 300.0, "Ambient temperature, the temperature of rail and wheel away from the contact"),
+    input!(incoming_temperature, "K", 293.15, 100.0, 3000.0, 300.0, "Absolute temperature of the rail entering at the leading edge of the strip, over skin_depth: leaving_temperature of the wheel in front, or the ambient's"),
+    input!(incoming_wear_depth, "m", 0.0, 0.0, 1e-2, 1e-7, "Depth of wear of the rail entering at the leading edge of the strip: leaving_wear_depth of the wheel in front"),
 ];
 
 /// The outputs in the order in which they are listed.
@@ -166,11 +182,16 @@ pub const OUTPUTS: &[OutputSignal] = &[
     output!(friction_coefficient, "1", Some(0.0), None, 0.1, "Pressure-weighted mean of the friction coefficient"),
     output!(friction_power, "W", Some(0.0), None, 1e4, "Power dissipated by friction in the contact"),
     output!(rail_heat_flow, "W", None, None, 1e4, "Heat flowing into the rail through the contact"),
-    output!(wear_depth, "m", Some(0.0), None, 1e-7, "Depth of wear that one passage leaves behind the contact"),
+    output!(wear_depth, "m", Some(0.0), None, 1e-7, "Depth of wear behind the contact: what entered with the rail and what this passage adds"),
     output!(wear_rate, "m3/s", Some(0.0), None, 1e-9, "Volume worn off the rail per time"),
     output!(worn_volume, "m3", Some(0.0), None, 1e-9, "Volume worn off the rail since the start"),
     output!(friction_energy, "J", Some(0.0), None, 1e4, "Work dissipated by friction since the start"),
     output!(distance, "m", Some(0.0), None, 10.0, "Distance rolled since the start"),
+    output!(wheel_temperature, "K", Some(0.0), None, 300.0, "Absolute temperature of the wheel's rim"),
+    output!(wheel_heat_flow, "W", None, None, 1e4, "Heat flowing into the wheel through the contact"),
+    output!(wheel_wear_depth, "m", Some(0.0), None, 1e-9, "Radius that the wheel has lost by wear since the start, uniform over the circumference"),
+    output!(leaving_temperature, "K", None, None, 300.0, "Absolute temperature of the rail leaving at the trailing edge of the strip: its heat spread over skin_depth"),
+    output!(leaving_wear_depth, "m", Some(0.0), None, 1e-7, "Depth of wear of the rail leaving at the trailing edge of the strip"),
 ];
 
 impl Default for Inputs {
@@ -182,6 +203,8 @@ impl Default for Inputs {
             vehicle_speed: 0.0,
             friction_scale: 0.0,
             ambient_temperature: 0.0,
+            incoming_temperature: 0.0,
+            incoming_wear_depth: 0.0,
         };
         for signal in INPUTS {
             (signal.set)(&mut inputs, signal.default);
@@ -300,5 +323,7 @@ impl Inputs {
         vehicle_speed: 0.0,
         friction_scale: 0.0,
         ambient_temperature: 0.0,
+        incoming_temperature: 0.0,
+        incoming_wear_depth: 0.0,
     };
 }

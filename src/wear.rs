@@ -4,7 +4,8 @@ use crate::transport::Upwind;
 use nalgebra::DMatrix;
 
 /// One implicit time step: the wear depth `after` at all columns, `m`, from `before`, under the wear rate
-/// k |s| p at the contact nodes `m/s`, the first of which is the column `first_contact`.
+/// k |s| p at the contact nodes `m/s`, the first of which is the column `first_contact`. The inflow column of `after`
+/// holds what enters.
 pub fn advance(
     transport: &Upwind,
     duration: f64,
@@ -14,7 +15,6 @@ pub fn advance(
     after: &mut [f64],
 ) {
     let storage = 1.0 / duration;
-    after[transport.inflow()] = 0.0;
     for column in transport.columns() {
         let advection = transport.speed() / column.spacing;
         let contact = column.index.wrapping_sub(first_contact);

@@ -5,6 +5,7 @@ use crate::error::{Error, Result};
 use crate::friction;
 use crate::outputs;
 use crate::parameters::Parameters;
+use crate::rim;
 use crate::sensitivity::Linearisation;
 use crate::signals::{Inputs, Outputs, OUTPUTS};
 use serde::{Deserialize, Serialize};
@@ -110,13 +111,15 @@ impl Model {
         }
     }
 
-    /// The cold, unworn rail under the given inputs: mechanics solved, no heat and no wear yet.
+    /// Rail and wheel at ambient and unworn under the given inputs: mechanics solved, no heat and no wear yet, nothing has
+    /// come in.
     ///
     /// # Errors
     /// Inputs out of range, or a solver that did not converge.
     pub fn initial_state(&self, workspace: &mut Workspace, inputs: &Inputs) -> Result<State> {
         inputs.check(&self.parameters)?;
         let mut fields = Fields::new(&self.rail);
+        fields.wheel_temperature = inputs.ambient_temperature;
         let contact = self.contact(inputs, f64::INFINITY);
         contact.solve_mechanics(&mut fields, &mut workspace.scratch)?;
         let mut state = State {
@@ -145,6 +148,7 @@ impl Model {
             .all(|(own, expected)| own.len() == expected.len() && own.iter().all(|v| v.is_finite()))
             && OUTPUTS.iter().all(|signal| (signal.get)(&state.outputs).is_finite())
             && fields.penetration.is_finite()
+            && fields.wheel_temperature.is_finite()
             && state.time.is_finite()
             && state.duration >= 0.0
             && state.inputs.check(&self.parameters).is_ok()
@@ -237,6 +241,11 @@ impl Model {
         outputs.worn_volume = state.outputs.worn_volume + outputs.wear_rate * duration;
         outputs.friction_energy = state.outputs.friction_energy + outputs.friction_power * duration;
         outputs.distance = state.outputs.distance + contact.conditions.motion.rolling_speed.abs() * duration;
+        outputs.wheel_wear_depth = state.outputs.wheel_wear_depth
+            + rim::wear_rate(
+                &self.parameters,
+                outputs::sliding_power(&self.rail, &self.parameters, trial),
+            ) * duration;
         for signal in OUTPUTS {
             let rate = ((signal.get)(&outputs) - (signal.get)(&state.outputs)) / duration;
             (signal.set)(&mut state.output_rates, rate);

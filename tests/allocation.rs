@@ -12,7 +12,7 @@ use wheelrail::fmi2::functions::{
     fmi2Instantiate, fmi2SetReal, fmi2SetRealInputDerivatives, fmi2SetupExperiment,
 };
 use wheelrail::fmi2::types::{CallbackFunctions, Status};
-use wheelrail::parameters::{NormalSolver, Parameters, SlipSource};
+use wheelrail::parameters::{NormalSolver, Parameters, SlipSource, Wheel, WheelHeating};
 use wheelrail::signals::Inputs;
 use wheelrail::wheel_rail::Model;
 
@@ -77,6 +77,8 @@ fn inputs(step: u32) -> Inputs {
             40e3 + 1.5e3 * phase
         },
         friction_scale: 0.3 + 0.02 * phase,
+        incoming_temperature: 293.15 + phase,
+        incoming_wear_depth: 1e-8 * phase,
         ..Inputs::default()
     }
 }
@@ -86,10 +88,20 @@ const WARM_UP: u32 = 1;
 
 #[test]
 fn a_step_of_the_model_allocates_nothing() {
-    for (normal_solver, steps) in [(NormalSolver::ActiveSet, STEPS), (NormalSolver::Pschenichnyj, 20)] {
+    for (normal_solver, wheel_heating, steps) in [
+        (NormalSolver::ActiveSet, WheelHeating::Off, STEPS),
+        (NormalSolver::ActiveSet, WheelHeating::On, STEPS),
+        (NormalSolver::Pschenichnyj, WheelHeating::Off, 20),
+    ] {
         let model = Model::new(Parameters {
             slip_source: SlipSource::VehicleSpeed,
             normal_solver,
+            wheel: Wheel::Elastic,
+            wheel_heating,
+            // Good contact with a thin ring: rail and wheel iterate.
+            contact_thermal_resistance: 10.0,
+            rim_depth: 1e-3,
+            rim_width: 1e-3,
             ..Parameters::default()
         })
         .unwrap();

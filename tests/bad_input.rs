@@ -65,9 +65,13 @@ fn every_input_out_of_its_range_is_refused_and_changes_nothing() {
             assert_eq!(run.state, before);
             assert!(run.model.initial_state(&mut run.workspace, &inputs).is_err());
 
-            // The same value reached by a rate within the step.
+            // The same side left by a rate within the step, by more than the rounding of a ramp.
             let mut rates = Inputs::ZERO;
-            (signal.set)(&mut rates, (value - (signal.get)(&Inputs::default())) * 2e3);
+            let change = value - (signal.get)(&Inputs::default());
+            (signal.set)(
+                &mut rates,
+                (change + 0.01 * change.signum() * (range.1 - range.0)) * 2e3,
+            );
             let interrupted = run
                 .model
                 .step(&mut run.workspace, &mut run.state, &Inputs::default(), &rates, 1e-3)

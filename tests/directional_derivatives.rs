@@ -36,7 +36,7 @@ struct Point<'a> {
     client: &'a Client<'a>,
     before: Handle,
     time: f64,
-    inputs: [(&'static str, f64); 6],
+    inputs: [(&'static str, f64); 8],
     references: Vec<u32>,
 }
 
@@ -132,6 +132,8 @@ fn directional_derivatives_are_the_differences_of_a_rolled_back_step() {
             ("vehicle_speed", speed),
             ("friction_scale", random.between(0.3, 1.2)),
             ("ambient_temperature", random.between(260.0, 310.0)),
+            ("incoming_temperature", random.between(260.0, 350.0)),
+            ("incoming_wear_depth", random.between(0.0, 1e-6)),
         ];
         let moved = start.map(|(name, value)| (name, value * (1.0 + MOVE)));
         client.expect(OK, client.set(&moved));

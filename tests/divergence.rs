@@ -21,6 +21,7 @@ fn words(solver: Solver) -> &'static str {
         Solver::Mechanics => "coupling of normal and tangential contact",
         Solver::Split => "thermo-mechanical operator split",
         Solver::SurfaceHeat => "surface heat condition",
+        Solver::WheelHeat => "temperature of the wheel",
     }
 }
 

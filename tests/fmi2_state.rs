@@ -43,6 +43,37 @@ fn restoring_and_repeating_gives_the_same_bits() {
     assert_eq!(drive(&client, 10), first);
 }
 
+/// The wheel's temperature and wear and what comes in with the rail are part of the state.
+#[test]
+fn the_wheel_and_the_incoming_rail_are_restored() {
+    let api = Api::load();
+    let client = Client::new(&api);
+    client.expect(OK, client.set_integers(&[("wheel", 2), ("wheel_heating", 2)]));
+    client.expect(
+        OK,
+        client.set(&[
+            ("strip_half_length", 0.2),
+            ("rim_depth", 1e-3),
+            ("wheel_wear_coefficient", 1e-12),
+            ("incoming_temperature", 320.0),
+            ("incoming_wear_depth", 1e-6),
+        ]),
+    );
+    client.expect(OK, client.setup(0.0, None));
+    client.expect(OK, client.enter());
+    client.expect(OK, client.exit());
+    drive(&client, 0);
+    let handle = client.save();
+    let wheel = client.get("wheel_temperature");
+    let first = drive(&client, 10);
+    assert!(wheel > 293.16 && client.get("wheel_temperature") > wheel);
+    assert!(client.get("wheel_wear_depth") > 0.0 && client.get("leaving_temperature") > 300.0);
+    client.expect(OK, client.set(&[("incoming_temperature", 300.0)]));
+    client.expect(OK, client.restore(handle));
+    assert_eq!(client.get("wheel_temperature"), wheel);
+    assert_eq!(drive(&client, 10), first);
+}
+
 #[test]
 fn a_state_holds_inputs_tunable_parameters_rates_time_and_mode() {
     let api = Api::load();

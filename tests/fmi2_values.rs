@@ -60,6 +60,8 @@ fn inputs_outside_their_range_are_discarded_while_running() {
         "vehicle_speed",
         "friction_scale",
         "ambient_temperature",
+        "incoming_temperature",
+        "incoming_wear_depth",
     ] {
         for value in NOT_FINITE {
             expect_discard(&client, name, value);
@@ -74,6 +76,8 @@ fn inputs_outside_their_range_are_discarded_while_running() {
         ("vehicle_speed", -1.01 * fastest),
         ("friction_scale", -1e-9),
         ("ambient_temperature", 0.0),
+        ("incoming_temperature", 0.0),
+        ("incoming_wear_depth", -1e-9),
     ] {
         expect_discard(&client, name, value);
     }

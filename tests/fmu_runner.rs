@@ -55,6 +55,8 @@ fn the_importer_gets_the_results_of_the_native_simulation() {
         vehicle_speed: 10.0,
         friction_scale: 0.9,
         ambient_temperature: 280.0,
+        incoming_temperature: 285.0,
+        incoming_wear_depth: 1e-7,
     };
     let parameters = Parameters {
         friction_cold: 0.4,

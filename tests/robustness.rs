@@ -112,3 +112,37 @@ fn a_rail_is_extremely_rough() {
         run.hold(&rough, 1e-3, 5).unwrap();
     }
 }
+
+/// Rail that was worn and heated by others comes in with a front; the contact goes over it.
+#[test]
+fn a_front_of_worn_and_hot_rail_passes_the_contact() {
+    for (wear, temperature, load) in [
+        (1e-6, 320.0, 60e3),
+        (1e-4, 293.15, 60e3),
+        (0.0, 900.0, 60e3),
+        (1e-5, 250.0, 10e3),
+    ] {
+        for duration in [1e-3, 2e-2, 1.0] {
+            let rolling = inputs(10.0, 10.1, load);
+            let mut run = Run::new(&parameters(), &rolling).unwrap();
+            run.hold(&rolling, duration, 3).unwrap();
+            let front = Inputs {
+                incoming_temperature: temperature,
+                incoming_wear_depth: wear,
+                ..rolling
+            };
+            let steps = (1.0 / duration).ceil().min(200.0) as usize;
+            let sunk = run.state.outputs.penetration;
+            let outputs = *run
+                .hold(&front, duration, 4 * steps)
+                .unwrap_or_else(|error| panic!("{front:?}: {error}"));
+            if duration > 1e-2 {
+                // All of the contact is on the new rail: the wheel has sunk by the wear, but for the thermal bulge.
+                assert!(outputs.leaving_wear_depth > 0.99 * wear);
+                if temperature == 293.15 {
+                    assert!((outputs.penetration - sunk - wear).abs() < 0.01 * wear);
+                }
+            }
+        }
+    }
+}

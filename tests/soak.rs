@@ -237,11 +237,12 @@ fn simulate(steps: u64) {
         "normal_load",
         "friction_scale",
         "ambient_temperature",
+        "incoming_temperature",
     ]
     .map(reference);
     let outputs: Vec<u32> = OUTPUTS.iter().map(|row| reference(row.name)).collect();
     let column = |name: &str| OUTPUTS.iter().position(|row| row.name == name).expect("an output");
-    let totals = ["worn_volume", "friction_energy", "distance"].map(column);
+    let totals = ["worn_volume", "friction_energy", "distance", "wheel_wear_depth"].map(column);
     let not_negative = [
         "peak_pressure",
         "peak_shear",
@@ -273,6 +274,8 @@ fn simulate(steps: u64) {
             given.wheel_speed,
             given.normal_load,
             given.friction_scale,
+            given.ambient_temperature,
+            // The rail comes in at ambient.
             given.ambient_temperature,
         ];
         // SAFETY: as many values as references, and a variable.

@@ -9,6 +9,7 @@ use std::sync::OnceLock;
 use wheelrail::compliance::{self, Scales, ThermalDisplacement};
 use wheelrail::contact::Rail;
 use wheelrail::heat::{FrictionState, HeatMarch, Heated, SurfaceExchange};
+use wheelrail::incoming::Incoming;
 use wheelrail::parameters::{FrictionLaw, Parameters};
 use wheelrail::thermal_map::{exact_displacement, TOLERANCE};
 use wheelrail::transport::Upwind;
@@ -52,6 +53,7 @@ proptest! {
                 friction: if node.abs_diff(30) < contact { friction } else { 0.0 },
                 debris: 0.0,
                 conduction: 0.0,
+                wheel: 0.0,
             })
             .collect();
         let march = HeatMarch {
@@ -83,5 +85,33 @@ proptest! {
         // makes in the middle of the window; what the columns drop adds up with random signs.
         let error = largest_difference(&expected, &computed);
         prop_assert!(error <= 10.0 * TOLERANCE, "{error:e}");
+    }
+}
+
+/// Rail that comes in hot is hot in all columns, whose dropped gains add up.
+#[test]
+fn the_compressed_map_holds_for_rail_that_comes_in_hot() {
+    let (rail, exact) = rail();
+    let m = rail.basis.len();
+    for skin_depth in [1e-3, 5e-3, 2e-2] {
+        let incoming = Incoming::new(&rail.mesh.depth, &rail.basis, skin_depth);
+        let mut amplitudes = vec![0.0; rail.mesh.columns() * m];
+        // All of the strip, and a front in the middle of it.
+        for from in [0, rail.mesh.columns() / 2] {
+            amplitudes.fill(0.0);
+            for column in amplitudes.chunks_exact_mut(m).skip(from) {
+                incoming.enter(50.0, column, &mut 0.0);
+            }
+            let expected = exact_displacement(&rail.mesh, &rail.basis, exact, &amplitudes);
+            let mut computed = vec![0.0; expected.len()];
+            rail.thermal_map.apply(
+                &amplitudes,
+                &mut vec![0.0; rail.thermal_map.scratch_len(rail.mesh.columns())],
+                &mut computed,
+            );
+            let error = largest_difference(&expected, &computed);
+            println!("{skin_depth} {from}: {error:e}");
+            assert!(error <= 10.0 * TOLERANCE, "{skin_depth} {from}: {error:e}");
+        }
     }
 }

@@ -10,7 +10,7 @@ use wheelrail::verification::Run;
 
 /// Outputs but for the totals, which grow, and the slip, which is an input.
 fn settled_outputs(outputs: &Outputs) -> Vec<(&'static str, f64)> {
-    let totals = ["worn_volume", "friction_energy", "distance"];
+    let totals = ["worn_volume", "friction_energy", "distance", "wheel_wear_depth"];
     let rest = OUTPUTS.iter().filter(|signal| !totals.contains(&signal.name));
     rest.map(|signal| (signal.name, (signal.get)(outputs))).collect()
 }

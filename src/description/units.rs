@@ -129,6 +129,16 @@ pub fn definitions() -> UnitDefinitions {
                 },
                 &[],
             ),
+            unit(
+                "W/(m2.K)",
+                BaseUnit {
+                    kg: 1,
+                    s: -3,
+                    k: -1,
+                    ..one
+                },
+                &[],
+            ),
             unit("m3", BaseUnit { m: 3, ..one }, &[("mm3", 1e9)]),
             unit("m3/s", BaseUnit { m: 3, s: -1, ..one }, &[("mm3/s", 1e9)]),
         ],

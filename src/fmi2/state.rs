@@ -18,7 +18,7 @@ use crate::wheel_rail::State;
 use serde::{Deserialize, Serialize};
 
 const MAGIC: [u8; 8] = *b"WHLRAIL\0";
-const VERSION: u32 = 1;
+const VERSION: u32 = 2;
 const HEADER: usize = 8 + 4 + 8 + 8;
 const CHECKSUM: usize = 4;
 

@@ -258,9 +258,10 @@ pub fn variables() -> Vec<Variable> {
 /// The unit in which a person would read a variable.
 fn display_unit(name: &str, unit: &str) -> Option<&'static str> {
     match (name, unit) {
-        ("penetration" | "prescribed_penetration" | "wear_depth", _) => Some("µm"),
+        ("penetration" | "prescribed_penetration" | "wear_depth" | "wheel_wear_depth", _) => Some("µm"),
+        ("incoming_wear_depth" | "leaving_wear_depth", _) => Some("µm"),
         ("wheel_radius" | "strip_height" | "strip_half_length", _) => None,
-        ("lame_lambda" | "shear_modulus", _) => Some("GPa"),
+        ("lame_lambda" | "shear_modulus" | "wheel_lame_lambda" | "wheel_shear_modulus", _) => Some("GPa"),
         ("vehicle_speed", _) => Some("km/h"),
         ("distance", _) => Some("km"),
         (_, "m") => Some("mm"),

@@ -12,8 +12,10 @@ use crate::parameters::{FrictionLaw, Parameters};
 use crate::signals::Inputs;
 
 const SOURCE: &str = "Carter 1926; Johnson, Contact Mechanics, 8.3";
+/// Creepages of the curve.
+pub const CREEPAGES: [f64; 8] = [0.0, 0.0005, 0.001, 0.002, 0.003, 0.004, 0.006, 0.01];
 /// 1 % of a is a node's share, the regularisation adds (2/π) ε/s: together below 0.02.
-const TRACTION_TOLERANCE: f64 = 0.02;
+pub const TRACTION_TOLERANCE: f64 = 0.02;
 /// Creepage at which the stick zone is measured.
 const STICK_CREEPAGE: f64 = 0.002;
 
@@ -30,7 +32,7 @@ pub fn parameters() -> Parameters {
 }
 
 /// c/a = 1 − ξ r₀/(μ a), at least 0: the half-length of the stick zone over that of the contact.
-fn stick_share(parameters: &Parameters, load: f64, creepage: f64) -> f64 {
+pub fn stick_share(parameters: &Parameters, load: f64, creepage: f64) -> f64 {
     let saturation = parameters.friction_cold * parameters.hertz_half_length(load) / parameters.wheel_radius;
     (1.0 - creepage / saturation).max(0.0)
 }
@@ -48,7 +50,7 @@ pub fn rows() -> Result<Vec<Row>> {
     let load = inputs(0.0).normal_load;
     let mut run = Run::new(&parameters, &inputs(0.0))?;
     let mut rows = Vec::new();
-    for creepage in [0.0, 0.0005, 0.001, 0.002, 0.003, 0.004, 0.006, 0.01] {
+    for creepage in CREEPAGES {
         let outputs = run.hold(&inputs(creepage), 1e-3, 1)?;
         rows.push(Row::absolute(
             format!("T/(mu N) at creepage {creepage}"),

@@ -67,6 +67,7 @@ fn marched_peak(parameters: &Parameters) -> Result<f64> {
                 friction: pressure * SLIP,
                 debris: 0.0,
                 conduction: 0.0,
+                wheel: 0.0,
             }
         })
         .collect();

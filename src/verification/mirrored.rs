@@ -3,7 +3,7 @@
 
 use super::{Row, Run};
 use crate::error::Result;
-use crate::parameters::{Parameters, SlipSource};
+use crate::parameters::{Parameters, SlipSource, Wheel, WheelHeating};
 use crate::signals::Inputs;
 
 const SOURCE: &str = "symmetry of the equations";
@@ -15,7 +15,29 @@ const TOLERANCE: f64 = 1e-10;
 /// # Errors
 /// A solver that did not converge.
 pub fn rows() -> Result<Vec<Row>> {
-    let (forward, backward) = (braking(1.0)?, braking(-1.0)?);
+    let paper = Parameters {
+        slip_source: SlipSource::VehicleSpeed,
+        ..Parameters::default()
+    };
+    // A softer wheel, so that normal and tangential problem stay coupled; a short strip, so that what comes in arrives.
+    let warm = Parameters {
+        wheel: Wheel::Elastic,
+        wheel_shear_modulus: 0.5 * paper.wheel_shear_modulus,
+        wheel_heating: WheelHeating::On,
+        rim_depth: 1e-3,
+        rim_width: 1e-3,
+        wheel_wear_coefficient: 1e-12,
+        strip_half_length: 0.2,
+        ..paper.clone()
+    };
+    let mut rows = pair("rigid cold wheel", &paper)?;
+    rows.extend(pair("elastic warm wheel", &warm)?);
+    Ok(rows)
+}
+
+/// One pair, rolling both ways.
+fn pair(pair: &str, parameters: &Parameters) -> Result<Vec<Row>> {
+    let (forward, backward) = (braking(parameters, 1.0)?, braking(parameters, -1.0)?);
     let (nodes, mut mirrored) = (forward.contact_nodes(), backward.contact_nodes());
     mirrored.reverse();
     let row = |name: &str, pairs: &mut dyn Iterator<Item = (f64, f64)>| {
@@ -27,7 +49,7 @@ pub fn rows() -> Result<Vec<Row>> {
             difference = if own <= difference { difference } else { own };
         }
         Row::absolute(
-            format!("{name}, difference to the mirror image"),
+            format!("{name}, difference to the mirror image, {pair}"),
             "1",
             0.0,
             difference / largest,
@@ -66,24 +88,38 @@ pub fn rows() -> Result<Vec<Row>> {
             .into_iter(),
         ),
         row(
-            "contact offset",
-            &mut [(outputs.0.contact_offset, -outputs.1.contact_offset)].into_iter(),
+            "contact offset over contact length",
+            &mut [
+                (outputs.0.contact_offset, -outputs.1.contact_offset),
+                (outputs.0.contact_length, outputs.1.contact_length),
+            ]
+            .into_iter(),
+        ),
+        row(
+            "wheel temperature",
+            &mut [(outputs.0.wheel_temperature, outputs.1.wheel_temperature)].into_iter(),
+        ),
+        row(
+            "leaving temperature",
+            &mut [(outputs.0.leaving_temperature, outputs.1.leaving_temperature)].into_iter(),
+        ),
+        row(
+            "leaving wear depth",
+            &mut [(outputs.0.leaving_wear_depth, outputs.1.leaving_wear_depth)].into_iter(),
         ),
     ])
 }
 
 /// From rolling into a slide of 8 %, in the given direction.
-fn braking(direction: f64) -> Result<Run> {
-    let parameters = Parameters {
-        slip_source: SlipSource::VehicleSpeed,
-        ..Parameters::default()
-    };
+fn braking(parameters: &Parameters, direction: f64) -> Result<Run> {
     let inputs = |slide: f64| Inputs {
         vehicle_speed: 10.0 * direction,
         wheel_speed: 10.0 * direction * (1.0 - slide) / parameters.wheel_radius,
+        incoming_temperature: 310.0,
+        incoming_wear_depth: 1e-7,
         ..Inputs::default()
     };
-    let mut run = Run::new(&parameters, &inputs(0.0))?;
+    let mut run = Run::new(parameters, &inputs(0.0))?;
     for step in 0..40 {
         run.step(&inputs(0.002 * f64::from(step)), 2e-3)?;
     }

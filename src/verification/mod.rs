@@ -4,7 +4,9 @@
 //! closed forms evaluated here, published figures, or identities of the discrete equations; a row says which.
 
 pub mod carter;
+pub mod chained;
 pub mod convergence;
+pub mod elastic_wheel;
 pub mod energy;
 pub mod flash_temperature;
 pub mod hertz;
@@ -14,6 +16,7 @@ pub mod paper_cases;
 pub mod power_balance;
 pub mod rigid_wheel;
 mod run;
+pub mod wheel_temperature;
 
 use crate::error::Result;
 pub use run::{ContactNode, Run};
@@ -133,12 +136,24 @@ pub const CHECKS: &[Check] = &[
         rows: rigid_wheel::rows,
     },
     Check {
+        name: "Elastic wheel",
+        rows: elastic_wheel::rows,
+    },
+    Check {
         name: "Flash temperature",
         rows: flash_temperature::rows,
     },
     Check {
         name: "Heat balance",
         rows: energy::rows,
+    },
+    Check {
+        name: "Wheel temperature and wear",
+        rows: wheel_temperature::rows,
+    },
+    Check {
+        name: "Rail from wheel to wheel",
+        rows: chained::rows,
     },
     Check {
         name: "Power balance",

@@ -40,6 +40,7 @@ pub fn inputs(creepage: f64) -> Inputs {
         vehicle_speed: 10.0,
         wheel_speed: 10.0 * (1.0 + creepage) / Parameters::default().wheel_radius,
         ambient_temperature: AMBIENT,
+        incoming_temperature: AMBIENT,
         ..Inputs::default()
     }
 }

@@ -1,0 +1,122 @@
+//! The rail between one wheel and the next: a temperature and a wear depth that carry the heat and the wear.
+//!
+//! A unit's rail ends at the edges of its strip, |x₁| = L. What leaves at the trailing edge is handed to the next wheel,
+//! where it enters at the leading edge. With the wheels a distance D ≥ 2L apart the delay from leaving to entering is
+//! (D − 2L)/V; for a shorter distance the strip has to be shortened (`strip_half_length` ≤ D/2).
+//!
+//! Temperature. One number stands for the profile over the depth: the heat per area of the leaving column spread over the
+//! skin depth d,
+//!
+//! leaving_temperature = T_a + (1/d) ∫ θ dz,
+//!
+//! and what enters under the incoming temperature is the profile with that heat,
+//!
+//! θ(z) = (incoming_temperature − T_a) g(z),  g = exp(−π z²/(4 d²)),  ∫ g dz = d.
+//!
+//! The heat is the same on both sides, whatever d: units that are chained conserve it to round-off of the marches (at one
+//! ambient temperature; steps aligned with the delay). g is the profile of heat that was put in at the surface
+//! at one instant a time t before, θ ∝ exp(−z²/(4κt)), if d = √(π κ t): then the number is the surface temperature itself.
+//! The wake of a contact is such a profile once t is long against the passage (1 ms). So choose d = √(π κ (D − L)/V), the
+//! age of the wake where it enters the next unit: 5 mm, the default, is 0.55 s. A d that is too large makes the
+//! rail under the next wheel too cold at the surface and too warm below, and the other way round.
+//!
+//! The incoming temperature is absolute: where the ambient temperature is changed and the rail comes in at ambient, both
+//! inputs are to be set. It is that of a skin, not of a rail that is warm all through.
+//!
+//! Wear. The depth at the trailing edge enters as it left; the march conserves the volume.
+
+use crate::heat::DepthBasis;
+use std::f64::consts::FRAC_PI_4;
+
+/// The entering temperature profile in the eigenbasis of the depth operator.
+#[derive(Debug, Clone)]
+pub struct Incoming {
+    /// Modal amplitudes of g, m.
+    amplitudes: Vec<f64>,
+    /// g at the surface, 1 but for the mesh.
+    surface: f64,
+    /// d, `m`.
+    skin_depth: f64,
+}
+
+impl Incoming {
+    /// The profile of skin depth d `m` on the given depths `m`: interpolated at the rows, with ∫ g = d made exact.
+    pub fn new(depth: &[f64], basis: &DepthBasis, skin_depth: f64) -> Incoming {
+        let last = depth.len() - 1;
+        let profile = |row: usize| {
+            let z = depth[row] / skin_depth;
+            // θ = 0 at the bottom.
+            if row == last {
+                0.0
+            } else {
+                (-FRAC_PI_4 * z * z).exp()
+            }
+        };
+        // φᵀ M g: the modes are orthonormal in the mass matrix.
+        let mut amplitudes: Vec<f64> = (0..basis.len())
+            .map(|mode| {
+                let phi = |row: usize| basis.modes[(row, mode)];
+                (0..last)
+                    .map(|row| {
+                        let (upper, lower) = (profile(row), profile(row + 1));
+                        let weighted = phi(row) * (2.0 * upper + lower) + phi(row + 1) * (upper + 2.0 * lower);
+                        (depth[row + 1] - depth[row]) / 6.0 * weighted
+                    })
+                    .sum()
+            })
+            .collect();
+        let exact = skin_depth / basis.content(&amplitudes);
+        for amplitude in &mut amplitudes {
+            *amplitude *= exact;
+        }
+        Incoming {
+            surface: basis.surface_value(&amplitudes),
+            amplitudes,
+            skin_depth,
+        }
+    }
+
+    /// Writes the column that enters at `rise` `K` over the ambient: its m modal amplitudes and its surface temperature.
+    pub fn enter(&self, rise: f64, amplitudes: &mut [f64], surface: &mut f64) {
+        for (amplitude, unit) in amplitudes.iter_mut().zip(&self.amplitudes) {
+            *amplitude = rise * unit;
+        }
+        *surface = rise * self.surface;
+    }
+
+    /// Temperature rise over the skin depth that holds the heat of a column given by its modal amplitudes, `K`.
+    pub fn equivalent_rise(&self, basis: &DepthBasis, amplitudes: &[f64]) -> f64 {
+        basis.content(amplitudes) / self.skin_depth
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mesh::Mesh;
+    use crate::parameters::Parameters;
+
+    fn column(skin_depth: f64) -> (Mesh, DepthBasis, Incoming) {
+        let mesh = Mesh::new(&Parameters::default());
+        let basis = DepthBasis::new(&mesh.depth).unwrap();
+        let incoming = Incoming::new(&mesh.depth, &basis, skin_depth);
+        (mesh, basis, incoming)
+    }
+
+    #[test]
+    fn what_enters_holds_the_heat_of_the_skin_and_has_its_profile() {
+        for skin_depth in [1e-3, 5e-3, 2e-2] {
+            let (mesh, basis, incoming) = column(skin_depth);
+            let (mut amplitudes, mut surface) = (vec![0.0; basis.len()], 0.0);
+            incoming.enter(20.0, &mut amplitudes, &mut surface);
+            assert!((basis.content(&amplitudes) / (20.0 * skin_depth) - 1.0).abs() < 1e-13);
+            assert!((incoming.equivalent_rise(&basis, &amplitudes) / 20.0 - 1.0).abs() < 1e-13);
+            // P1 on a mesh that grows by a third from row to row.
+            assert!((surface / 20.0 - 1.0).abs() < 0.02, "{surface}");
+            for (row, z) in mesh.depth.iter().enumerate() {
+                let exact = 20.0 * (-FRAC_PI_4 * (z / skin_depth).powi(2)).exp();
+                assert!((basis.value(&amplitudes, row) - exact).abs() < 0.4, "{row}");
+            }
+        }
+    }
+}

@@ -1,0 +1,155 @@
+//! Checks of the parameters, once, before a model is built.
+
+use super::{FrictionLaw, Parameters, INTEGER_PARAMETERS, REAL_PARAMETERS};
+use crate::error::{Error, Result};
+
+/// Refuses a value that is not finite or outside `minimum..=maximum`.
+///
+/// # Errors
+/// [`Error::OutOfRange`].
+pub fn check_range(name: &'static str, value: f64, minimum: f64, maximum: f64, unit: &'static str) -> Result<()> {
+    if value >= minimum && value <= maximum {
+        Ok(())
+    } else {
+        Err(Error::OutOfRange {
+            name,
+            value,
+            minimum,
+            maximum,
+            unit,
+        })
+    }
+}
+
+impl Parameters {
+    /// Checks every value against its range, then the values against each other.
+    ///
+    /// # Errors
+    /// [`Error::OutOfRange`] or [`Error::Combination`].
+    pub fn validate(&self) -> Result<()> {
+        for entry in REAL_PARAMETERS {
+            entry.check((entry.get)(self))?;
+        }
+        for entry in INTEGER_PARAMETERS {
+            entry.check((entry.get)(self))?;
+        }
+        self.validate_friction()?;
+        let window = self.window_half_width();
+        let combination = |second, second_value, requirement| Error::Combination {
+            first: "largest_load",
+            first_value: self.largest_load,
+            second,
+            second_value,
+            requirement,
+        };
+        if window > 0.1 * self.wheel_radius {
+            return Err(combination(
+                "wheel_radius",
+                self.wheel_radius,
+                "the contact of the largest load must stay below a tenth of the wheel radius (small displacements)",
+            ));
+        }
+        if window > 0.1 * self.strip_half_length {
+            return Err(combination(
+                "strip_half_length",
+                self.strip_half_length,
+                "the contact window of the largest load must stay below a tenth of the strip's half-length",
+            ));
+        }
+        if window > 0.5 * self.strip_height {
+            return Err(combination(
+                "strip_height",
+                self.strip_height,
+                "the contact window of the largest load must stay below half the strip's height",
+            ));
+        }
+        self.validate_sizes()
+    }
+
+    /// Lengths that must fit into others.
+    fn validate_sizes(&self) -> Result<()> {
+        let fits = |first, first_value, second, second_value, share: f64, requirement| {
+            if first_value <= share * second_value {
+                return Ok(());
+            }
+            Err(Error::Combination {
+                first,
+                first_value,
+                second,
+                second_value,
+                requirement,
+            })
+        };
+        fits(
+            "rim_depth",
+            self.rim_depth,
+            "wheel_radius",
+            self.wheel_radius,
+            1.0,
+            "the rim must not be deeper than the wheel's radius",
+        )?;
+        fits(
+            "skin_depth",
+            self.skin_depth,
+            "strip_height",
+            self.strip_height,
+            0.25,
+            "the skin must not be deeper than a quarter of the strip",
+        )
+    }
+
+    /// The part of [`Parameters::validate`] that tunable parameters can violate.
+    ///
+    /// # Errors
+    /// [`Error::Combination`].
+    pub fn validate_friction(&self) -> Result<()> {
+        let combination = |first, first_value, second, second_value, requirement| {
+            Err(Error::Combination {
+                first,
+                first_value,
+                second,
+                second_value,
+                requirement,
+            })
+        };
+        let falls = matches!(
+            self.friction_law,
+            FrictionLaw::PiecewiseLinear | FrictionLaw::FlowStress
+        );
+        if falls && self.friction_hot > self.friction_cold {
+            return combination(
+                "friction_hot",
+                self.friction_hot,
+                "friction_cold",
+                self.friction_cold,
+                "the hot contact's friction coefficient must not exceed the cold one's",
+            );
+        }
+        if self.friction_law == FrictionLaw::PiecewiseLinear
+            && self.friction_temperature_hot <= self.friction_temperature_cold
+        {
+            return combination(
+                "friction_temperature_hot",
+                self.friction_temperature_hot,
+                "friction_temperature_cold",
+                self.friction_temperature_cold,
+                "the hot temperature must lie above the cold one",
+            );
+        }
+        if self.friction_law == FrictionLaw::Table {
+            let points = &self.friction_table_temperature[..self.friction_table_points];
+            for pair in points.windows(2) {
+                if pair[1] <= pair[0] {
+                    return combination(
+                        "friction_table.temperature",
+                        pair[0],
+                        "the next friction_table.temperature",
+                        pair[1],
+                        "the temperatures of the friction table must ascend",
+                    );
+                }
+            }
+        }
+        Ok(())
+    }
+}

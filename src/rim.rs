@@ -1,0 +1,209 @@
+//! The wheel's rim: its temperature, which is θ_w of (23), and its wear.
+//!
+//! Heat. The active rim is a ring of outer radius r₀, depth d and width w at one temperature T_w, because a revolution
+//! (0.3 s at 10 m/s) is short against the minutes over which the tread warms and the ring is thin against the way that
+//! heat goes in that time (√(κ · 60 s) = 29 mm, the default depth). Its heat capacity is C = ρ_w c_w π d (2 r₀ − d) w;
+//! tread and both flanks, A = 2π r₀ w + 2π d (2 r₀ − d), give heat to the ambient at T_a:
+//!
+//! C dT_w/dt = (1 − ᾱ) b ∫ |τ s| dx + ᾱ b ∫ (θ − θ_w) p/r dx − h A (T_w − T_a),  θ_w = T_w − T_a.
+//!
+//! The first two terms are what (23) leaves of the friction power and what it takes from the rail by conduction: the heat
+//! of rail, rim and debris adds up to the friction work. One implicit Euler step of Δt, with G = ᾱ b ∫ p/r dx = ᾱ N/r,
+//!
+//! T_w = (C/Δt T_wⁿ + h A T_a + G T_a + (1 − ᾱ) b ∫ |τ s| + ᾱ b ∫ θ p/r) / (C/Δt + h A + G),
+//!
+//! is a weighted mean of the temperatures plus a heat: however small the ring and long the step, it does not overshoot. The
+//! surface condition of the rail takes the same θ_w, that of the end of the step: a fixed point, whose slope is between 0 and 1
+//! because either side moves by less than the other ([`FixedPoint`]).
+//!
+//! Neglected: conduction from the rim into the web, radiation, the wheel's own flash temperature in the contact, and
+//! brake shoes.
+//!
+//! Wear. Archard's law on the tread, volume per time k_w ∫ |s| p dA; spread over the circumference, the radius loses
+//! k_w ∫ |s| p dx / (2π r₀) per time on the contact's width b. A wheel that does not turn wears a flat instead, which a
+//! uniform depth does not show. The loss, micrometres, is not fed back into r₀.
+
+use crate::contact::{Fields, Rail};
+use crate::error::{Error, Result};
+use crate::parameters::{Parameters, WheelHeating};
+use std::f64::consts::PI;
+
+/// Section of the ring times its circumference at the centroid, `m³`.
+fn volume(parameters: &Parameters) -> f64 {
+    face(parameters) * parameters.rim_width
+}
+
+/// One flank of the ring, π d (2 r₀ − d), `m²`.
+fn face(parameters: &Parameters) -> f64 {
+    PI * parameters.rim_depth * (2.0 * parameters.wheel_radius - parameters.rim_depth)
+}
+
+/// C, `J/K`.
+pub fn heat_capacity(parameters: &Parameters) -> f64 {
+    parameters.wheel_density * parameters.wheel_heat_capacity * volume(parameters)
+}
+
+/// h A, `W/K`.
+pub fn convection(parameters: &Parameters) -> f64 {
+    let tread = 2.0 * PI * parameters.wheel_radius * parameters.rim_width;
+    parameters.wheel_heat_transfer * (tread + 2.0 * face(parameters))
+}
+
+/// What the contact gives to the wheel, or a change of it.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct ContactHeat {
+    /// (1 − ᾱ) b ∫ |τ s| dx, `W`.
+    pub friction: f64,
+    /// ᾱ b ∫ θ p/r dx, `W`.
+    pub conducted: f64,
+    /// G = ᾱ b ∫ p/r dx, `W/K`.
+    pub conductance: f64,
+}
+
+impl ContactHeat {
+    /// Of the given fields.
+    pub fn new(rail: &Rail, parameters: &Parameters, fields: &Fields) -> ContactHeat {
+        let weights = Weights::new(rail, parameters);
+        let mut heat = ContactHeat::default();
+        for node in 0..rail.mesh.contact_nodes {
+            let (p, rise) = (
+                fields.pressure[node],
+                fields.surface_temperature[rail.mesh.contact_column(node)],
+            );
+            heat.friction += weights.friction * (fields.shear[node] * fields.slip[node]).abs();
+            heat.conducted += weights.conduction * p * rise;
+            heat.conductance += weights.conduction * p;
+        }
+        heat
+    }
+
+    /// Its change with that of the fields.
+    pub fn tangent(rail: &Rail, parameters: &Parameters, fields: &Fields, tangent: &Fields) -> ContactHeat {
+        let weights = Weights::new(rail, parameters);
+        let mut heat = ContactHeat::default();
+        for node in 0..rail.mesh.contact_nodes {
+            let column = rail.mesh.contact_column(node);
+            let (shear, slip) = (fields.shear[node], fields.slip[node]);
+            heat.friction +=
+                weights.friction * (shear * slip).signum() * (tangent.shear[node] * slip + shear * tangent.slip[node]);
+            heat.conducted += weights.conduction
+                * (tangent.pressure[node] * fields.surface_temperature[column]
+                    + fields.pressure[node] * tangent.surface_temperature[column]);
+            heat.conductance += weights.conduction * tangent.pressure[node];
+        }
+        heat
+    }
+
+    /// Heat flowing into a wheel at θ_w over the ambient, `W`.
+    pub fn flow(&self, wheel_rise: f64) -> f64 {
+        self.friction + self.conducted - self.conductance * wheel_rise
+    }
+}
+
+/// Factors on the scaled sums over the contact nodes.
+struct Weights {
+    friction: f64,
+    conduction: f64,
+}
+
+impl Weights {
+    fn new(rail: &Rail, parameters: &Parameters) -> Weights {
+        let force = parameters.contact_width * rail.mesh.contact_spacing() * rail.scales.pressure;
+        Weights {
+            friction: (1.0 - parameters.heat_partition) * force,
+            conduction: parameters.heat_partition * force / parameters.contact_thermal_resistance,
+        }
+    }
+}
+
+/// T_w at the end of a step of `duration` `s` from `before`, `K`; the ambient's where the wheel is kept cold.
+pub fn temperature(parameters: &Parameters, before: f64, ambient: f64, duration: f64, heat: &ContactHeat) -> f64 {
+    match parameters.wheel_heating {
+        WheelHeating::Off => ambient,
+        WheelHeating::On => {
+            let storage = heat_capacity(parameters) / duration;
+            let loss = convection(parameters) + heat.conductance;
+            ambient + (storage * (before - ambient) + heat.friction + heat.conducted) / (storage + loss)
+        }
+    }
+}
+
+/// Change of [`temperature`] with the contact's heat and the ambient, at its result `wheel_temperature`.
+pub fn temperature_tangent(
+    parameters: &Parameters,
+    wheel_temperature: f64,
+    (ambient, ambient_tangent): (f64, f64),
+    duration: f64,
+    heat: &ContactHeat,
+    tangent: &ContactHeat,
+) -> f64 {
+    match parameters.wheel_heating {
+        WheelHeating::Off => ambient_tangent,
+        WheelHeating::On => {
+            let storage = heat_capacity(parameters) / duration;
+            let loss = convection(parameters) + heat.conductance;
+            (loss * ambient_tangent + tangent.flow(wheel_temperature - ambient)) / (storage + loss)
+        }
+    }
+}
+
+/// Limit of the iteration between rail and rim.
+const ITERATIONS: usize = 50;
+/// Change of T_w at which it rests, relative to the absolute temperature: some ten times what the surface condition of a
+/// column is solved to.
+const TOLERANCE: f64 = 1e-13;
+
+/// Secant method for T_w = rim(rail(T_w)); its first step is that of the plain iteration.
+#[derive(Debug, Clone, Copy)]
+pub struct FixedPoint {
+    temperature: f64,
+    /// Iterate and image before.
+    last: Option<(f64, f64)>,
+    iterations: usize,
+}
+
+impl FixedPoint {
+    /// From a first guess, `K`.
+    pub fn new(guess: f64) -> FixedPoint {
+        FixedPoint {
+            temperature: guess,
+            last: None,
+            iterations: 0,
+        }
+    }
+
+    /// The iterate, `K`.
+    pub fn temperature(&self) -> f64 {
+        self.temperature
+    }
+
+    /// Takes the iterate's `image` `K`. Whether it is the iterate itself; otherwise there is a next iterate.
+    ///
+    /// # Errors
+    /// [`Error::WheelHeatNotConverged`].
+    pub fn rests(&mut self, image: f64) -> Result<bool> {
+        let residual = image - self.temperature;
+        self.iterations += 1;
+        if residual.abs() <= TOLERANCE * image.abs() {
+            return Ok(true);
+        }
+        if self.iterations == ITERATIONS {
+            let iterations = ITERATIONS;
+            return Err(Error::WheelHeatNotConverged { iterations, residual });
+        }
+        let slope = match self.last {
+            Some((temperature, last)) if temperature != self.temperature => {
+                ((image - last) / (self.temperature - temperature)).clamp(0.0, 1.0 - 1e-12)
+            }
+            _ => 0.0,
+        };
+        self.last = Some((self.temperature, image));
+        self.temperature += residual / (1.0 - slope);
+        Ok(false)
+    }
+}
+
+/// Radius that the wheel loses per time, `m/s`, to the `sliding` power b ∫ |s| p dx, `W`.
+pub fn wear_rate(parameters: &Parameters, sliding: f64) -> f64 {
+    parameters.wheel_wear_coefficient * sliding / (2.0 * PI * parameters.wheel_radius * parameters.contact_width)
+}
