@@ -1,5 +1,8 @@
 //! From nothing to the first output: mesh, factorisation, unit loads, thermal map, first contact.
 
+// Of what criterion's macro makes.
+#![allow(missing_docs)]
+
 mod braking;
 
 use criterion::{criterion_group, criterion_main, BenchmarkId, Criterion};

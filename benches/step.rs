@@ -1,5 +1,8 @@
 //! One warm step of the braking manoeuvre, at default settings and with about 100 and 200 nodes in contact.
 
+// Of what criterion's macro makes.
+#![allow(missing_docs)]
+
 mod braking;
 
 use braking::Run;

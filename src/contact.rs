@@ -2,20 +2,18 @@
 //! tractions, repeated until the temperature rests.
 
 use crate::acceleration::Anderson;
-use crate::compliance::{self, RollingCompliance, Scales};
 use crate::dense;
 use crate::error::{Error, Result};
+use crate::fields::Fields;
 use crate::friction;
-use crate::heat::{DepthBasis, FrictionState, HeatMarch, Heated, SurfaceExchange};
-use crate::incoming::Incoming;
+use crate::heat::{FrictionState, HeatMarch, Heated, SurfaceExchange};
 use crate::injection::{self, Solver};
 use crate::mechanics::{Mechanics, MechanicsProblem, ProblemTangent, Sweep, Tractions};
-use crate::mesh::Mesh;
 use crate::normal::Constraint;
 use crate::parameters::{Control, Parameters, WheelHeating};
+use crate::rail::Rail;
 use crate::rim::{self, ContactHeat};
 use crate::signals::{Inputs, Motion};
-use crate::thermal_map::{self, ThermalMap};
 use crate::transport::Upwind;
 use crate::wear::{self, Softening};
 use serde::{Deserialize, Serialize};
@@ -41,68 +39,8 @@ const ACCELERATE_FROM: usize = 2;
 pub(crate) const TEMPERATURE_SCALE: f64 = 100.0;
 /// The error of an iteration is its change times the contraction; an estimate above this is not trusted.
 const TRUSTED_CONTRACTION: f64 = 0.3;
-
-/// The rail and the wheel's profile, built at initialisation.
-pub struct Rail {
-    /// Triangulation.
-    pub mesh: Mesh,
-    /// Units of the contact problem.
-    pub scales: Scales,
-    /// Compliance of the contact nodes.
-    pub compliance: RollingCompliance,
-    /// Eigenbasis of the depth operator.
-    pub basis: DepthBasis,
-    /// Thermal displacement of the contact nodes.
-    pub thermal_map: ThermalMap,
-    /// Profile of the temperature that enters.
-    pub incoming: Incoming,
-    /// Profile of the wheel √(r₀² − x²) − r₀ at the contact nodes, scaled. The u₁ in (9) is dropped: it moves the contact
-    /// by its own size, some µm, against a half-length of some mm.
-    pub profile: Vec<f64>,
-}
-
-impl Rail {
-    /// Mesh, compliance, thermal maps.
-    ///
-    /// # Errors
-    /// [`Error::StiffnessNotPositiveDefinite`], [`Error::DepthBasis`].
-    pub fn new(parameters: &Parameters) -> Result<Rail> {
-        let mesh = Mesh::new(parameters);
-        let scales = Scales::new(parameters);
-        let (compliance, thermal) = compliance::build(&mesh, parameters, &scales)?;
-        let basis = DepthBasis::new(&mesh.depth)?;
-        let thermal_map = ThermalMap::new(
-            &mesh,
-            &basis,
-            &thermal,
-            parameters.thermal_diffusivity,
-            thermal_map::TOLERANCE,
-        );
-        let incoming = Incoming::new(&mesh.depth, &basis, parameters.skin_depth);
-        let r0 = parameters.wheel_radius;
-        let profile = (0..mesh.contact_nodes)
-            .map(|i| {
-                let x = mesh.contact_position(i);
-                // √(r₀² − x²) − r₀ without the cancellation.
-                -x * x / (r0 + (r0 * r0 - x * x).sqrt()) / scales.displacement
-            })
-            .collect();
-        Ok(Rail {
-            mesh,
-            scales,
-            compliance,
-            basis,
-            thermal_map,
-            incoming,
-            profile,
-        })
-    }
-
-    /// Scaled pressure sum Σp of a normal load `N`.
-    pub fn scaled_load(&self, parameters: &Parameters, load: f64) -> f64 {
-        load / (parameters.contact_width * self.mesh.contact_spacing() * self.scales.pressure)
-    }
-}
+/// Nor one below this: the first change may be large in what the iteration settles at once.
+const LEAST_CONTRACTION: f64 = 0.01;
 
 /// What one implicit step holds fixed.
 #[derive(Debug, Clone, Copy)]
@@ -113,171 +51,6 @@ pub struct Conditions {
     pub motion: Motion,
     /// Length of the step, `s`.
     pub duration: f64,
-}
-
-/// The fields of the contact at one instant; n contact nodes.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Fields {
-    /// Modal amplitudes of the temperature rise, columns × modes, column by column.
-    pub temperature: Vec<f64>,
-    /// Temperature rise at the surface of the columns, `K`.
-    pub surface_temperature: Vec<f64>,
-    /// Displacement of the contact nodes caused by the temperature, scaled, along x₁ then along x₂, 2n.
-    pub thermal_displacement: Vec<f64>,
-    /// Wear depth at the columns, `m`.
-    pub wear: Vec<f64>,
-    /// Pressure, scaled, n.
-    pub pressure: Vec<f64>,
-    /// Shear traction on the rail, scaled, n.
-    pub shear: Vec<f64>,
-    /// Slip velocity, `m/s`, 0 outside the contact, n.
-    pub slip: Vec<f64>,
-    /// Friction coefficient, n.
-    pub friction: Vec<f64>,
-    /// Heat flux into the rail, `W/m²`, n.
-    pub heat_flux: Vec<f64>,
-    /// Penetration δ, scaled; 0 when lifted.
-    pub penetration: f64,
-    /// Temperature of the wheel's rim, absolute, `K`.
-    pub wheel_temperature: f64,
-}
-
-impl Fields {
-    /// A cold, unworn rail without contact; the wheel's temperature is 0 K.
-    pub fn new(rail: &Rail) -> Fields {
-        let (n, columns) = (rail.mesh.contact_nodes, rail.mesh.columns());
-        Fields {
-            temperature: vec![0.0; columns * rail.basis.len()],
-            surface_temperature: vec![0.0; columns],
-            thermal_displacement: vec![0.0; 2 * n],
-            wear: vec![0.0; columns],
-            pressure: vec![0.0; n],
-            shear: vec![0.0; n],
-            slip: vec![0.0; n],
-            friction: vec![0.0; n],
-            heat_flux: vec![0.0; n],
-            penetration: 0.0,
-            wheel_temperature: 0.0,
-        }
-    }
-
-    /// The vectors, in the order of their declaration.
-    pub fn vectors(&self) -> [&Vec<f64>; 9] {
-        [
-            &self.temperature,
-            &self.surface_temperature,
-            &self.thermal_displacement,
-            &self.wear,
-            &self.pressure,
-            &self.shear,
-            &self.slip,
-            &self.friction,
-            &self.heat_flux,
-        ]
-    }
-
-    fn vectors_mut(&mut self) -> [&mut Vec<f64>; 9] {
-        [
-            &mut self.temperature,
-            &mut self.surface_temperature,
-            &mut self.thermal_displacement,
-            &mut self.wear,
-            &mut self.pressure,
-            &mut self.shear,
-            &mut self.slip,
-            &mut self.friction,
-            &mut self.heat_flux,
-        ]
-    }
-
-    /// Overwrites these fields with others of the same sizes, without allocating.
-    pub fn copy_from(&mut self, other: &Fields) {
-        for (own, other) in self.vectors_mut().into_iter().zip(other.vectors()) {
-            own.copy_from_slice(other);
-        }
-        self.penetration = other.penetration;
-        self.wheel_temperature = other.wheel_temperature;
-    }
-
-    /// Adds a multiple of other fields of the same sizes.
-    pub fn add_multiple(&mut self, factor: f64, other: &Fields) {
-        for (own, other) in self.vectors_mut().into_iter().zip(other.vectors()) {
-            dense::add_multiple(other, factor, own);
-        }
-        self.penetration += factor * other.penetration;
-        self.wheel_temperature += factor * other.wheel_temperature;
-    }
-
-    /// Modal amplitudes of one column.
-    pub fn column(&self, rail: &Rail, column: usize) -> &[f64] {
-        let m = rail.basis.len();
-        &self.temperature[column * m..(column + 1) * m]
-    }
-}
-
-/// Rates of change of what a step starts its iteration from, per second: the first guess is extrapolated.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Trend {
-    /// Of the shear, n.
-    pub shear: Vec<f64>,
-    /// Of the surface temperature, columns.
-    pub surface_temperature: Vec<f64>,
-    /// Of the thermal displacement, 2n.
-    pub thermal_displacement: Vec<f64>,
-    /// Of the wear depth, columns.
-    pub wear: Vec<f64>,
-}
-
-impl Trend {
-    /// No change.
-    pub fn new(rail: &Rail) -> Trend {
-        let fields = Fields::new(rail);
-        Trend {
-            shear: fields.shear,
-            surface_temperature: fields.surface_temperature,
-            thermal_displacement: fields.thermal_displacement,
-            wear: fields.wear,
-        }
-    }
-
-    /// The vectors, in the order of their declaration.
-    pub fn vectors(&self) -> [&Vec<f64>; 4] {
-        [
-            &self.shear,
-            &self.surface_temperature,
-            &self.thermal_displacement,
-            &self.wear,
-        ]
-    }
-
-    /// The trend between two fields `duration` `s` apart.
-    pub fn update(&mut self, before: &Fields, after: &Fields, duration: f64) {
-        let update = |trend: &mut [f64], before: &[f64], after: &[f64]| {
-            for ((trend, before), after) in trend.iter_mut().zip(before).zip(after) {
-                *trend = (after - before) / duration;
-            }
-        };
-        update(&mut self.shear, &before.shear, &after.shear);
-        update(
-            &mut self.surface_temperature,
-            &before.surface_temperature,
-            &after.surface_temperature,
-        );
-        update(
-            &mut self.thermal_displacement,
-            &before.thermal_displacement,
-            &after.thermal_displacement,
-        );
-        update(&mut self.wear, &before.wear, &after.wear);
-    }
-
-    /// Moves the first guess on by `duration` `s`.
-    pub fn extrapolate(&self, fields: &mut Fields, duration: f64) {
-        dense::add_multiple(&self.shear, duration, &mut fields.shear);
-        dense::add_multiple(&self.surface_temperature, duration, &mut fields.surface_temperature);
-        dense::add_multiple(&self.thermal_displacement, duration, &mut fields.thermal_displacement);
-        dense::add_multiple(&self.wear, duration, &mut fields.wear);
-    }
 }
 
 /// How a split came to rest.
@@ -375,7 +148,7 @@ impl Contact<'_> {
             let last = residual;
             residual = self.change(&scratch.iterate, &scratch.image);
             let contraction = if residual < TRUSTED_CONTRACTION * last && last.is_finite() {
-                residual / last
+                (residual / last).max(LEAST_CONTRACTION)
             } else {
                 1.0
             };

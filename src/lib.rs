@@ -36,7 +36,7 @@
 //! | (10), (30) | τ = −μ(θ) p (2/π) arctan(s/ε) | friction | Pa | [`friction`], [`tangential`] |
 //! | (31) | (37) for given τ ↔ (30) for given p | mechanics for given temperature and wear | | [`mechanics`] |
 //! | (19) | ∂θ/∂t − V ∂θ/∂x₁ = κ ∂²θ/∂x₂² in Ω | temperature rise of the rail | K/s | [`heat`] |
-//! | (23) | κ ρ c_p ∂θ/∂n = ᾱ (\|τ s\| − k ρ c_p θ \|s\| p − θ p / r) on Γ_C | friction power, heat carried off by debris, conduction into the wheel | W/m² | [`heat`] |
+//! | (23) | κ ρ c_p ∂θ/∂n = ᾱ (\|τ s\| − k ρ c_p θ \|s\| p − (θ − θ_w) p / r) on Γ_C | friction power, heat carried off by debris, conduction into the wheel at θ_w | W/m² | [`heat`] |
 //! | (11), (24) | ∂W/∂t − V ∂W/∂x₁ = k \|s\| p | Archard wear | m/s | [`wear`] |
 //!
 //! Where the paper is silent or wrong as printed, the code differs from it: wear W ≥ 0 is positive; the bracket of (23) is
@@ -64,11 +64,13 @@
 //! # Reading order
 //!
 //! 1. [`parameters`] and [`signals`]: every quantity that goes in and out, with unit, default, range and source.
-//! 2. [`mesh`], [`elasticity`], [`sparse_cholesky`], [`compliance`], [`thermal_map`]: what is computed once; after it, no
-//!    sparse system is solved.
+//! 2. [`mesh`], [`elasticity`], [`sparse_cholesky`], [`compliance`], [`elastic_wheel`], [`thermal_map`], together [`rail`]: what
+//!    is computed once; after it, no sparse system is solved.
 //! 3. [`friction`], [`normal`], [`tangential`], [`mechanics`]: tractions for given temperature and wear.
-//! 4. [`transport`], [`heat`], [`wear`]: temperature and wear for given tractions.
-//! 5. [`contact`]: the operator split over both, one implicit step; [`acceleration`] for where it does not contract.
+//! 4. [`transport`], [`heat`], [`wear`], [`rim`]: temperature and wear of rail and wheel for given tractions; [`incoming`]:
+//!    the rail that the wheel ahead has left.
+//! 5. [`contact`]: the operator split over both, one implicit step over the [`fields`]; [`acceleration`] for where it does
+//!    not contract.
 //! 6. [`wheel_rail`]: the stepped model, [`outputs`] and [`profiles`] from its fields, [`sensitivity`] for its derivatives.
 //! 7. [`verification`]: the closed forms and published numbers that all this is held against.
 //! 8. [`description`] and [`fmi2`]: the same model as a co-simulation unit. Nothing above knows of FMI.
@@ -83,6 +85,7 @@ pub mod description;
 pub mod elastic_wheel;
 pub mod elasticity;
 pub mod error;
+pub mod fields;
 pub mod fmi2;
 pub mod friction;
 pub mod heat;
@@ -94,6 +97,7 @@ pub mod normal;
 pub mod outputs;
 pub mod parameters;
 pub mod profiles;
+pub mod rail;
 pub mod rim;
 pub mod sensitivity;
 pub mod signals;

@@ -219,6 +219,14 @@ impl Mechanics {
 
     /// (30) for given pressure and its response; pressure and penetration follow. Returns the largest change of the shear.
     fn solve_friction(&mut self, problem: &MechanicsProblem, tractions: &mut Tractions, tolerance: f64) -> Result<f64> {
+        // Within the bound from the start: a shear left over from a much larger pressure would swamp this one's strain.
+        let mut clamped = 0.0_f64;
+        for (node, shear) in tractions.shear.iter_mut().enumerate() {
+            let bound = problem.friction[node] * tractions.pressure[node];
+            let within = shear.clamp(-bound, bound);
+            clamped = clamped.max((*shear - within).abs());
+            *shear = within;
+        }
         self.displacement.copy_from_slice(problem.displacement);
         let compliance = problem.compliance;
         dense::multiply_add(
@@ -258,11 +266,6 @@ impl Mechanics {
         for (row, &node) in self.nodes.iter().enumerate() {
             *tractions.penetration += self.response.penetration[row] * (self.shear[row] - tractions.shear[node]);
         }
-        // What is left after this is shear on nodes that are no longer under pressure.
-        for &node in &self.nodes {
-            tractions.shear[node] = 0.0;
-        }
-        let dropped = tractions.shear.iter().fold(0.0, |m: f64, v| v.abs().max(m));
         let point = self.tangential.point();
         tractions.shear.fill(0.0);
         tractions.slip.fill(0.0);
@@ -272,7 +275,7 @@ impl Mechanics {
             tractions.pressure[node] = point.pressure[row];
         }
         injection::passes(Solver::Tangential)?;
-        Ok(change.max(dropped))
+        Ok(change.max(clamped))
     }
 
     /// ∂p/∂τ = Π C_nt with Π = C_AA⁻¹, under a given load Π = C_AA⁻¹ − C_AA⁻¹1 1ᵀC_AA⁻¹ / (1ᵀC_AA⁻¹1), and the strain of

@@ -1,8 +1,9 @@
 //! The outputs that follow from the fields of the contact.
 
-use crate::contact::{Fields, Rail};
+use crate::fields::Fields;
 use crate::friction;
 use crate::parameters::Parameters;
+use crate::rail::Rail;
 use crate::rim::ContactHeat;
 use crate::signals::{Inputs, Outputs};
 use crate::transport::Upwind;

@@ -1,6 +1,7 @@
 //! Profiles for plotting, sampled at fixed numbers of points whatever the mesh is.
 
-use crate::contact::{Fields, Rail};
+use crate::fields::Fields;
+use crate::rail::Rail;
 
 /// Points across the contact window.
 pub const PROFILE_POINTS: usize = 61;

@@ -7,8 +7,9 @@
 //! infinitesimal change. Held fixed are the fields at the beginning of the sub-step and its length.
 
 use crate::acceleration::Anderson;
-use crate::contact::{gathered, Contact, Fields, Scratch, TEMPERATURE_SCALE};
+use crate::contact::{gathered, Contact, Scratch, TEMPERATURE_SCALE};
 use crate::error::{Error, Result};
+use crate::fields::Fields;
 use crate::friction;
 use crate::heat::SurfaceExchange;
 use crate::mechanics::{ProblemTangent, Tractions};

@@ -116,11 +116,11 @@ impl Tangential {
     /// [`Error::TangentialNotConverged`].
     pub fn solve(&mut self, problem: &TangentialProblem, shear: &mut [f64]) -> Result<f64> {
         let m = shear.len();
-        self.start(problem, shear);
+        self.change[..m].fill(0.0);
         let mut last = self.newton(problem, problem.regularisation, shear);
         if last.is_err() {
             // From a large ε, where the law is nearly linear, down to the one asked for.
-            self.start(problem, shear);
+            self.change[..m].fill(0.0);
             let mut iterations = last.unwrap_or_else(|steps| steps);
             for half_decades in (0..=CONTINUATION).rev() {
                 self.forget();
@@ -143,14 +143,6 @@ impl Tangential {
                 residual: largest(&self.residual[..m]) / largest(&problem.pressure[..m]),
                 tolerance: problem.tolerance,
             }),
-        }
-    }
-
-    /// Starts within the bound: a shear left over from a much larger pressure lies far from the solution.
-    fn start(&mut self, problem: &TangentialProblem, shear: &[f64]) {
-        for (node, shear) in shear.iter().enumerate() {
-            let bound = problem.friction[node] * problem.pressure[node];
-            self.change[node] = shear.clamp(-bound, bound) - shear;
         }
     }
 

@@ -1,10 +1,12 @@
 //! The stepped model: inputs in, state advanced, outputs out. It knows nothing of FMI.
 
-use crate::contact::{Conditions, Contact, Fields, Rail, Scratch, Trend};
+use crate::contact::{Conditions, Contact, Scratch};
 use crate::error::{Error, Result};
+use crate::fields::{Fields, Trend};
 use crate::friction;
 use crate::outputs;
 use crate::parameters::Parameters;
+use crate::rail::Rail;
 use crate::rim;
 use crate::sensitivity::Linearisation;
 use crate::signals::{Inputs, Outputs, OUTPUTS};

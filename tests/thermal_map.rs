@@ -7,10 +7,10 @@ use checks::largest_difference;
 use proptest::prelude::*;
 use std::sync::OnceLock;
 use wheelrail::compliance::{self, Scales, ThermalDisplacement};
-use wheelrail::contact::Rail;
 use wheelrail::heat::{FrictionState, HeatMarch, Heated, SurfaceExchange};
 use wheelrail::incoming::Incoming;
 use wheelrail::parameters::{FrictionLaw, Parameters};
+use wheelrail::rail::Rail;
 use wheelrail::thermal_map::{exact_displacement, TOLERANCE};
 use wheelrail::transport::Upwind;
 

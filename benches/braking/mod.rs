@@ -1,6 +1,9 @@
 //! The braking manoeuvre of `examples/braking.csv`, by steps of 1 ms, and models of a given fineness: what all benchmarks
 //! step through.
 
+// Each benchmark uses a part of this.
+#![allow(dead_code)]
+
 use wheelrail::parameters::{Parameters, SlipSource};
 use wheelrail::signals::Inputs;
 use wheelrail::wheel_rail::{Model, State, Workspace};

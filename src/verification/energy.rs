@@ -7,9 +7,10 @@
 //! friction power, not ᾱ of it.
 
 use super::{Row, Run};
-use crate::contact::{Fields, Rail};
 use crate::error::Result;
+use crate::fields::Fields;
 use crate::parameters::{FrictionLaw, Parameters, SlipSource, Wheel, WheelHeating};
+use crate::rail::Rail;
 use crate::rim;
 use crate::signals::Inputs;
 use crate::transport::Upwind;
