@@ -5,7 +5,7 @@
 #   make couplings  the component in vehicle models, masters and sweeps: results/, one page each in docs/couplings/
 #   make test    formatting, lints, documentation, all Rust tests, `wheelrail verify`, all Python tests
 #   make docs    the generated tables of README.md and of the documentation page
-#   make bench   run times: a step, a cold start, both against the number of contact nodes
+#   make bench   run times: a step, a cold start, saving; against the number of contact nodes and the targets
 #   make clean   removes everything that the above made
 
 SHELL := /bin/bash
@@ -132,8 +132,9 @@ docs: demo
 	@$(PY) tools/update_docs.py
 	@cp results/paper_temperature.png results/braking.png docs/
 
-bench:
+bench: $(VENV)/ready
 	cargo bench
+	@$(PY) tools/scaling_figure.py
 
 clean:
 	rm -rf target $(VENV) .venv-cofmupy results .pytest_cache .ruff_cache

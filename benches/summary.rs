@@ -95,6 +95,8 @@ fn two_threads() -> f64 {
 fn main() {
     println!("one step of 1 ms, braking manoeuvre, all effects on");
     println!("contact_nodes  in contact  median [us]  99 % [us]  99.9 % [us]  iterations  cold start [ms]");
+    let mut table =
+        String::from("contact_nodes,nodes_in_contact,median_us,quantile_99_us,quantile_999_us,cold_start_ms\n");
     let mut growth = Vec::new();
     let mut measured = Vec::new();
     for contact_nodes in [41, 61, 83, 165, 331] {
@@ -108,9 +110,20 @@ fn main() {
             steps.quantile(0.999),
             steps.iterations,
         );
+        table += &format!(
+            "{contact_nodes},{},{},{},{},{cold}\n",
+            steps.nodes_in_contact,
+            steps.quantile(0.5),
+            steps.quantile(0.99),
+            steps.quantile(0.999),
+        );
         growth.push((steps.nodes_in_contact.ln(), steps.quantile(0.5).ln()));
         measured.push((steps, cold));
     }
+    // `make bench` draws it: tools/scaling_figure.py.
+    let results = std::path::Path::new("results");
+    std::fs::create_dir_all(results).expect("a folder for results");
+    std::fs::write(results.join("scaling.csv"), table).expect("room for a table");
     let (first, last) = (growth[0], growth[growth.len() - 1]);
     let target = |what: &str, value: f64, bound: f64, most: bool, unit: &str| {
         let met = if most { value <= bound } else { value >= bound };

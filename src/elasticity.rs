@@ -139,17 +139,20 @@ impl Elasticity {
     pub fn solve(&self, loads: &Fields) -> Fields {
         let mut reduced = Mat::zeros(self.unknowns, loads.ncols());
         for field in 0..loads.ncols() {
-            for (dof, &unknown) in self.unknown.iter().enumerate() {
-                if unknown != usize::MAX {
-                    reduced[(unknown, field)] = loads[(dof, field)];
-                }
+            let (reduced, load) = (reduced.col_as_slice_mut(field), loads.col_as_slice(field));
+            for (&unknown, load) in self.unknown.iter().zip(load).filter(|(u, _)| **u != usize::MAX) {
+                reduced[unknown] = *load;
             }
         }
         self.factor.solve_in_place(&mut reduced);
-        Mat::from_fn(loads.nrows(), loads.ncols(), |dof, field| match self.unknown[dof] {
-            usize::MAX => 0.0,
-            unknown => reduced[(unknown, field)],
-        })
+        let mut displacements = Mat::zeros(loads.nrows(), loads.ncols());
+        for field in 0..loads.ncols() {
+            let (displacement, reduced) = (displacements.col_as_slice_mut(field), reduced.col_as_slice(field));
+            for (&unknown, displacement) in self.unknown.iter().zip(displacement).filter(|(u, _)| **u != usize::MAX) {
+                *displacement = reduced[unknown];
+            }
+        }
+        displacements
     }
 
     /// The fields of unit loads at the surface of the given columns, along x₁ for all of them, then along x₂.

@@ -59,14 +59,16 @@ impl SparseCholesky {
         for first in (0..fields.ncols()).step_by(WIDTH) {
             let lanes = WIDTH.min(fields.ncols() - first);
             for lane in 0..lanes {
+                let field = fields.col_as_slice(first + lane);
                 for (index, row) in rows.iter_mut().enumerate() {
-                    row[lane] = fields[(place(index), first + lane)];
+                    row[lane] = field[place(index)];
                 }
             }
             self.solve_rows(&mut rows);
             for lane in 0..lanes {
+                let field = fields.col_as_slice_mut(first + lane);
                 for (index, row) in rows.iter().enumerate() {
-                    fields[(place(index), first + lane)] = row[lane];
+                    field[place(index)] = row[lane];
                 }
             }
         }

@@ -21,29 +21,40 @@ struct Counting;
 
 thread_local! {
     static ALLOCATIONS: Cell<usize> = const { Cell::new(0) };
+    /// Bytes that it holds of them.
+    static HELD: Cell<isize> = const { Cell::new(0) };
+}
+
+fn hold(bytes: usize, sign: isize) {
+    HELD.set(HELD.get() + sign * bytes as isize);
 }
 
 // SAFETY: the system's allocator does the work.
 unsafe impl GlobalAlloc for Counting {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
         ALLOCATIONS.set(ALLOCATIONS.get() + 1);
+        hold(layout.size(), 1);
         // SAFETY: the caller's promise.
         unsafe { System.alloc(layout) }
     }
 
     unsafe fn alloc_zeroed(&self, layout: Layout) -> *mut u8 {
         ALLOCATIONS.set(ALLOCATIONS.get() + 1);
+        hold(layout.size(), 1);
         // SAFETY: the caller's promise.
         unsafe { System.alloc_zeroed(layout) }
     }
 
     unsafe fn realloc(&self, pointer: *mut u8, layout: Layout, size: usize) -> *mut u8 {
         ALLOCATIONS.set(ALLOCATIONS.get() + 1);
+        hold(size, 1);
+        hold(layout.size(), -1);
         // SAFETY: the caller's promise.
         unsafe { System.realloc(pointer, layout, size) }
     }
 
     unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
+        hold(layout.size(), -1);
         // SAFETY: the caller's promise.
         unsafe { System.dealloc(pointer, layout) }
     }
@@ -121,8 +132,31 @@ fn a_step_of_the_model_allocates_nothing() {
 
 #[test]
 fn the_allocator_counts() {
-    let (count, _) = allocations(|| std::hint::black_box(vec![0_u8; 100]));
-    assert_eq!(count, 1);
+    let before = HELD.get();
+    let (count, held) = allocations(|| std::hint::black_box(vec![0_u8; 100]));
+    assert_eq!((count, HELD.get() - before), (1, 100));
+    drop(held);
+    assert_eq!(HELD.get(), before);
+}
+
+/// Model, scratch and state of one instance at default settings hold at most 16 MiB, with a rigid and an elastic wheel.
+#[test]
+fn an_instance_holds_at_most_16_mib() {
+    for wheel in [Wheel::Rigid, Wheel::Elastic] {
+        let before = HELD.get();
+        let parameters = Parameters {
+            wheel,
+            ..Parameters::default()
+        };
+        let model = Model::new(parameters).unwrap();
+        let mut workspace = model.workspace();
+        let state = model.initial_state(&mut workspace, &Inputs::default()).unwrap();
+        let held = HELD.get() - before;
+        println!("{wheel:?}: {:.2} MiB", held as f64 / f64::from(1 << 20));
+        assert!((1 << 18..=16 << 20).contains(&held), "{held} bytes");
+        drop((model, workspace, state));
+        assert_eq!(HELD.get(), before, "nothing is left behind");
+    }
 }
 
 #[test]
