@@ -30,7 +30,7 @@ GLIBC := 2.17
 
 say = @printf '\n\033[1m== %s\033[0m\n' '$(1)'
 
-COUPLINGS := longitudinal stiff multibody sweep
+COUPLINGS := longitudinal stiff multibody train sweep
 WHEELSET := target/Wheelset.fmu
 
 .PHONY: fmu demo test docs bench clean lint rust-test verify python-test hosts library command couplings
@@ -94,7 +94,7 @@ $(addprefix coupling-,$(COUPLINGS)): coupling-%: couplings-set-up
 
 # The pictures of the pages in docs/couplings/; commit what changes.
 couplings-docs: couplings
-	@cp results/longitudinal.png results/stiff.png results/multibody.png results/creep_curves.png docs/couplings/
+	@cp results/longitudinal.png results/stiff.png results/multibody.png results/train.png results/creep_curves.png docs/couplings/
 
 # The time that the sweep takes on two workers against one.
 sweep-scaling: couplings-set-up
