@@ -1,0 +1,36 @@
+"""A Sphinx extension that typesets equations as MathML when the site is built: nothing is loaded when it is read.
+
+`\\tag{18, 27}` in a displayed equation gives its number, here that of the paper.
+"""
+
+import re
+
+from docutils.nodes import SkipNode
+from latex2mathml.converter import convert
+
+TAG = re.compile(r"\\tag\{(.*?)\}")
+
+
+def inline(translator, node):
+    """Write a formula of the running text."""
+    translator.body.append(convert(node.astext()))
+    raise SkipNode
+
+
+def display(translator, node):
+    """Write a displayed equation, its number on the right."""
+    text = node.astext()
+    numbers = TAG.findall(text)
+    identifier = "".join(f' id="{name}"' for name in node["ids"][:1])
+    translator.body.append(f'<div class="equation"{identifier}>')
+    translator.body.append(convert(TAG.sub("", text).strip(), display="block"))
+    if numbers:
+        translator.body.append(f'<span class="number">({numbers[0]})</span>')
+    translator.body.append("</div>\n")
+    raise SkipNode
+
+
+def setup(app):
+    """Register the renderer."""
+    app.add_html_math_renderer("mathml", inline_renderers=(inline, None), block_renderers=(display, None))
+    return {"parallel_read_safe": True, "parallel_write_safe": True}
