@@ -1,7 +1,7 @@
-"""A Sphinx extension that typesets equations as MathML when the site is built, and adds a font for them: nothing is
-loaded from elsewhere when the site is read.
+r"""A Sphinx extension that typesets equations as MathML when the site is built, and adds a font for them.
 
-`\\tag{18, 27}` in a displayed equation gives its number, here that of the paper.
+Nothing is loaded from elsewhere when the site is read. `\tag{18, 27}` in a displayed equation gives its number, here
+that of the paper.
 """
 
 import re
