@@ -31,7 +31,7 @@ impl Rail {
     /// Mesh, compliance, thermal maps.
     ///
     /// # Errors
-    /// [`Error::StiffnessNotPositiveDefinite`], [`Error::DepthBasis`].
+    /// [`crate::error::Error::StiffnessNotPositiveDefinite`], [`crate::error::Error::DepthBasis`].
     pub fn new(parameters: &Parameters) -> Result<Rail> {
         let mesh = Mesh::new(parameters);
         let scales = Scales::new(parameters);

@@ -60,11 +60,13 @@ pub struct State {
 }
 
 /// A step that did not reach its end: the state stands at the last committed sub-step.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[error("the step ended after {committed} s: {error}")]
 pub struct Interrupted {
     /// Time that was committed of the step, `s`; 0 when nothing was.
     pub committed: f64,
     /// Why the next sub-step failed.
+    #[source]
     pub error: Error,
 }
 
