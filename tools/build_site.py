@@ -16,6 +16,15 @@ SOURCE = update_docs.REPOSITORY / "target" / "site-source"
 SITE = update_docs.REPOSITORY / "target" / "site"
 
 
+PERFORMANCE = """# Performance
+
+    make bench
+
+measures a step, its percentiles, initialisation, and saving and restoring a state. Times depend on the machine and on what
+else runs there.
+"""
+
+
 def verification_markdown():
     """Return the tables of the verification in Markdown."""
     lines = []
@@ -45,6 +54,8 @@ def main():
     for folder in (SOURCE, output):
         shutil.rmtree(folder, ignore_errors=True)
     shutil.copytree(update_docs.REPOSITORY / "docs", SOURCE)
+    if not (SOURCE / "performance.md").exists():
+        (SOURCE / "performance.md").write_text(PERFORMANCE)
     generated = SOURCE / "generated"
     generated.mkdir()
     (generated / "variables.md").write_text(update_docs.variables_markdown().replace("### ", "## "))
