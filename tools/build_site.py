@@ -20,8 +20,8 @@ PERFORMANCE = """# Performance
 
     make bench
 
-measures a step, its percentiles, initialisation, and saving and restoring a state. Times depend on the machine and on what
-else runs there.
+measures a step, its percentiles, initialisation, and saving and restoring a state. Times depend on the machine and on
+what else runs there.
 """
 
 
