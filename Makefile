@@ -4,7 +4,8 @@
 #   make demo    the paper's cases and a braking manoeuvre through FMPy: results/
 #   make couplings  the component in vehicle models, masters and sweeps: results/, one page each in docs/couplings/
 #   make test    formatting, lints, documentation, all Rust tests, `wheelrail verify`, all Python tests
-#   make docs    the generated tables of README.md and of the documentation page
+#   make docs    the generated tables and pictures of README.md and of the documentation
+#   make site    the documentation as a site: target/site/index.html
 #   make bench   run times: a step, a cold start, saving; against the number of contact nodes and the targets
 #   make clean   removes everything that the above made
 
@@ -33,7 +34,7 @@ say = @printf '\n\033[1m== %s\033[0m\n' '$(1)'
 COUPLINGS := longitudinal stiff multibody train sweep
 WHEELSET := target/Wheelset.fmu
 
-.PHONY: fmu demo test docs bench clean lint rust-test verify python-test hosts library command couplings
+.PHONY: fmu demo test docs site bench clean lint rust-test verify python-test hosts library command couplings
 .PHONY: couplings-set-up couplings-docs sweep-scaling $(addprefix coupling-,$(COUPLINGS))
 
 # ---- set-up -------------------------------------------------------------------------------------------------------
@@ -48,6 +49,11 @@ $(VENV)/ready: requirements.txt
 $(VENV)/couplings: requirements-couplings.txt $(VENV)/ready
 	$(call say,Packages for the couplings)
 	$(PY) -m pip install --quiet --disable-pip-version-check -r requirements-couplings.txt
+	@touch $@
+
+$(VENV)/site: requirements-site.txt $(VENV)/ready
+	$(call say,Packages for the documentation site)
+	$(PY) -m pip install --quiet --disable-pip-version-check -r requirements-site.txt
 	@touch $@
 
 # Hosts that need more than a Python package: each has a test that is skipped, with the reason, where this fails.
@@ -123,14 +129,22 @@ verify: command
 	$(call say,Verification against closed forms and the paper)
 	$(WHEELRAIL) verify
 
-python-test: fmu hosts couplings-set-up
+python-test: fmu hosts couplings-set-up $(VENV)/site
 	$(call say,Python tests)
 	$(PY) -m pytest
 
-# README's and the documentation page's generated tables, and README's pictures; commit what changes.
+# README's and the documentation page's generated tables, README's pictures and those of the verification; commit what
+# changes.
 docs: demo
 	@$(PY) tools/update_docs.py
+	@$(PY) tools/verification_figures.py
 	@cp results/paper_temperature.png results/braking.png docs/
+	@cp results/verification/*.png docs/verification/
+
+# The site needs no network when it is read; warnings are errors.
+site: command $(VENV)/site
+	$(call say,Documentation)
+	@$(PY) tools/build_site.py
 
 bench: $(VENV)/ready
 	cargo bench

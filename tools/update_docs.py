@@ -103,17 +103,19 @@ def figure(text):
     return f"{float(text):.4g}"
 
 
+def shown(row):
+    """Return the computed figure of a row; what is nothing but round-off differs from machine to machine."""
+    noise = float(row["reference"]) == 0.0 and abs(float(row["computed"])) < 1e-9
+    return f"below {figure(row['tolerance'])}" if noise else figure(row["computed"])
+
+
 def verification_html():
     """Return the figures of the verification in HTML."""
     lines = ["<table>", "<tr><th>quantity<th>reference<th>computed<th>unit<th>source of the reference"]
     for title, rows in verification():
         lines.append(f'<tr><th colspan="5">{html.escape(title)}')
         for row in rows:
-            computed = float(row["computed"])
-            # What is nothing but round-off differs from machine to machine.
-            noise = float(row["reference"]) == 0.0 and abs(computed) < 1e-9
-            shown = f"below {figure(row['tolerance'])}" if noise else figure(row["computed"])
-            cells = (row["quantity"], figure(row["reference"]), shown, row["unit"], row["source"])
+            cells = (row["quantity"], figure(row["reference"]), shown(row), row["unit"], row["source"])
             lines.append("<tr>" + "".join(f"<td>{html.escape(cell)}" for cell in cells))
     return "\n".join([*lines, "</table>"])
 

@@ -37,6 +37,31 @@ pub fn stick_share(parameters: &Parameters, load: f64, creepage: f64) -> f64 {
     (1.0 - creepage / saturation).max(0.0)
 }
 
+/// Carter's T/(μN).
+fn traction_share(parameters: &Parameters, load: f64, creepage: f64) -> f64 {
+    1.0 - stick_share(parameters, load, creepage).powi(2)
+}
+
+/// The creep curve in steps of 1e-4: creepage, T/(μN), Carter's.
+///
+/// # Errors
+/// A solver that did not converge.
+pub fn curve() -> Result<Vec<Vec<f64>>> {
+    let parameters = parameters();
+    let mut run = Run::new(&parameters, &Inputs::default())?;
+    let mut points = Vec::new();
+    for step in 0..=60 {
+        let inputs = Inputs {
+            creepage: 1e-4 * f64::from(step),
+            ..Inputs::default()
+        };
+        let computed = run.hold(&inputs, 1e-3, 1)?.traction_coefficient / parameters.friction_cold;
+        let carter = traction_share(&parameters, inputs.normal_load, inputs.creepage);
+        points.push(vec![inputs.creepage, computed, carter]);
+    }
+    Ok(points)
+}
+
 /// The creep curve, then length and position of the stick zone.
 ///
 /// # Errors
@@ -55,7 +80,7 @@ pub fn rows() -> Result<Vec<Row>> {
         rows.push(Row::absolute(
             format!("T/(mu N) at creepage {creepage}"),
             "1",
-            1.0 - stick_share(&parameters, load, creepage).powi(2),
+            traction_share(&parameters, load, creepage),
             outputs.traction_coefficient / parameters.friction_cold,
             TRACTION_TOLERANCE,
             SOURCE,

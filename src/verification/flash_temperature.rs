@@ -32,7 +32,10 @@ fn parameters() -> Parameters {
 pub fn rows() -> Result<Vec<Row>> {
     let parameters = parameters();
     let reference = largest_flash_temperature(&parameters);
-    let marched = marched_peak(&parameters)?;
+    let marched = march(&parameters)?
+        .into_iter()
+        .map(|(_, rise)| rise)
+        .fold(0.0, f64::max);
     Ok(vec![
         Row::absolute(
             "flash temperature integral, 6e6 N/m, 10 m/s, slip 0.1 m/s",
@@ -54,8 +57,22 @@ pub fn rows() -> Result<Vec<Row>> {
     ])
 }
 
-/// Steady march over the default mesh.
-fn marched_peak(parameters: &Parameters) -> Result<f64> {
+/// The surface from the rear of the contact window to its front: position, temperature rise, the integral.
+///
+/// # Errors
+/// A march that did not converge.
+pub fn curve() -> Result<Vec<Vec<f64>>> {
+    let parameters = parameters();
+    let (scale, half_length) = (flash_scale(&parameters), parameters.hertz_half_length(LOAD));
+    let points = march(&parameters)?;
+    Ok(points
+        .into_iter()
+        .map(|(x, rise)| vec![x, rise, scale * flash_integral(x / half_length)])
+        .collect())
+}
+
+/// Steady march over the default mesh: position and temperature rise of each surface node of the contact window.
+fn march(parameters: &Parameters) -> Result<Vec<(f64, f64)>> {
     let mesh = Mesh::new(parameters);
     let basis = DepthBasis::new(&mesh.depth)?;
     let half_length = parameters.hertz_half_length(LOAD);
@@ -94,17 +111,23 @@ fn marched_peak(parameters: &Parameters) -> Result<f64> {
         },
         &mut vec![0.0; basis.len()],
     )?;
-    Ok(surface.into_iter().fold(0.0, f64::max))
+    Ok((0..mesh.contact_nodes)
+        .map(|node| (mesh.contact_position(node), surface[mesh.contact_column(node)]))
+        .collect())
 }
 
-/// Largest value of the integral over the contact. With X = x/a and material entering at X = 1,
-/// θ(X) = μ p₀ s √(a/V) / (ρc √(πκ)) F(X), F(X) = ∫_X¹ √(1 − Y²)/√(Y − X) dY.
-fn largest_flash_temperature(parameters: &Parameters) -> f64 {
-    let scale = parameters.friction_cold
+/// With X = x/a and material entering at X = 1, θ(X) = μ p₀ s √(a/V) / (ρc √(πκ)) F(X), F(X) = ∫ √(1 − Y²)/√(Y − X) dY
+/// from the greater of X and −1 to 1. This is the factor of F.
+fn flash_scale(parameters: &Parameters) -> f64 {
+    parameters.friction_cold
         * parameters.hertz_peak_pressure(LOAD)
         * SLIP
         * (parameters.hertz_half_length(LOAD) / ROLLING_SPEED).sqrt()
-        / (parameters.volumetric_heat_capacity() * (PI * parameters.thermal_diffusivity).sqrt());
+        / (parameters.volumetric_heat_capacity() * (PI * parameters.thermal_diffusivity).sqrt())
+}
+
+/// Largest value of the integral over the contact.
+fn largest_flash_temperature(parameters: &Parameters) -> f64 {
     // Ternary search: F has one crest.
     let (mut left, mut right) = (-1.0, 1.0);
     for _ in 0..100 {
@@ -115,13 +138,27 @@ fn largest_flash_temperature(parameters: &Parameters) -> f64 {
             right -= third;
         }
     }
-    scale * flash_integral(0.5 * (left + right))
+    flash_scale(parameters) * flash_integral(0.5 * (left + right))
 }
 
-/// F(X). Y = X + (1 − X) sin²φ removes both roots: F = 2 (1 − X) ∫₀^{π/2} √(1 + Y) cos²φ dφ, whose integrand is
-/// smooth and even about both ends, so that the midpoint rule converges faster than any power.
+/// F(X). In the contact, Y = X + (1 − X) sin²φ removes both roots: F = 2 (1 − X) ∫₀^{π/2} √(1 + Y) cos²φ dφ, whose integrand is
+/// smooth and even about both ends, so that the midpoint rule converges faster than any power. Behind it, Y = cos φ:
+/// F = ∫₀^π sin²φ/√(cos φ − X) dφ, likewise.
 fn flash_integral(x: f64) -> f64 {
     const POINTS: usize = 64;
+    if x >= 1.0 {
+        return 0.0;
+    }
+    if x < -1.0 {
+        let width = PI / (8 * POINTS) as f64;
+        let sum: f64 = (0..8 * POINTS)
+            .map(|i| {
+                let (sine, cosine) = ((i as f64 + 0.5) * width).sin_cos();
+                sine * sine / (cosine - x).sqrt()
+            })
+            .sum();
+        return sum * width;
+    }
     let width = FRAC_PI_2 / POINTS as f64;
     let sum: f64 = (0..POINTS)
         .map(|i| {

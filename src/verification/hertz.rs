@@ -46,6 +46,30 @@ fn smooth(parameters: Parameters) -> Parameters {
     }
 }
 
+/// Pressure across the contact window at 20, 50 and 100 % of the largest load: load, position, pressure, Hertz's.
+///
+/// # Errors
+/// A solver that did not converge.
+pub fn curve() -> Result<Vec<Vec<f64>>> {
+    let parameters = smooth(Parameters::default());
+    let mut run = Run::new(&parameters, &Inputs::default())?;
+    let mut points = Vec::new();
+    for share in [0.2, 0.5, 1.0] {
+        let load = share * parameters.largest_load;
+        let inputs = Inputs {
+            normal_load: load,
+            ..Inputs::default()
+        };
+        run.hold(&inputs, 1e-3, 1)?;
+        let (half_length, peak) = (parameters.hertz_half_length(load), parameters.hertz_peak_pressure(load));
+        points.extend(run.contact_nodes().iter().map(|node| {
+            let hertz = peak * (1.0 - (node.position / half_length).powi(2)).max(0.0).sqrt();
+            vec![load, node.position, node.pressure, hertz]
+        }));
+    }
+    Ok(points)
+}
+
 /// Half-length and peak pressure of the given pair at loads in percent of the largest.
 ///
 /// # Errors

@@ -113,6 +113,35 @@ impl Row {
     }
 }
 
+/// What a figure draws: the model beside its closed form, point by point, in SI units.
+pub struct Curve {
+    /// Name of the figure.
+    pub name: &'static str,
+    /// Headings of the columns, with units.
+    pub columns: &'static [&'static str],
+    /// Computes the points.
+    pub points: fn() -> Result<Vec<Vec<f64>>>,
+}
+
+/// The curves behind some of the rows, computed by the same functions.
+pub const CURVES: &[Curve] = &[
+    Curve {
+        name: "hertz",
+        columns: &["load [N]", "x [m]", "pressure [Pa]", "closed form [Pa]"],
+        points: hertz::curve,
+    },
+    Curve {
+        name: "carter",
+        columns: &["creepage [1]", "T/(mu N) [1]", "closed form [1]"],
+        points: carter::curve,
+    },
+    Curve {
+        name: "flash_temperature",
+        columns: &["x [m]", "temperature rise [K]", "closed form [K]"],
+        points: flash_temperature::curve,
+    },
+];
+
 /// A named group of rows.
 pub struct Check {
     /// Heading.

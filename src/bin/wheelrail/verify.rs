@@ -1,8 +1,11 @@
 //! `wheelrail verify`: every check of the library as a table.
 
 use clap::Args;
+use std::fs;
 use std::io::{self, Write};
-use wheelrail::verification::{Row, CHECKS};
+use std::path::{Path, PathBuf};
+use wheelrail::error::Error as ModelError;
+use wheelrail::verification::{Row, CHECKS, CURVES};
 
 /// Options of `verify`.
 #[derive(Args)]
@@ -10,6 +13,9 @@ pub struct Verify {
     /// Run only the checks whose heading contains this text.
     #[arg(long, value_name = "TEXT", default_value = "")]
     only: String,
+    /// Run no check; write the curves behind some of them to this folder as CSV, beside their closed forms.
+    #[arg(long, value_name = "FOLDER", conflicts_with = "only")]
+    curves: Option<PathBuf>,
 }
 
 /// Why the verification did not pass.
@@ -34,11 +40,30 @@ pub enum Error {
     /// Standard output.
     #[error("standard output: {0}")]
     Output(#[from] io::Error),
+    /// A curve that cannot be written.
+    #[error("{path}: {source}")]
+    File {
+        /// The file or folder.
+        path: PathBuf,
+        /// What the system says.
+        source: io::Error,
+    },
+    /// A curve that could not be computed.
+    #[error("{name}: {source}")]
+    Curve {
+        /// Its name.
+        name: &'static str,
+        /// What the model says.
+        source: ModelError,
+    },
 }
 
 impl Verify {
     /// Prints the rows of each check as it ends.
     pub fn run(&self) -> Result<(), Error> {
+        if let Some(folder) = &self.curves {
+            return write_curves(folder);
+        }
         let only = self.only.to_lowercase();
         let chosen: Vec<_> = CHECKS
             .iter()
@@ -81,6 +106,27 @@ impl Verify {
         }
         Ok(())
     }
+}
+
+/// One file for each curve.
+fn write_curves(folder: &Path) -> Result<(), Error> {
+    let unwritable = |path: &Path| {
+        let path = path.to_owned();
+        move |source| Error::File { path, source }
+    };
+    fs::create_dir_all(folder).map_err(unwritable(folder))?;
+    for curve in CURVES {
+        let name = curve.name;
+        let points = (curve.points)().map_err(|source| Error::Curve { name, source })?;
+        let mut table = curve.columns.join(",") + "\n";
+        for point in points {
+            let cells: Vec<String> = point.iter().map(f64::to_string).collect();
+            table += &(cells.join(",") + "\n");
+        }
+        let path = folder.join(name).with_extension("csv");
+        fs::write(&path, table).map_err(unwritable(&path))?;
+    }
+    Ok(())
 }
 
 /// Width of the column of quantities.
