@@ -1,4 +1,4 @@
-"""Draws the cost of a step and of a cold start against the number of nodes in contact, from the table of `make bench`."""
+"""Draws the cost of a step and of a cold start against the nodes in contact, from the table of `make bench`."""
 
 import csv
 from pathlib import Path
@@ -10,6 +10,7 @@ ROOT = Path(__file__).resolve().parent.parent
 
 
 def main() -> None:
+    """Draw docs/scaling.png."""
     with (ROOT / "results" / "scaling.csv").open() as file:
         rows = list(csv.DictReader(file))
     column = {name: np.array([float(row[name]) for row in rows]) for name in rows[0]}
