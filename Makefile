@@ -121,7 +121,7 @@ lint: $(VENV)/ready
 
 rust-test:
 	$(call say,Rust tests)
-	cargo test
+	cargo test --no-fail-fast
 	cargo test --features panic-injection --test fmi2_panic
 	cargo test --features divergence-injection --test divergence
 

@@ -152,10 +152,12 @@ fn an_instance_holds_at_most_16_mib() {
         let mut workspace = model.workspace();
         let state = model.initial_state(&mut workspace, &Inputs::default()).unwrap();
         let held = HELD.get() - before;
+        drop((model, workspace, state));
+        let left = HELD.get() - before;
+        // Not before: the text itself is held until the test ends.
         println!("{wheel:?}: {:.2} MiB", held as f64 / f64::from(1 << 20));
         assert!((1 << 18..=16 << 20).contains(&held), "{held} bytes");
-        drop((model, workspace, state));
-        assert_eq!(HELD.get(), before, "nothing is left behind");
+        assert_eq!(left, 0, "bytes left behind");
     }
 }
 
