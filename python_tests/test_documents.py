@@ -1,5 +1,6 @@
 """README.md and the documentation page say what the component does: their tables are compared, the example is run."""
 
+import html
 import re
 import subprocess
 import sys
@@ -64,9 +65,7 @@ def test_figures_of_the_verification():
     """The page's figures are those that `wheelrail verify` measures now, to a thousandth, or both are round-off."""
     fresh = [row for _, rows in update_docs.verification() for row in rows]
     shown = [row for row in cells(block(update_docs.PAGE, "wheelrail verify")) if len(row) == 5][1:]
-    assert [row["quantity"] for row in fresh] == [row[0].replace("&gt;", ">").replace("&lt;", "<") for row in shown], (
-        STALE
-    )
+    assert [row["quantity"] for row in fresh] == [html.unescape(row[0]) for row in shown], STALE
     for row, (quantity, reference, computed, unit, _) in zip(fresh, shown, strict=True):
         assert (float(reference), unit) == (pytest.approx(float(row["reference"]), rel=1e-3), row["unit"]), quantity
         scale = max(abs(float(row["reference"])), abs(float(row["computed"])), 1e-9)
