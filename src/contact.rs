@@ -2,7 +2,7 @@
 //! tractions, repeated until the temperature rests.
 
 use crate::acceleration::Anderson;
-use crate::dense;
+use crate::dense::{self, largest, largest_change};
 use crate::error::{Error, Result};
 use crate::fields::Fields;
 use crate::friction;
@@ -517,12 +517,4 @@ impl Contact<'_> {
         }
         Ok(())
     }
-}
-
-fn largest(values: &[f64]) -> f64 {
-    values.iter().fold(0.0, |m: f64, v| v.abs().max(m))
-}
-
-fn largest_change(now: &[f64], last: &[f64]) -> f64 {
-    now.iter().zip(last).fold(0.0, |m, (a, b)| (a - b).abs().max(m))
 }

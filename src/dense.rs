@@ -77,6 +77,16 @@ pub fn dot(x: &[f64], y: &[f64]) -> f64 {
     tail + sums.iter().sum::<f64>()
 }
 
+/// Largest magnitude.
+pub fn largest(values: &[f64]) -> f64 {
+    values.iter().fold(0.0, |m: f64, v| v.abs().max(m))
+}
+
+/// Largest magnitude of the difference.
+pub fn largest_change(now: &[f64], last: &[f64]) -> f64 {
+    now.iter().zip(last).fold(0.0, |m: f64, (a, b)| (a - b).abs().max(m))
+}
+
 /// Cholesky factor L of a symmetric positive definite n × n matrix whose lower triangle is in `a`; L replaces it.
 /// False where the matrix is not positive definite.
 pub fn cholesky(a: &mut [f64], n: usize) -> bool {

@@ -8,6 +8,7 @@
 
 use crate::acceleration::Anderson;
 use crate::contact::{gathered, Contact, Scratch, TEMPERATURE_SCALE};
+use crate::dense::{largest, largest_change};
 use crate::error::{Error, Result};
 use crate::fields::Fields;
 use crate::friction;
@@ -203,14 +204,13 @@ impl<'a> Linearisation<'a> {
             &mut along,
             &mut upward,
         );
-        let direction = if motion.rolling_speed >= 0.0 { 1.0 } else { -1.0 };
         let problem = ProblemTangent {
             profile: &upward,
             displacement: &along,
             friction: &tangent.friction,
             total: rail.scaled_load(contact.parameters, change.inputs.normal_load),
             rigid_slip: change.rigid_slip,
-            strain_speed: direction * change.rolling_speed * contact.strain_scale(),
+            strain_speed: self.speed_tangent(change) * contact.strain_scale(),
         };
         let mut tractions = Tractions {
             pressure: &mut tangent.pressure,
@@ -224,12 +224,16 @@ impl<'a> Linearisation<'a> {
 
     /// d(1/Δt + |V|/Δx)/dV dV of a column of the given spacing.
     fn advection_tangent(&self, change: &InputTangent, spacing: f64) -> f64 {
-        let direction = if self.contact.conditions.motion.rolling_speed >= 0.0 {
-            1.0
+        self.speed_tangent(change) / spacing
+    }
+
+    /// d|V|.
+    fn speed_tangent(&self, change: &InputTangent) -> f64 {
+        if self.contact.conditions.motion.rolling_speed >= 0.0 {
+            change.rolling_speed
         } else {
-            -1.0
-        };
-        direction * change.rolling_speed / spacing
+            -change.rolling_speed
+        }
     }
 
     /// (24).
@@ -386,14 +390,9 @@ impl<'a> Linearisation<'a> {
         }
         // Counted in nodes: constant but for jumps.
         derivative.stick_fraction = 0.0;
-        let direction = if contact.conditions.motion.rolling_speed >= 0.0 {
-            1.0
-        } else {
-            -1.0
-        };
         derivative.worn_volume = derivative.wear_rate * duration;
         derivative.friction_energy = derivative.friction_power * duration;
-        derivative.distance = direction * change.rolling_speed * duration;
+        derivative.distance = self.speed_tangent(change) * duration;
         if let Constraint::Total(total) = contact.constraint() {
             if total == 0.0 {
                 derivative.penetration = 0.0;
@@ -403,12 +402,8 @@ impl<'a> Linearisation<'a> {
     }
 }
 
-fn largest(values: &[f64]) -> f64 {
-    values.iter().fold(0.0, |m: f64, v| v.abs().max(m))
-}
-
 fn relative_change(now: &[f64], last: &[f64]) -> f64 {
-    let change = now.iter().zip(last).fold(0.0, |m: f64, (a, b)| (a - b).abs().max(m));
+    let change = largest_change(now, last);
     if change == 0.0 {
         0.0
     } else {

@@ -7,7 +7,7 @@
 //! The problem is posed around the tractions of the sweep before: pressure and strain there are given, and how both
 //! respond to a change of τ (see `Response` of [`crate::mechanics`]). Tractions and displacements are scaled, speeds in m/s.
 
-use crate::dense;
+use crate::dense::{self, largest};
 use crate::error::{Error, Result};
 use crate::friction::{saturation, saturation_slope};
 
@@ -251,8 +251,4 @@ impl Tangential {
         }
         dense::lu_solve(&self.factor, m, &self.pivots, &mut self.step[..m]);
     }
-}
-
-fn largest(values: &[f64]) -> f64 {
-    values.iter().fold(0.0, |m: f64, v| v.abs().max(m))
 }

@@ -4,8 +4,10 @@
 #![allow(unsafe_code)]
 
 mod common;
+mod random;
 
 use common::{reference, Api, Client, Handle, OK};
+use random::Random;
 use wheelrail::parameters::Parameters;
 use wheelrail::signals::{INPUTS, OUTPUTS};
 
@@ -16,20 +18,6 @@ const CHANGE: f64 = 4e-4;
 /// Relative change of all inputs in the step that is differentiated. Without it the operator split would rest after two
 /// iterations, and the difference quotient miss the derivative by the square of the contraction, up to 1e-3 whatever its step.
 const MOVE: f64 = 0.02;
-
-/// Sebastiano Vigna's SplitMix64.
-struct Random(u64);
-
-impl Random {
-    fn between(&mut self, low: f64, high: f64) -> f64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^= z >> 31;
-        low + (high - low) * (z >> 11) as f64 / (1_u64 << 53) as f64
-    }
-}
 
 /// Where a difference starts: a saved state, its time and the inputs that were in force.
 struct Point<'a> {

@@ -6,8 +6,10 @@
 #![cfg(target_os = "linux")]
 
 mod common;
+mod random;
 
 use common::{reference, Api, Client, Handle, OK};
+use random::Random;
 use std::fs::read_to_string;
 use std::ptr::null_mut;
 use std::time::{Duration, Instant};
@@ -22,27 +24,6 @@ const PROFILE_STEPS: u64 = 1000;
 const REPEATED_STEPS: u64 = 50;
 /// Memory that may come and go with the allocator, [KiB].
 const SLACK: u64 = 256;
-
-/// Sebastiano Vigna's SplitMix64.
-struct Random(u64);
-
-impl Random {
-    fn bits(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
-    }
-
-    fn between(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * (self.bits() >> 11) as f64 / (1_u64 << 53) as f64
-    }
-
-    fn chance(&mut self, probability: f64) -> bool {
-        self.between(0.0, 1.0) < probability
-    }
-}
 
 /// A signal that moves from one value to the next, in a jump or along a ramp.
 #[derive(Clone, Copy)]

@@ -21,6 +21,17 @@ pub fn check_range(name: &'static str, value: f64, minimum: f64, maximum: f64, u
     }
 }
 
+/// Two values that cannot be together.
+fn combination(first: (&'static str, f64), second: (&'static str, f64), requirement: &'static str) -> Result<()> {
+    Err(Error::Combination {
+        first: first.0,
+        first_value: first.1,
+        second: second.0,
+        second_value: second.1,
+        requirement,
+    })
+}
+
 impl Parameters {
     /// Checks every value against its range, then the values against each other.
     ///
@@ -35,33 +46,29 @@ impl Parameters {
         }
         self.validate_friction()?;
         let window = self.window_half_width();
-        let combination = |second, second_value, requirement| Error::Combination {
-            first: "largest_load",
-            first_value: self.largest_load,
-            second,
-            second_value,
-            requirement,
+        let too_large = |second, second_value, requirement| {
+            combination(("largest_load", self.largest_load), (second, second_value), requirement)
         };
         if window > 0.1 * self.wheel_radius {
-            return Err(combination(
+            return too_large(
                 "wheel_radius",
                 self.wheel_radius,
                 "the contact of the largest load must stay below a tenth of the wheel radius (small displacements)",
-            ));
+            );
         }
         if window > 0.1 * self.strip_half_length {
-            return Err(combination(
+            return too_large(
                 "strip_half_length",
                 self.strip_half_length,
                 "the contact window of the largest load must stay below a tenth of the strip's half-length",
-            ));
+            );
         }
         if window > 0.5 * self.strip_height {
-            return Err(combination(
+            return too_large(
                 "strip_height",
                 self.strip_height,
                 "the contact window of the largest load must stay below half the strip's height",
-            ));
+            );
         }
         self.validate_sizes()
     }
@@ -72,13 +79,7 @@ impl Parameters {
             if first_value <= share * second_value {
                 return Ok(());
             }
-            Err(Error::Combination {
-                first,
-                first_value,
-                second,
-                second_value,
-                requirement,
-            })
+            combination((first, first_value), (second, second_value), requirement)
         };
         fits(
             "rim_depth",
@@ -103,25 +104,14 @@ impl Parameters {
     /// # Errors
     /// [`Error::Combination`].
     pub fn validate_friction(&self) -> Result<()> {
-        let combination = |first, first_value, second, second_value, requirement| {
-            Err(Error::Combination {
-                first,
-                first_value,
-                second,
-                second_value,
-                requirement,
-            })
-        };
         let falls = matches!(
             self.friction_law,
             FrictionLaw::PiecewiseLinear | FrictionLaw::FlowStress
         );
         if falls && self.friction_hot > self.friction_cold {
             return combination(
-                "friction_hot",
-                self.friction_hot,
-                "friction_cold",
-                self.friction_cold,
+                ("friction_hot", self.friction_hot),
+                ("friction_cold", self.friction_cold),
                 "the hot contact's friction coefficient must not exceed the cold one's",
             );
         }
@@ -129,10 +119,8 @@ impl Parameters {
             && self.friction_temperature_hot <= self.friction_temperature_cold
         {
             return combination(
-                "friction_temperature_hot",
-                self.friction_temperature_hot,
-                "friction_temperature_cold",
-                self.friction_temperature_cold,
+                ("friction_temperature_hot", self.friction_temperature_hot),
+                ("friction_temperature_cold", self.friction_temperature_cold),
                 "the hot temperature must lie above the cold one",
             );
         }
@@ -141,10 +129,8 @@ impl Parameters {
             for pair in points.windows(2) {
                 if pair[1] <= pair[0] {
                     return combination(
-                        "friction_table.temperature",
-                        pair[0],
-                        "the next friction_table.temperature",
-                        pair[1],
+                        ("friction_table.temperature", pair[0]),
+                        ("the next friction_table.temperature", pair[1]),
                         "the temperatures of the friction table must ascend",
                     );
                 }
