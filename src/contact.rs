@@ -99,7 +99,7 @@ impl Scratch {
             exchange: vec![SurfaceExchange::default(); n],
             wear_rate: vec![0.0; n],
             mode: vec![0.0; rail.basis.len()],
-            moments: vec![0.0; rail.thermal_map.scratch_len(rail.mesh.columns())],
+            moments: vec![0.0; rail.thermal_map.scratch_len()],
             mapped_flux: vec![0.0; n],
             iterate: vec![0.0; gathered(n)],
             image: vec![0.0; gathered(n)],

@@ -1,33 +1,56 @@
 //! Thermal displacement of the contact nodes from the temperature field, compressed.
 //!
-//! The exact map is dense: 2n rows by all nodes of the mesh, memory-bound in a step. But the displacement is smooth in
-//! the depth of its cause, so that per column a few weighted integrals over the depth ("moments") carry it, and all
-//! but the first of them act close to their column only. The weights are common to all columns: the leading right
-//! singular vectors of the map over the profiles that a heated surface can make (`heated_profiles`). Of every
-//! moment of a column only the rows are kept where it matters.
+//! The exact map is dense: 2n rows by all nodes of the mesh, memory-bound in a step. Two compressions make it small:
+//!
+//! 1. Over the depth. The displacement is smooth in the depth of its cause, so that per column a few weighted integrals
+//!    ("moments") carry it. The weights are common to all columns: the leading right singular vectors of the map over the
+//!    profiles that a heated surface can make (`heated_profiles`).
+//! 2. Along the rail. The displacement is smooth also in the place of its cause, but for the nodes next to it. Columns are
+//!    taken in blocks of √n; far from a block, a few combinations of its moments carry their effect ("effects"). Next to
+//!    the block what these leave is added from the moments themselves.
 
 use crate::compliance::ThermalDisplacement;
 use crate::dense;
 use crate::heat::DepthBasis;
 use crate::mesh::Mesh;
 use nalgebra::{Cholesky, DMatrix, SymmetricEigen};
+use std::ops::Range;
 
 /// Error of the compressed map relative to the largest displacement of a heated profile.
 pub const TOLERANCE: f64 = 1e-4;
 
-/// Moments that are summed together, one vector register of AVX2.
-const LANES: usize = 4;
+/// Moments and effects come in multiples of this: the partial sums of a product.
+const LANES: usize = 8;
+/// Nodes within so many node spacings of a block are next to it.
+const NEAR: f64 = 4.0;
 
 /// Maps modal amplitudes (columns × modes) to the 2n scaled displacements, along x₁ first.
 #[derive(Debug, Clone)]
 pub struct ThermalMap {
     modes: usize,
-    /// Number of moments of a column, padded to [`LANES`].
+    /// Number of moments of a column, a multiple of [`LANES`].
     moments: usize,
+    /// Number of effects of all blocks.
+    effects: usize,
     /// Weights of the moments: per [`LANES`] moments and mode the weights of those moments.
     weights: Vec<[f64; LANES]>,
-    /// Gains row by row, 2n × (columns × moments). Single precision, 6e-8, is far below the tolerance, and halves the
-    /// memory that an application streams through.
+    blocks: Vec<Block>,
+    /// Displacement per effect, row by row, 2n × effects. Gains are in single precision: 6e-8 is far below the tolerance,
+    /// and it halves the memory that an application streams through.
+    far: Vec<f32>,
+}
+
+/// Neighbouring columns and what their temperature does.
+#[derive(Debug, Clone)]
+struct Block {
+    columns: Range<usize>,
+    /// Its effects among all.
+    effects: Range<usize>,
+    /// Effects per moment of the columns, row by row.
+    combinations: Vec<f32>,
+    /// Contact nodes next to the block.
+    near: Range<usize>,
+    /// Their displacement per moment of the columns, less that of the effects; along x₁, then along x₂, row by row.
     gains: Vec<f32>,
 }
 
@@ -42,6 +65,121 @@ fn heated_profiles(basis: &DepthBasis, diffusivity: f64) -> DMatrix<f64> {
     })
 }
 
+/// Moments of a column and the displacement that they make.
+struct Moments {
+    /// Modes × moments.
+    weights: DMatrix<f64>,
+    /// Per column, 2n × moments.
+    images: Vec<DMatrix<f64>>,
+}
+
+impl Moments {
+    fn new(mesh: &Mesh, basis: &DepthBasis, exact: &ThermalDisplacement, diffusivity: f64, tolerance: f64) -> Moments {
+        let (rows, m) = (mesh.rows(), basis.len());
+        let of_column = |column: usize| exact.columns(column * rows, rows);
+        // Each profile counts by the displacement that it makes in the middle of the window.
+        let middle = of_column(mesh.contact_column(mesh.contact_nodes / 2)) * &basis.modes;
+        let mut profiles = heated_profiles(basis, diffusivity);
+        for mut profile in profiles.column_iter_mut() {
+            let size = (&middle * &profile).amax();
+            profile /= if size > 0.0 { size } else { 1.0 };
+        }
+        // S Sᵀ = profiles · profilesᵀ, with a floor that keeps every mode.
+        let mut gram = &profiles * profiles.transpose();
+        for mode in 0..m {
+            gram[(mode, mode)] *= 1.0 + 1e-12;
+        }
+        let root = match Cholesky::new(gram) {
+            Some(cholesky) => cholesky.l(),
+            None => DMatrix::identity(m, m),
+        };
+        // Singular vectors of the map after modes · S: all columns of the mesh one above the other.
+        let mut gram = DMatrix::zeros(rows, rows);
+        for column in 0..mesh.columns() {
+            let block = of_column(column);
+            gram.gemm_tr(1.0, &block, &block, 1.0);
+        }
+        let scaled = &basis.modes * &root;
+        let eigen = SymmetricEigen::new(scaled.transpose() * gram * &scaled);
+        let mut order: Vec<usize> = (0..m).collect();
+        order.sort_by(|&a, &b| eigen.eigenvalues[b].total_cmp(&eigen.eigenvalues[a]));
+        // A singular value bounds every displacement of its vector.
+        let candidates = order
+            .iter()
+            .filter(|&&k| eigen.eigenvalues[k] > tolerance * tolerance)
+            .count();
+        let vectors = DMatrix::from_fn(m, candidates, |i, k| eigen.eigenvectors[(i, order[k])]);
+        // Moments are wᵀ a with w = S⁻ᵀ v: of unit size over the profiles.
+        let weights = root
+            .transpose()
+            .solve_upper_triangular(&vectors)
+            .unwrap_or_else(|| vectors.clone());
+        let per_moment = scaled * &vectors;
+        let images: Vec<DMatrix<f64>> = (0..mesh.columns())
+            .map(|column| of_column(column) * &per_moment)
+            .collect();
+        let matters = |&moment: &usize| images.iter().any(|image| image.column(moment).amax() > tolerance);
+        let used = (0..candidates).rev().find(matters).map_or(0, |last| last + 1);
+        // Padding has no weight and no gain.
+        let padded = used.next_multiple_of(LANES);
+        let pad = |matrix: DMatrix<f64>| matrix.resize_horizontally(used, 0.0).resize_horizontally(padded, 0.0);
+        Moments {
+            weights: pad(weights),
+            images: images.into_iter().map(pad).collect(),
+        }
+    }
+
+    /// The displacement that the columns' moments make, row by row: 2n × (columns · moments).
+    fn rows(&self, columns: Range<usize>) -> Vec<f64> {
+        let (displacements, moments) = self.images[0].shape();
+        let mut rows = Vec::with_capacity(displacements * columns.len() * moments);
+        for row in 0..displacements {
+            for image in &self.images[columns.clone()] {
+                rows.extend(image.row(row).iter());
+            }
+        }
+        rows
+    }
+}
+
+/// Takes from the `rows` (each of `inputs` values) their parts along a few orthonormal combinations, until what is left of
+/// those in question is below the tolerance: Gram and Schmidt's method on the row that is largest. Returns the
+/// combinations and, one after the other, the parts of all rows along them.
+fn split_off(rows: &mut [f64], inputs: usize, far: impl Fn(usize) -> bool, tolerance: f64) -> (Vec<f64>, Vec<f64>) {
+    let (mut combinations, mut parts) = (Vec::new(), Vec::new());
+    for _ in 0..inputs {
+        let far_rows = || {
+            rows.chunks_exact(inputs)
+                .enumerate()
+                .filter(|(row, _)| far(*row))
+                .map(|(_, r)| r)
+        };
+        if far_rows().all(|row| dense::largest(row) <= tolerance) {
+            break;
+        }
+        let pivot = far_rows().max_by(|a, b| dense::dot(a, a).total_cmp(&dense::dot(b, b)));
+        let mut direction = pivot.unwrap_or_default().to_vec();
+        let length = dense::dot(&direction, &direction).sqrt();
+        direction.iter_mut().for_each(|value| *value /= length);
+        dense::vectorised(
+            #[inline(always)]
+            || {
+                for row in rows.chunks_exact_mut(inputs) {
+                    let part = dense::dot(row, &direction);
+                    dense::add_multiple(&direction, -part, row);
+                    parts.push(part);
+                }
+            },
+        );
+        combinations.extend(direction);
+    }
+    (combinations, parts)
+}
+
+fn single(values: &[f64]) -> impl Iterator<Item = f32> + '_ {
+    values.iter().map(|&value| value as f32)
+}
+
 impl ThermalMap {
     /// Compresses the exact map to the given tolerance.
     ///
@@ -54,109 +192,133 @@ impl ThermalMap {
         diffusivity: f64,
         tolerance: f64,
     ) -> ThermalMap {
-        let (rows, m, n) = (mesh.rows(), basis.len(), exact.nrows() / 2);
-        let per_column: Vec<DMatrix<f64>> = (0..mesh.columns())
-            .map(|column| exact.columns(column * rows, rows) * &basis.modes)
-            .collect();
-        // Each profile counts by the displacement that it makes in the middle of the window.
-        let middle = &per_column[mesh.contact_column(mesh.contact_nodes / 2)];
-        let mut profiles = heated_profiles(basis, diffusivity);
-        for mut profile in profiles.column_iter_mut() {
-            let size = (middle * &profile).amax();
-            profile /= if size > 0.0 { size } else { 1.0 };
-        }
-        // S Sᵀ = profiles · profilesᵀ, with a floor that keeps every mode.
-        let mut gram = &profiles * profiles.transpose();
-        for mode in 0..m {
-            gram[(mode, mode)] *= 1.0 + 1e-12;
-        }
-        let root = match Cholesky::new(gram) {
-            Some(cholesky) => cholesky.l(),
-            None => DMatrix::identity(m, m),
-        };
-        let weighted: Vec<DMatrix<f64>> = per_column.iter().map(|block| block * &root).collect();
-        let mut gram = DMatrix::zeros(m, m);
-        for block in &weighted {
-            gram.gemm_tr(1.0, block, block, 1.0);
-        }
-        let eigen = SymmetricEigen::new(gram);
-        let mut order: Vec<usize> = (0..m).collect();
-        order.sort_by(|&a, &b| eigen.eigenvalues[b].total_cmp(&eigen.eigenvalues[a]));
-        let vectors = DMatrix::from_fn(m, m, |i, k| eigen.eigenvectors[(i, order[k])]);
-        // Moments are wᵀ a with w = S⁻ᵀ v: of unit size over the profiles.
-        let weights = root
-            .transpose()
-            .solve_upper_triangular(&vectors)
-            .unwrap_or_else(|| vectors.clone());
-
-        let images: Vec<DMatrix<f64>> = weighted.iter().map(|block| block * &vectors).collect();
-        let matters = |&moment: &usize| images.iter().any(|image| image.column(moment).amax() > tolerance);
-        let used = (0..m).rev().find(matters).map_or(0, |last| last + 1);
-        let moments = used.next_multiple_of(LANES);
-        // Padding has no weight and no gain.
-        let entry =
-            |matrix: &DMatrix<f64>, row: usize, moment: usize| if moment < used { matrix[(row, moment)] } else { 0.0 };
-        let mut packed = Vec::with_capacity(m * moments / LANES);
+        let n = mesh.contact_nodes;
+        let column_moments = Moments::new(mesh, basis, exact, diffusivity, tolerance);
+        let (modes, moments) = column_moments.weights.shape();
+        let mut weights = Vec::with_capacity(modes * moments / LANES);
         for first in (0..moments).step_by(LANES) {
-            packed.extend((0..m).map(|mode| std::array::from_fn(|lane| entry(&weights, mode, first + lane))));
+            weights.extend(
+                (0..modes).map(|mode| std::array::from_fn(|lane| column_moments.weights[(mode, first + lane)])),
+            );
         }
-        let mut gains = Vec::with_capacity(2 * n * images.len() * moments);
-        for row in 0..2 * n {
-            for image in &images {
-                gains.extend((0..moments).map(|moment| entry(image, row, moment) as f32));
-            }
-        }
-        ThermalMap {
-            modes: m,
-            moments,
-            weights: packed,
-            gains,
-        }
-    }
-
-    /// Numbers of moments a column and of gains.
-    pub fn size(&self) -> (usize, usize) {
-        (self.moments, self.gains.len())
-    }
-
-    /// The displacement of the field into `displacement` (2n), by way of the moments of its columns (columns × moments).
-    pub fn apply(&self, amplitudes: &[f64], moments: &mut [f64], displacement: &mut [f64]) {
-        // A rail that does not expand.
-        if self.moments == 0 {
-            displacement.fill(0.0);
-            return;
-        }
-        // Upstream, the rail has not been heated since it entered.
-        let warm = |column: &[f64]| column[0] != 0.0;
-        let mut columns = amplitudes.chunks_exact(self.modes);
-        let count = columns.len();
-        let (Some(first), Some(last)) = (columns.clone().position(warm), columns.rposition(warm)) else {
-            displacement.fill(0.0);
-            return;
+        let width = if moments == 0 {
+            mesh.columns()
+        } else {
+            (n as f64).sqrt().round() as usize
         };
-        let moments = &mut moments[..(last + 1 - first) * self.moments];
+        let (mut blocks, mut effects) = (Vec::new(), 0);
+        // Displacement per effect, effect by effect.
+        let mut far = Vec::new();
+        for first in (0..mesh.columns()).step_by(width) {
+            let columns = first..mesh.columns().min(first + width);
+            let inputs = columns.len() * moments;
+            let reach = NEAR * mesh.contact_spacing();
+            let (from, to) = (mesh.x[columns.start] - reach, mesh.x[columns.end - 1] + reach);
+            let is_near = |node: &usize| (from..=to).contains(&mesh.contact_position(*node));
+            let near = match ((0..n).find(is_near), (0..n).rfind(is_near)) {
+                (Some(first), Some(last)) => first..last + 1,
+                _ => 0..0,
+            };
+            let mut rows = column_moments.rows(columns.clone());
+            let (mut combinations, mut parts) = if moments == 0 {
+                Default::default()
+            } else {
+                split_off(&mut rows, inputs, |row| !near.contains(&(row % n)), tolerance)
+            };
+            let own = (parts.len() / (2 * n)).next_multiple_of(LANES);
+            combinations.resize(own * inputs, 0.0);
+            parts.resize(own * 2 * n, 0.0);
+            far.extend(parts);
+            let next_to = |offset: usize| &rows[(offset + near.start) * inputs..(offset + near.end) * inputs];
+            blocks.push(Block {
+                effects: effects..effects + own,
+                combinations: single(&combinations).collect(),
+                gains: single(next_to(0)).chain(single(next_to(n))).collect(),
+                columns,
+                near,
+            });
+            effects += own;
+        }
+        let far = DMatrix::from_vec(2 * n, effects, far).transpose();
+        ThermalMap {
+            modes,
+            moments,
+            effects,
+            weights,
+            blocks,
+            far: single(far.as_slice()).collect(),
+        }
+    }
+
+    /// Numbers of moments a column, of effects and of gains.
+    pub fn size(&self) -> (usize, usize, usize) {
+        let near = self
+            .blocks
+            .iter()
+            .map(|block| block.combinations.len() + block.gains.len());
+        (self.moments, self.effects, self.far.len() + near.sum::<usize>())
+    }
+
+    /// Values that [`ThermalMap::apply`] needs for moments and effects.
+    pub fn scratch_len(&self) -> usize {
+        let columns = self.blocks.last().map_or(0, |block| block.columns.end);
+        columns * self.moments + self.effects
+    }
+
+    /// The displacement of the field into `displacement` (2n); `scratch` holds [`ThermalMap::scratch_len`] values.
+    pub fn apply(&self, amplitudes: &[f64], scratch: &mut [f64], displacement: &mut [f64]) {
         dense::vectorised(
             #[inline(always)]
-            || {
-                for (column, moments) in amplitudes[first * self.modes..]
-                    .chunks_exact(self.modes)
-                    .zip(moments.chunks_exact_mut(self.moments))
-                {
-                    self.column_moments(column, moments);
-                }
-                let row = count * self.moments;
-                for (rows, displacement) in self.gains.chunks_exact(2 * row).zip(displacement.chunks_exact_mut(2)) {
-                    let (one, two) = rows.split_at(row);
-                    let (one, two) = (&one[first * self.moments..], &two[first * self.moments..]);
-                    displacement.copy_from_slice(&dot_pair(one, two, moments));
-                }
-            },
-        );
+            || self.apply_kernel(amplitudes, scratch, displacement),
+        )
     }
 
-    /// Values that [`ThermalMap::apply`] needs for the moments of so many columns.
-    pub fn scratch_len(&self, columns: usize) -> usize {
-        columns * self.moments
+    #[inline(always)]
+    fn apply_kernel(&self, amplitudes: &[f64], scratch: &mut [f64], displacement: &mut [f64]) {
+        displacement.fill(0.0);
+        // Upstream, the rail has not been heated since it entered.
+        let is_warm = |block: &&Block| {
+            let columns = &amplitudes[block.columns.start * self.modes..block.columns.end * self.modes];
+            columns.chunks_exact(self.modes).any(|column| column[0] != 0.0)
+        };
+        // A rail that does not expand has no moments.
+        let (Some(first), Some(last)) = (
+            self.blocks.iter().position(|block| self.moments > 0 && is_warm(&block)),
+            self.blocks.iter().rposition(|block| is_warm(&block)),
+        ) else {
+            return;
+        };
+        let warm = &self.blocks[first..=last];
+        let (effects, all_moments) = scratch.split_at_mut(self.effects);
+        let (shifts, lifts) = displacement.split_at_mut(displacement.len() / 2);
+        for block in warm {
+            let columns = block.columns.clone();
+            let moments = &mut all_moments[columns.start * self.moments..columns.end * self.moments];
+            for (column, moments) in amplitudes[columns.start * self.modes..columns.end * self.modes]
+                .chunks_exact(self.modes)
+                .zip(moments.chunks_exact_mut(self.moments))
+            {
+                self.column_moments(column, moments);
+            }
+            let own_effects = &mut effects[block.effects.clone()];
+            own_effects.fill(0.0);
+            multiply_add(&block.combinations, moments, own_effects);
+            let (along, upward) = block.gains.split_at(block.gains.len() / 2);
+            multiply_add(along, moments, &mut shifts[block.near.clone()]);
+            multiply_add(upward, moments, &mut lifts[block.near.clone()]);
+        }
+        let range = warm[0].effects.start..warm[warm.len() - 1].effects.end;
+        let effects = &effects[range.clone()];
+        for (rows, displacement) in self
+            .far
+            .chunks_exact(2 * self.effects)
+            .zip(displacement.chunks_exact_mut(2))
+        {
+            let (one, two) = rows.split_at(self.effects);
+            let [one, two] = dot_pair(&one[range.clone()], &two[range.clone()], effects);
+            displacement[0] += one;
+            displacement[1] += two;
+        }
     }
 
     #[inline(always)]
@@ -176,27 +338,39 @@ impl ThermalMap {
     }
 }
 
-/// Σ x z and Σ y z as [`dense::dot`], with x and y in single precision: z is loaded once for two rows.
+/// `out += rows · x`.
+#[inline(always)]
+fn multiply_add(rows: &[f32], x: &[f64], out: &mut [f64]) {
+    let mut pairs = rows.chunks_exact(2 * x.len());
+    let mut outs = out.chunks_exact_mut(2);
+    for (rows, out) in pairs.by_ref().zip(outs.by_ref()) {
+        let (one, two) = rows.split_at(x.len());
+        let [one, two] = dot_pair(one, two, x);
+        out[0] += one;
+        out[1] += two;
+    }
+    if let [out] = outs.into_remainder() {
+        let row = pairs.remainder();
+        *out += dot_pair(row, row, x)[0];
+    }
+}
+
+/// Σ x z and Σ y z as [`dense::dot`], with x and y in single precision, of a multiple of [`LANES`] values: z is loaded once
+/// for two rows.
 #[inline(always)]
 fn dot_pair(x: &[f32], y: &[f32], z: &[f64]) -> [f64; 2] {
-    const SUMS: usize = 8;
-    let (mut x_sums, mut y_sums) = ([0.0; SUMS], [0.0; SUMS]);
-    let whole = z.len() - z.len() % SUMS;
-    for ((x, y), z) in x[..whole]
-        .chunks_exact(SUMS)
-        .zip(y[..whole].chunks_exact(SUMS))
-        .zip(z[..whole].chunks_exact(SUMS))
+    let (mut x_sums, mut y_sums) = ([0.0; LANES], [0.0; LANES]);
+    for ((x, y), z) in x
+        .chunks_exact(LANES)
+        .zip(y.chunks_exact(LANES))
+        .zip(z.chunks_exact(LANES))
     {
-        for lane in 0..SUMS {
+        for lane in 0..LANES {
             x_sums[lane] += f64::from(x[lane]) * z[lane];
             y_sums[lane] += f64::from(y[lane]) * z[lane];
         }
     }
-    let finish = |sums: [f64; SUMS], x: &[f32]| {
-        let tail: f64 = x[whole..].iter().zip(&z[whole..]).map(|(x, z)| f64::from(*x) * z).sum();
-        tail + sums.iter().sum::<f64>()
-    };
-    [finish(x_sums, x), finish(y_sums, y)]
+    [x_sums.iter().sum(), y_sums.iter().sum()]
 }
 
 /// The displacement of the field by the exact map, for comparison: 2n values.
