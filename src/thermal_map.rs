@@ -308,16 +308,8 @@ impl ThermalMap {
             multiply_add(upward, moments, &mut lifts[block.near.clone()]);
         }
         let range = warm[0].effects.start..warm[warm.len() - 1].effects.end;
-        let effects = &effects[range.clone()];
-        for (rows, displacement) in self
-            .far
-            .chunks_exact(2 * self.effects)
-            .zip(displacement.chunks_exact_mut(2))
-        {
-            let (one, two) = rows.split_at(self.effects);
-            let [one, two] = dot_pair(&one[range.clone()], &two[range.clone()], effects);
-            displacement[0] += one;
-            displacement[1] += two;
+        for (row, displacement) in self.far.chunks_exact(self.effects).zip(displacement) {
+            *displacement += dot(&row[range.clone()], &effects[range.clone()]);
         }
     }
 
@@ -327,13 +319,21 @@ impl ThermalMap {
             .chunks_exact_mut(LANES)
             .zip(self.weights.chunks_exact(self.modes))
         {
-            let mut sums = [0.0; LANES];
-            for (amplitude, weights) in column.iter().zip(weights) {
+            // Even and odd modes apart: twice the sums that do not wait for each other.
+            let (mut even, mut odd) = ([0.0; LANES], [0.0; LANES]);
+            for (amplitudes, weights) in column.chunks(2).zip(weights.chunks(2)) {
                 for lane in 0..LANES {
-                    sums[lane] += amplitude * weights[lane];
+                    even[lane] += amplitudes[0] * weights[0][lane];
+                }
+                if let ([_, amplitude], [_, weights]) = (amplitudes, weights) {
+                    for lane in 0..LANES {
+                        odd[lane] += amplitude * weights[lane];
+                    }
                 }
             }
-            moments.copy_from_slice(&sums);
+            for lane in 0..LANES {
+                moments[lane] = even[lane] + odd[lane];
+            }
         }
     }
 }
@@ -341,36 +341,22 @@ impl ThermalMap {
 /// `out += rows · x`.
 #[inline(always)]
 fn multiply_add(rows: &[f32], x: &[f64], out: &mut [f64]) {
-    let mut pairs = rows.chunks_exact(2 * x.len());
-    let mut outs = out.chunks_exact_mut(2);
-    for (rows, out) in pairs.by_ref().zip(outs.by_ref()) {
-        let (one, two) = rows.split_at(x.len());
-        let [one, two] = dot_pair(one, two, x);
-        out[0] += one;
-        out[1] += two;
-    }
-    if let [out] = outs.into_remainder() {
-        let row = pairs.remainder();
-        *out += dot_pair(row, row, x)[0];
+    for (row, out) in rows.chunks_exact(x.len()).zip(out) {
+        *out += dot(row, x);
     }
 }
 
-/// Σ x z and Σ y z as [`dense::dot`], with x and y in single precision, of a multiple of [`LANES`] values: z is loaded once
-/// for two rows.
+/// Σ gains · x of a multiple of [`LANES`] values.
 #[inline(always)]
-fn dot_pair(x: &[f32], y: &[f32], z: &[f64]) -> [f64; 2] {
-    let (mut x_sums, mut y_sums) = ([0.0; LANES], [0.0; LANES]);
-    for ((x, y), z) in x
-        .chunks_exact(LANES)
-        .zip(y.chunks_exact(LANES))
-        .zip(z.chunks_exact(LANES))
-    {
+fn dot(gains: &[f32], x: &[f64]) -> f64 {
+    let mut sums = [0.0; LANES];
+    for (gains, x) in gains.chunks_exact(LANES).zip(x.chunks_exact(LANES)) {
         for lane in 0..LANES {
-            x_sums[lane] += f64::from(x[lane]) * z[lane];
-            y_sums[lane] += f64::from(y[lane]) * z[lane];
+            sums[lane] += f64::from(gains[lane]) * x[lane];
         }
     }
-    [x_sums.iter().sum(), y_sums.iter().sum()]
+    // Not in pairs: the compiler then takes registers of half the width.
+    sums.iter().sum()
 }
 
 /// The displacement of the field by the exact map, for comparison: 2n values.
