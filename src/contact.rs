@@ -98,7 +98,7 @@ impl Scratch {
             displacement: vec![0.0; n],
             exchange: vec![SurfaceExchange::default(); n],
             wear_rate: vec![0.0; n],
-            mode: vec![0.0; rail.basis.len()],
+            mode: vec![0.0; 3 * rail.basis.len()],
             moments: vec![0.0; rail.thermal_map.scratch_len()],
             mapped_flux: vec![0.0; n],
             iterate: vec![0.0; gathered(n)],
@@ -506,9 +506,11 @@ impl Contact<'_> {
         let first = self.window().start;
         for node in 0..fields.pressure.len() {
             let mu = law.coefficient(fields.surface_temperature[first + node]).0;
-            let saturation = friction::saturation(fields.slip[node], self.parameters.slip_regularisation);
             fields.friction[node] = mu;
-            fields.shear[node] = -mu * fields.pressure[node] * saturation;
+            if fields.pressure[node] > 0.0 {
+                let saturation = friction::saturation(fields.slip[node], self.parameters.slip_regularisation);
+                fields.shear[node] = -mu * fields.pressure[node] * saturation;
+            }
         }
     }
 

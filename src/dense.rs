@@ -17,14 +17,17 @@ pub fn multiply_add(matrix: &DMatrix<f64>, x: &[f64], factor: f64, out: &mut [f6
     let rows = matrix.nrows();
     vectorised(
         #[inline(always)]
-        || {
-            for (columns, x) in matrix.as_slice().chunks(QUAD * rows).zip(x.chunks(QUAD)) {
-                if x.iter().any(|&x| x != 0.0) {
-                    add_columns(columns, x, factor, &mut out[..rows]);
-                }
-            }
-        },
-    );
+        || multiply_add_kernel(matrix.as_slice(), x, factor, &mut out[..rows]),
+    )
+}
+
+#[inline(always)]
+fn multiply_add_kernel(matrix: &[f64], x: &[f64], factor: f64, out: &mut [f64]) {
+    for (columns, x) in matrix.chunks((QUAD * out.len()).max(1)).zip(x.chunks(QUAD)) {
+        if x.iter().any(|&x| x != 0.0) {
+            add_columns(columns, x, factor, out);
+        }
+    }
 }
 
 /// Columns that are added together: `out` is loaded and stored once for them.
@@ -34,16 +37,20 @@ const QUAD: usize = 4;
 #[inline(always)]
 fn add_columns(columns: &[f64], x: &[f64], factor: f64, out: &mut [f64]) {
     let n = out.len();
-    let [a, b, c, d] = *x else {
+    let Ok(x) = <[f64; QUAD]>::try_from(x) else {
         for (column, x) in columns.chunks_exact(n.max(1)).zip(x) {
             add_multiple(column, factor * x, out);
         }
         return;
     };
-    let (a, b, c, d) = (factor * a, factor * b, factor * c, factor * d);
-    let (first, rest) = columns.split_at(n);
-    let (second, rest) = rest.split_at(n);
-    let (third, fourth) = rest.split_at(n);
+    let column = |k: usize| &columns[k * n..(k + 1) * n];
+    add_quad([column(0), column(1), column(2), column(3)], x.map(|x| factor * x), out);
+}
+
+/// `out += Σ factors · columns`.
+#[inline(always)]
+fn add_quad(columns: [&[f64]; QUAD], [a, b, c, d]: [f64; QUAD], out: &mut [f64]) {
+    let [first, second, third, fourth] = columns;
     for ((((out, p), q), r), s) in out.iter_mut().zip(first).zip(second).zip(third).zip(fourth) {
         *out += a * p + b * q + (c * r + d * s);
     }
@@ -140,15 +147,13 @@ fn cholesky_solve_kernel(l: &[f64], n: usize, b: &mut [f64]) {
     }
 }
 
-/// `out = A x` for the n × n matrix in `a`.
+/// `out = A x` for the n × n matrix in `a`, skipping where `x` is zero.
 pub fn multiply(a: &[f64], n: usize, x: &[f64], out: &mut [f64]) {
     vectorised(
         #[inline(always)]
         || {
             out[..n].fill(0.0);
-            for (columns, x) in a[..n * n].chunks((QUAD * n).max(1)).zip(x[..n].chunks(QUAD)) {
-                add_columns(columns, x, 1.0, &mut out[..n]);
-            }
+            multiply_add_kernel(&a[..n * n], &x[..n], 1.0, &mut out[..n]);
         },
     );
 }
@@ -161,38 +166,60 @@ pub fn lu(a: &mut [f64], n: usize, pivots: &mut [usize]) -> bool {
     )
 }
 
+/// In panels of [`QUAD`] columns: what is right of a panel is loaded and stored once for it.
 #[inline(always)]
 fn lu_kernel(a: &mut [f64], n: usize, pivots: &mut [usize]) -> bool {
-    for j in 0..n {
-        let mut pivot = j;
-        for i in j + 1..n {
-            if a[j * n + i].abs() > a[j * n + pivot].abs() {
-                pivot = i;
+    for first in (0..n).step_by(QUAD) {
+        let end = n.min(first + QUAD);
+        for j in first..end {
+            let mut pivot = j;
+            for i in j + 1..n {
+                if a[j * n + i].abs() > a[j * n + pivot].abs() {
+                    pivot = i;
+                }
+            }
+            pivots[j] = pivot;
+            if a[j * n + pivot].is_nan() || a[j * n + pivot] == 0.0 {
+                return false;
+            }
+            if pivot != j {
+                for k in 0..n {
+                    a.swap(k * n + j, k * n + pivot);
+                }
+            }
+            let scale = 1.0 / a[j * n + j];
+            let (left, right) = a.split_at_mut((j + 1) * n);
+            let multipliers = &mut left[j * n + j + 1..];
+            for value in &mut *multipliers {
+                *value *= scale;
+            }
+            for column in right.chunks_exact_mut(n).take(end - (j + 1)) {
+                add_multiple(multipliers, -column[j], &mut column[j + 1..]);
             }
         }
-        pivots[j] = pivot;
-        if a[j * n + pivot].is_nan() || a[j * n + pivot] == 0.0 {
-            return false;
-        }
-        if pivot != j {
-            for k in 0..n {
-                a.swap(k * n + j, k * n + pivot);
-            }
-        }
-        let scale = 1.0 / a[j * n + j];
-        for value in &mut a[j * n + j + 1..j * n + n] {
-            *value *= scale;
-        }
-        let (left, right) = a.split_at_mut((j + 1) * n);
-        let multipliers = &left[j * n + j + 1..j * n + n];
+        let (left, right) = a.split_at_mut(end * n);
+        let panel = &left[first * n..];
         for column in right.chunks_exact_mut(n) {
-            let factor = column[j];
-            if factor != 0.0 {
-                add_multiple(multipliers, -factor, &mut column[j + 1..]);
-            }
+            subtract_panel(panel, n, first, &mut column[first..]);
         }
     }
     true
+}
+
+/// Forward substitution of the unit lower triangle of one panel, whose diagonal begins at `first`, into `b`, which begins
+/// there too.
+#[inline(always)]
+fn subtract_panel(panel: &[f64], n: usize, first: usize, b: &mut [f64]) {
+    let width = panel.len() / n;
+    let (head, tail) = b.split_at_mut(width);
+    for j in 0..width {
+        let (known, rest) = head.split_at_mut(j + 1);
+        add_multiple(&panel[j * n + first + j + 1..][..width - (j + 1)], -known[j], rest);
+    }
+    if let Ok(head) = <[f64; QUAD]>::try_from(&*head) {
+        let below = |j: usize| &panel[j * n + first + QUAD..(j + 1) * n];
+        add_quad([below(0), below(1), below(2), below(3)], head.map(|value| -value), tail);
+    }
 }
 
 /// Solves A x = b in place with the factors of [`lu`].
@@ -208,14 +235,30 @@ fn lu_solve_kernel(a: &[f64], n: usize, pivots: &[usize], b: &mut [f64]) {
     for (j, &pivot) in pivots[..n].iter().enumerate() {
         b.swap(j, pivot);
     }
-    for j in 0..n {
-        let (head, tail) = b[j..n].split_at_mut(1);
-        add_multiple(&a[j * n + j + 1..j * n + n], -head[0], tail);
+    let panels = || (0..n).step_by(QUAD).zip(a[..n * n].chunks((QUAD * n).max(1)));
+    for (first, panel) in panels() {
+        subtract_panel(panel, n, first, &mut b[first..n]);
     }
-    for j in (0..n).rev() {
-        let (head, tail) = b[..=j].split_at_mut(j);
-        tail[0] /= a[j * n + j];
-        add_multiple(&a[j * n..j * n + j], -tail[0], head);
+    for (first, panel) in panels().rev() {
+        let width = panel.len() / n;
+        let (above, own) = b[..first + width].split_at_mut(first);
+        for j in (0..width).rev() {
+            let (rest, unknown) = own[..=j].split_at_mut(j);
+            unknown[0] /= panel[j * n + first + j];
+            add_multiple(&panel[j * n + first..][..j], -unknown[0], rest);
+        }
+        let column = |j: usize| &panel[j * n..j * n + first];
+        if let Ok(own) = <[f64; QUAD]>::try_from(&*own) {
+            add_quad(
+                [column(0), column(1), column(2), column(3)],
+                own.map(|value| -value),
+                above,
+            );
+        } else {
+            for (j, value) in own.iter().enumerate() {
+                add_multiple(column(j), -value, above);
+            }
+        }
     }
 }
 

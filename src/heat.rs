@@ -129,6 +129,9 @@ impl SurfaceExchange {
     /// The exchange under pressure `pressure` `Pa` and slip velocity `slip` `m/s` with a wheel at `wheel_rise` `K` over the
     /// ambient.
     pub fn new(parameters: &Parameters, pressure: f64, slip: f64, wheel_rise: f64) -> SurfaceExchange {
+        if pressure == 0.0 {
+            return SurfaceExchange::default();
+        }
         let saturation = friction::saturation(slip, parameters.slip_regularisation);
         let conduction = pressure / parameters.contact_thermal_resistance;
         SurfaceExchange {
@@ -193,7 +196,7 @@ pub struct Heated<'a> {
 
 impl HeatMarch<'_> {
     /// From the modal amplitudes `before` to the field `after` under the exchange at the contact nodes. The inflow column
-    /// of `after` holds what enters. `scratch` holds one value a mode.
+    /// of `after` holds what enters. `scratch` holds three values a mode.
     ///
     /// # Errors
     /// [`Error::SurfaceHeatNotConverged`].
@@ -221,8 +224,11 @@ impl HeatMarch<'_> {
         let parameters = self.friction.parameters;
         let (m, capacity) = (self.basis.len(), parameters.volumetric_heat_capacity());
         let storage = 1.0 / self.duration;
-        let surface = &self.basis.surface[..m];
-        let inverse = &mut scratch[..m];
+        let (surface, eigenvalues) = (&self.basis.surface[..m], &self.basis.eigenvalues[..m]);
+        // What a mode keeps of the step before and of upstream, and what it takes of the heat.
+        let (keep, scratch) = scratch.split_at_mut(m);
+        let (carry, scratch) = scratch.split_at_mut(m);
+        let take = &mut scratch[..m];
         let mut spacing = f64::NAN;
         let mut response = 0.0;
         for column in self.transport.columns() {
@@ -240,16 +246,20 @@ impl HeatMarch<'_> {
                 }
                 continue;
             }
-            // The denominators are those of the last column where the spacing is the same (all over the window).
+            // The factors are those of the last column where the spacing is the same (all over the window).
             if (column.spacing - spacing).abs() > 1e-9 * column.spacing || spacing.is_nan() {
                 spacing = column.spacing;
-                for (inverse, eigenvalue) in inverse.iter_mut().zip(&self.basis.eigenvalues[..m]) {
-                    *inverse = 1.0 / (storage + advection + parameters.thermal_diffusivity * eigenvalue);
+                for mode in 0..m {
+                    let rate = storage + advection + parameters.thermal_diffusivity * eigenvalues[mode];
+                    let inverse = 1.0 / rate;
+                    keep[mode] = storage * inverse;
+                    carry[mode] = advection * inverse;
+                    take[mode] = surface[mode] * inverse / capacity;
                 }
-                response = surface.iter().zip(&*inverse).map(|(s, i)| s * s * i).sum::<f64>() / capacity;
+                response = dense::dot(surface, take);
             }
             for mode in 0..m {
-                own[mode] = (storage * old[mode] + advection * upstream[mode]) * inverse[mode];
+                own[mode] = keep[mode] * old[mode] + carry[mode] * upstream[mode];
             }
             let unheated = dense::dot(own, surface);
             after.surface[column.index] = unheated;
@@ -262,9 +272,8 @@ impl HeatMarch<'_> {
             let q = self.surface_flux(exchange, unheated, response, column.index)?;
             after.flux[contact] = q;
             after.surface[column.index] += response * q;
-            let heat = q / capacity;
             for mode in 0..m {
-                own[mode] += heat * surface[mode] * inverse[mode];
+                own[mode] += q * take[mode];
             }
         }
         Ok(())

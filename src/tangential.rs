@@ -60,6 +60,8 @@ pub struct Tangential {
     pressure: Vec<f64>,
     strain: Vec<f64>,
     slip: Vec<f64>,
+    /// φ(s).
+    saturation: Vec<f64>,
     residual: Vec<f64>,
     step: Vec<f64>,
     trial: Vec<f64>,
@@ -77,6 +79,7 @@ impl Tangential {
             pressure: vec![0.0; nodes],
             strain: vec![0.0; nodes],
             slip: vec![0.0; nodes],
+            saturation: vec![0.0; nodes],
             residual: vec![0.0; nodes],
             step: vec![0.0; nodes],
             trial: vec![0.0; nodes],
@@ -208,7 +211,7 @@ impl Tangential {
         Err(NEWTON_STEPS)
     }
 
-    /// Pressure, slip and residual τ + μ p φ(s) after `self.change`; returns the residual's 2-norm.
+    /// Pressure, slip, φ(s) and residual τ + μ p φ(s) after `self.change`; returns the residual's 2-norm.
     fn update_residual(&mut self, problem: &TangentialProblem, regularisation: f64, shear: &[f64]) -> f64 {
         let m = shear.len();
         dense::multiply(problem.pressure_response, m, &self.change, &mut self.pressure);
@@ -218,7 +221,8 @@ impl Tangential {
             self.pressure[i] = (problem.pressure[i] + self.pressure[i]).max(0.0);
             self.slip[i] = problem.rigid_slip + problem.strain_speed * (problem.strain[i] + self.strain[i]);
             let bound = problem.friction[i] * self.pressure[i];
-            self.residual[i] = shear + self.change[i] + bound * saturation(self.slip[i], regularisation);
+            self.saturation[i] = saturation(self.slip[i], regularisation);
+            self.residual[i] = shear + self.change[i] + bound * self.saturation[i];
             square += self.residual[i] * self.residual[i];
         }
         square.sqrt()
@@ -229,7 +233,7 @@ impl Tangential {
         for i in 0..m {
             let slope = saturation_slope(self.slip[i], regularisation) * problem.strain_speed;
             self.trial[i] = problem.friction[i] * self.pressure[i] * slope;
-            self.step[i] = problem.friction[i] * saturation(self.slip[i], regularisation);
+            self.step[i] = problem.friction[i] * self.saturation[i];
         }
         for column in 0..m {
             let range = column * m..(column + 1) * m;

@@ -19,8 +19,10 @@ pub fn advance(
         let advection = transport.speed() / column.spacing;
         let contact = column.index.wrapping_sub(first_contact);
         let worn = rate.get(contact).copied().unwrap_or(0.0);
-        after[column.index] =
-            (storage * before[column.index] + advection * after[column.upstream] + worn) / (storage + advection);
+        // The column upstream last: what does not wait for it is done by then.
+        let inverse = 1.0 / (storage + advection);
+        let own = (storage * before[column.index] + worn) * inverse;
+        after[column.index] = own + advection * inverse * after[column.upstream];
     }
 }
 
