@@ -172,12 +172,7 @@ fn lu_kernel(a: &mut [f64], n: usize, pivots: &mut [usize]) -> bool {
     for first in (0..n).step_by(QUAD) {
         let end = n.min(first + QUAD);
         for j in first..end {
-            let mut pivot = j;
-            for i in j + 1..n {
-                if a[j * n + i].abs() > a[j * n + pivot].abs() {
-                    pivot = i;
-                }
-            }
+            let pivot = j + position_of_largest(&a[j * n + j..(j + 1) * n]);
             pivots[j] = pivot;
             if a[j * n + pivot].is_nan() || a[j * n + pivot] == 0.0 {
                 return false;
@@ -204,6 +199,22 @@ fn lu_kernel(a: &mut [f64], n: usize, pivots: &mut [usize]) -> bool {
         }
     }
     true
+}
+
+/// The first of the largest magnitudes; 0 where the first value is not a number.
+#[inline(always)]
+fn position_of_largest(values: &[f64]) -> usize {
+    const LANES: usize = 8;
+    let mut sizes = [0.0; LANES];
+    for block in values.chunks(LANES) {
+        for (size, value) in sizes.iter_mut().zip(block) {
+            if value.abs() > *size {
+                *size = value.abs();
+            }
+        }
+    }
+    let size = largest(&sizes);
+    values.iter().position(|value| value.abs() == size).unwrap_or(0)
 }
 
 /// Forward substitution of the unit lower triangle of one panel, whose diagonal begins at `first`, into `b`, which begins

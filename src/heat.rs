@@ -258,10 +258,7 @@ impl HeatMarch<'_> {
                 }
                 response = dense::dot(surface, take);
             }
-            for mode in 0..m {
-                own[mode] = keep[mode] * old[mode] + carry[mode] * upstream[mode];
-            }
-            let unheated = dense::dot(own, surface);
+            let unheated = carry_over(own, (keep, old), (carry, upstream), surface);
             after.surface[column.index] = unheated;
             let Some(exchange) = heating else {
                 if let Some(flux) = after.flux.get_mut(contact) {
@@ -318,6 +315,34 @@ impl HeatMarch<'_> {
             residual,
         })
     }
+}
+
+/// own = keep · old + carry · upstream, and the surface value of it: as [`dense::dot`], in the same pass.
+#[inline(always)]
+fn carry_over(
+    own: &mut [f64],
+    (keep, old): (&[f64], &[f64]),
+    (carry, upstream): (&[f64], &[f64]),
+    surface: &[f64],
+) -> f64 {
+    const LANES: usize = 8;
+    let m = own.len();
+    let (keep, old, carry, upstream, surface) = (&keep[..m], &old[..m], &carry[..m], &upstream[..m], &surface[..m]);
+    let whole = m - m % LANES;
+    let mut sums = [0.0; LANES];
+    for first in (0..whole).step_by(LANES) {
+        for lane in 0..LANES {
+            let mode = first + lane;
+            own[mode] = keep[mode] * old[mode] + carry[mode] * upstream[mode];
+            sums[lane] += own[mode] * surface[mode];
+        }
+    }
+    let mut tail = 0.0;
+    for mode in whole..m {
+        own[mode] = keep[mode] * old[mode] + carry[mode] * upstream[mode];
+        tail += own[mode] * surface[mode];
+    }
+    tail + sums.iter().sum::<f64>()
 }
 
 /// Two different columns of a field, the first mutable.

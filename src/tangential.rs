@@ -9,7 +9,7 @@
 
 use crate::dense::{self, largest};
 use crate::error::{Error, Result};
-use crate::friction::{saturation, saturation_slope};
+use crate::friction::{saturation_slope, saturations};
 
 /// The data of one problem on the m nodes under pressure.
 #[derive(Debug, Clone, Copy)]
@@ -216,12 +216,14 @@ impl Tangential {
         let m = shear.len();
         dense::multiply(problem.pressure_response, m, &self.change, &mut self.pressure);
         dense::multiply(problem.strain_response, m, &self.change, &mut self.strain);
-        let mut square = 0.0;
-        for (i, shear) in shear.iter().enumerate() {
+        for i in 0..m {
             self.pressure[i] = (problem.pressure[i] + self.pressure[i]).max(0.0);
             self.slip[i] = problem.rigid_slip + problem.strain_speed * (problem.strain[i] + self.strain[i]);
+        }
+        saturations(&self.slip[..m], regularisation, &mut self.saturation);
+        let mut square = 0.0;
+        for (i, shear) in shear.iter().enumerate() {
             let bound = problem.friction[i] * self.pressure[i];
-            self.saturation[i] = saturation(self.slip[i], regularisation);
             self.residual[i] = shear + self.change[i] + bound * self.saturation[i];
             square += self.residual[i] * self.residual[i];
         }

@@ -19,7 +19,7 @@ use std::ops::Range;
 /// Error of the compressed map relative to the largest displacement of a heated profile.
 pub const TOLERANCE: f64 = 1e-4;
 
-/// Moments and effects come in multiples of this: the partial sums of a product.
+/// Moments of a column, and all effects, come in multiples of this: the partial sums of a product.
 const LANES: usize = 8;
 /// Nodes within so many node spacings of a block are next to it.
 const NEAR: f64 = 4.0;
@@ -30,7 +30,7 @@ pub struct ThermalMap {
     modes: usize,
     /// Number of moments of a column, a multiple of [`LANES`].
     moments: usize,
-    /// Number of effects of all blocks.
+    /// Number of effects of all blocks, padded to [`LANES`].
     effects: usize,
     /// Weights of the moments: per [`LANES`] moments and mode the weights of those moments.
     weights: Vec<[f64; LANES]>,
@@ -220,14 +220,12 @@ impl ThermalMap {
                 _ => 0..0,
             };
             let mut rows = column_moments.rows(columns.clone());
-            let (mut combinations, mut parts) = if moments == 0 {
+            let (combinations, parts) = if moments == 0 {
                 Default::default()
             } else {
                 split_off(&mut rows, inputs, |row| !near.contains(&(row % n)), tolerance)
             };
-            let own = (parts.len() / (2 * n)).next_multiple_of(LANES);
-            combinations.resize(own * inputs, 0.0);
-            parts.resize(own * 2 * n, 0.0);
+            let own = parts.len() / (2 * n);
             far.extend(parts);
             let next_to = |offset: usize| &rows[(offset + near.start) * inputs..(offset + near.end) * inputs];
             blocks.push(Block {
@@ -240,6 +238,8 @@ impl ThermalMap {
             effects += own;
         }
         let far = DMatrix::from_vec(2 * n, effects, far).transpose();
+        effects = effects.next_multiple_of(LANES);
+        let far = far.resize_vertically(effects, 0.0);
         ThermalMap {
             modes,
             moments,
@@ -290,6 +290,7 @@ impl ThermalMap {
         };
         let warm = &self.blocks[first..=last];
         let (effects, all_moments) = scratch.split_at_mut(self.effects);
+        effects.fill(0.0);
         let (shifts, lifts) = displacement.split_at_mut(displacement.len() / 2);
         for block in warm {
             let columns = block.columns.clone();
@@ -300,14 +301,13 @@ impl ThermalMap {
             {
                 self.column_moments(column, moments);
             }
-            let own_effects = &mut effects[block.effects.clone()];
-            own_effects.fill(0.0);
-            multiply_add(&block.combinations, moments, own_effects);
+            multiply_add(&block.combinations, moments, &mut effects[block.effects.clone()]);
             let (along, upward) = block.gains.split_at(block.gains.len() / 2);
             multiply_add(along, moments, &mut shifts[block.near.clone()]);
             multiply_add(upward, moments, &mut lifts[block.near.clone()]);
         }
-        let range = warm[0].effects.start..warm[warm.len() - 1].effects.end;
+        let end = warm[warm.len() - 1].effects.end;
+        let range = warm[0].effects.start / LANES * LANES..end.next_multiple_of(LANES);
         for (row, displacement) in self.far.chunks_exact(self.effects).zip(displacement) {
             *displacement += dot(&row[range.clone()], &effects[range.clone()]);
         }

@@ -95,7 +95,7 @@ impl Softening {
         let rate = storage + advection;
         let factor = if rate > 0.0 { per_slip / rate } else { 0.0 };
         let largest = factor * slip.iter().fold(0.0, |m: f64, s| s.abs().max(m));
-        let was_soft = self.own.iter().any(|own| *own > 0.0);
+        let was_soft = self.is_soft();
         if largest <= EXPLICIT * self.smallest_compliance {
             if was_soft {
                 self.own.fill(0.0);
@@ -132,6 +132,9 @@ impl Softening {
 
     /// Takes the proportional part off the wear, in place.
     pub fn subtract_proportional(&self, pressure: &[f64], wear: &mut [f64]) {
+        if !self.is_soft() {
+            return;
+        }
         let n = wear.len();
         let mut carried = 0.0;
         for k in 0..n {
@@ -139,6 +142,10 @@ impl Softening {
             carried = self.handed_on * carried + self.own[node] * pressure[node];
             wear[node] -= carried;
         }
+    }
+
+    fn is_soft(&self) -> bool {
+        self.own.iter().any(|own| *own > 0.0)
     }
 
     fn downstream(&self, node: usize) -> Option<usize> {
