@@ -146,13 +146,13 @@ fn inertia_form(rail: &Elasticity, fields: &Fields) -> DMatrix<f64> {
     let mut form = DMatrix::zeros(n, n);
     dense::vectorised(
         #[inline(always)]
-        || {
+        |arithmetic| {
             for start in (0..fields.nrows()).step_by(BLOCK) {
                 let block = start..fields.nrows().min(start + BLOCK);
                 for j in 0..n {
                     let image = &image.col_as_slice(j)[block.clone()];
                     for i in j..n {
-                        form[(i, j)] += dense::dot(&fields.col_as_slice(i)[block.clone()], image);
+                        form[(i, j)] += arithmetic.dot(&fields.col_as_slice(i)[block.clone()], image);
                     }
                 }
             }

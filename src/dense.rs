@@ -6,10 +6,79 @@
 use nalgebra::DMatrix;
 
 /// Runs loops with the widest vector instructions that the machine and the compiler offer. What `kernel` calls must be
-/// `#[inline(always)]` to profit.
+/// `#[inline(always)]` to profit; it receives how this machine multiplies and adds.
 #[inline(always)]
-pub fn vectorised<R>(kernel: impl FnOnce() -> R) -> R {
-    pulp::Arch::new().dispatch(kernel)
+pub fn vectorised<R>(kernel: impl FnOnce(Arithmetic) -> R) -> R {
+    let arch = pulp::Arch::new();
+    #[cfg(target_arch = "x86_64")]
+    if let pulp::Arch::V3(simd) = arch {
+        return simd.vectorize(
+            #[inline(always)]
+            || kernel(Arithmetic { fused: true }),
+        );
+    }
+    arch.dispatch(
+        #[inline(always)]
+        || kernel(Arithmetic::SEPARATE),
+    )
+}
+
+/// How a machine computes a · b + c: in one instruction where it has one. A constant after inlining.
+#[derive(Debug, Clone, Copy)]
+pub struct Arithmetic {
+    fused: bool,
+}
+
+impl Arithmetic {
+    const SEPARATE: Arithmetic = Arithmetic { fused: false };
+
+    /// a · b + c.
+    #[inline(always)]
+    pub fn multiply_add(self, a: f64, b: f64, c: f64) -> f64 {
+        if self.fused {
+            a.mul_add(b, c)
+        } else {
+            a * b + c
+        }
+    }
+
+    /// `out += factor · x`.
+    #[inline(always)]
+    pub fn add_multiple(self, x: &[f64], factor: f64, out: &mut [f64]) {
+        for (out, x) in out.iter_mut().zip(x) {
+            *out = self.multiply_add(factor, *x, *out);
+        }
+    }
+
+    /// `out += Σ factors · columns`.
+    #[inline(always)]
+    fn add_quad(self, columns: [&[f64]; QUAD], [a, b, c, d]: [f64; QUAD], out: &mut [f64]) {
+        let [first, second, third, fourth] = columns;
+        for ((((out, p), q), r), s) in out.iter_mut().zip(first).zip(second).zip(third).zip(fourth) {
+            let pair = self.multiply_add(a, *p, self.multiply_add(b, *q, *out));
+            *out = pair + self.multiply_add(c, *r, d * s);
+        }
+    }
+
+    /// Σ x y, in eight interleaved partial sums that the compiler keeps in vector registers.
+    #[inline(always)]
+    pub fn dot(self, x: &[f64], y: &[f64]) -> f64 {
+        const LANES: usize = 8;
+        let mut sums = [0.0; LANES];
+        let (x_blocks, y_blocks) = (x.chunks_exact(LANES), y.chunks_exact(LANES));
+        let tail: f64 = x_blocks
+            .remainder()
+            .iter()
+            .zip(y_blocks.remainder())
+            .map(|(x, y)| x * y)
+            .sum();
+        for (x, y) in x_blocks.zip(y_blocks) {
+            for lane in 0..LANES {
+                sums[lane] = self.multiply_add(x[lane], y[lane], sums[lane]);
+            }
+        }
+        tail + sums.iter().sum::<f64>()
+    }
 }
 
 /// `out += factor · A x`, skipping where `x` is zero.
@@ -17,15 +86,15 @@ pub fn multiply_add(matrix: &DMatrix<f64>, x: &[f64], factor: f64, out: &mut [f6
     let rows = matrix.nrows();
     vectorised(
         #[inline(always)]
-        || multiply_add_kernel(matrix.as_slice(), x, factor, &mut out[..rows]),
+        |arithmetic| multiply_add_kernel(arithmetic, matrix.as_slice(), x, factor, &mut out[..rows]),
     )
 }
 
 #[inline(always)]
-fn multiply_add_kernel(matrix: &[f64], x: &[f64], factor: f64, out: &mut [f64]) {
+fn multiply_add_kernel(arithmetic: Arithmetic, matrix: &[f64], x: &[f64], factor: f64, out: &mut [f64]) {
     for (columns, x) in matrix.chunks((QUAD * out.len()).max(1)).zip(x.chunks(QUAD)) {
         if x.iter().any(|&x| x != 0.0) {
-            add_columns(columns, x, factor, out);
+            add_columns(arithmetic, columns, x, factor, out);
         }
     }
 }
@@ -35,53 +104,26 @@ const QUAD: usize = 4;
 
 /// `out += factor · columns · x`, for [`QUAD`] columns or the rest of them.
 #[inline(always)]
-fn add_columns(columns: &[f64], x: &[f64], factor: f64, out: &mut [f64]) {
+fn add_columns(arithmetic: Arithmetic, columns: &[f64], x: &[f64], factor: f64, out: &mut [f64]) {
     let n = out.len();
     let Ok(x) = <[f64; QUAD]>::try_from(x) else {
         for (column, x) in columns.chunks_exact(n.max(1)).zip(x) {
-            add_multiple(column, factor * x, out);
+            arithmetic.add_multiple(column, factor * x, out);
         }
         return;
     };
     let column = |k: usize| &columns[k * n..(k + 1) * n];
-    add_quad([column(0), column(1), column(2), column(3)], x.map(|x| factor * x), out);
+    arithmetic.add_quad([column(0), column(1), column(2), column(3)], x.map(|x| factor * x), out);
 }
 
-/// `out += Σ factors · columns`.
-#[inline(always)]
-fn add_quad(columns: [&[f64]; QUAD], [a, b, c, d]: [f64; QUAD], out: &mut [f64]) {
-    let [first, second, third, fourth] = columns;
-    for ((((out, p), q), r), s) in out.iter_mut().zip(first).zip(second).zip(third).zip(fourth) {
-        *out += a * p + b * q + (c * r + d * s);
-    }
-}
-
-/// `out += factor · x`.
-#[inline(always)]
+/// [`Arithmetic::add_multiple`] where no time is spent.
 pub fn add_multiple(x: &[f64], factor: f64, out: &mut [f64]) {
-    for (out, x) in out.iter_mut().zip(x) {
-        *out += factor * x;
-    }
+    Arithmetic::SEPARATE.add_multiple(x, factor, out);
 }
 
-/// Σ x y, in eight interleaved partial sums that the compiler keeps in vector registers.
-#[inline(always)]
+/// [`Arithmetic::dot`] where no time is spent.
 pub fn dot(x: &[f64], y: &[f64]) -> f64 {
-    const LANES: usize = 8;
-    let mut sums = [0.0; LANES];
-    let (x_blocks, y_blocks) = (x.chunks_exact(LANES), y.chunks_exact(LANES));
-    let tail: f64 = x_blocks
-        .remainder()
-        .iter()
-        .zip(y_blocks.remainder())
-        .map(|(x, y)| x * y)
-        .sum();
-    for (x, y) in x_blocks.zip(y_blocks) {
-        for lane in 0..LANES {
-            sums[lane] += x[lane] * y[lane];
-        }
-    }
-    tail + sums.iter().sum::<f64>()
+    Arithmetic::SEPARATE.dot(x, y)
 }
 
 /// Largest magnitude.
@@ -99,19 +141,19 @@ pub fn largest_change(now: &[f64], last: &[f64]) -> f64 {
 pub fn cholesky(a: &mut [f64], n: usize) -> bool {
     vectorised(
         #[inline(always)]
-        || cholesky_kernel(a, n),
+        |arithmetic| cholesky_kernel(arithmetic, a, n),
     )
 }
 
 #[inline(always)]
-fn cholesky_kernel(a: &mut [f64], n: usize) -> bool {
+fn cholesky_kernel(arithmetic: Arithmetic, a: &mut [f64], n: usize) -> bool {
     for j in 0..n {
         // Left-looking by columns: the inner loop runs down a contiguous column.
         for k in 0..j {
             let factor = a[k * n + j];
             let (left, right) = a.split_at_mut(j * n);
             let source = &left[k * n + j..k * n + n];
-            add_multiple(source, -factor, &mut right[j..n]);
+            arithmetic.add_multiple(source, -factor, &mut right[j..n]);
         }
         let pivot = a[j * n + j];
         if pivot.is_nan() || pivot <= 0.0 {
@@ -129,21 +171,21 @@ fn cholesky_kernel(a: &mut [f64], n: usize) -> bool {
 pub fn cholesky_solve(l: &[f64], n: usize, b: &mut [f64]) {
     vectorised(
         #[inline(always)]
-        || cholesky_solve_kernel(l, n, b),
+        |arithmetic| cholesky_solve_kernel(arithmetic, l, n, b),
     )
 }
 
 #[inline(always)]
-fn cholesky_solve_kernel(l: &[f64], n: usize, b: &mut [f64]) {
+fn cholesky_solve_kernel(arithmetic: Arithmetic, l: &[f64], n: usize, b: &mut [f64]) {
     for j in 0..n {
         let column = &l[j * n + j..j * n + n];
         let (head, tail) = b[j..n].split_at_mut(1);
         head[0] /= column[0];
-        add_multiple(&column[1..], -head[0], tail);
+        arithmetic.add_multiple(&column[1..], -head[0], tail);
     }
     for j in (0..n).rev() {
         let column = &l[j * n + j..j * n + n];
-        b[j] = (b[j] - dot(&column[1..], &b[j + 1..n])) / column[0];
+        b[j] = (b[j] - arithmetic.dot(&column[1..], &b[j + 1..n])) / column[0];
     }
 }
 
@@ -151,9 +193,9 @@ fn cholesky_solve_kernel(l: &[f64], n: usize, b: &mut [f64]) {
 pub fn multiply(a: &[f64], n: usize, x: &[f64], out: &mut [f64]) {
     vectorised(
         #[inline(always)]
-        || {
+        |arithmetic| {
             out[..n].fill(0.0);
-            multiply_add_kernel(&a[..n * n], &x[..n], 1.0, &mut out[..n]);
+            multiply_add_kernel(arithmetic, &a[..n * n], &x[..n], 1.0, &mut out[..n]);
         },
     );
 }
@@ -162,13 +204,13 @@ pub fn multiply(a: &[f64], n: usize, x: &[f64], out: &mut [f64]) {
 pub fn lu(a: &mut [f64], n: usize, pivots: &mut [usize]) -> bool {
     vectorised(
         #[inline(always)]
-        || lu_kernel(a, n, pivots),
+        |arithmetic| lu_kernel(arithmetic, a, n, pivots),
     )
 }
 
 /// In panels of [`QUAD`] columns: what is right of a panel is loaded and stored once for it.
 #[inline(always)]
-fn lu_kernel(a: &mut [f64], n: usize, pivots: &mut [usize]) -> bool {
+fn lu_kernel(arithmetic: Arithmetic, a: &mut [f64], n: usize, pivots: &mut [usize]) -> bool {
     for first in (0..n).step_by(QUAD) {
         let end = n.min(first + QUAD);
         for j in first..end {
@@ -189,13 +231,13 @@ fn lu_kernel(a: &mut [f64], n: usize, pivots: &mut [usize]) -> bool {
                 *value *= scale;
             }
             for column in right.chunks_exact_mut(n).take(end - (j + 1)) {
-                add_multiple(multipliers, -column[j], &mut column[j + 1..]);
+                arithmetic.add_multiple(multipliers, -column[j], &mut column[j + 1..]);
             }
         }
         let (left, right) = a.split_at_mut(end * n);
         let panel = &left[first * n..];
         for column in right.chunks_exact_mut(n) {
-            subtract_panel(panel, n, first, &mut column[first..]);
+            subtract_panel(arithmetic, panel, n, first, &mut column[first..]);
         }
     }
     true
@@ -220,16 +262,16 @@ fn position_of_largest(values: &[f64]) -> usize {
 /// Forward substitution of the unit lower triangle of one panel, whose diagonal begins at `first`, into `b`, which begins
 /// there too.
 #[inline(always)]
-fn subtract_panel(panel: &[f64], n: usize, first: usize, b: &mut [f64]) {
+fn subtract_panel(arithmetic: Arithmetic, panel: &[f64], n: usize, first: usize, b: &mut [f64]) {
     let width = panel.len() / n;
     let (head, tail) = b.split_at_mut(width);
     for j in 0..width {
         let (known, rest) = head.split_at_mut(j + 1);
-        add_multiple(&panel[j * n + first + j + 1..][..width - (j + 1)], -known[j], rest);
+        arithmetic.add_multiple(&panel[j * n + first + j + 1..][..width - (j + 1)], -known[j], rest);
     }
     if let Ok(head) = <[f64; QUAD]>::try_from(&*head) {
         let below = |j: usize| &panel[j * n + first + QUAD..(j + 1) * n];
-        add_quad([below(0), below(1), below(2), below(3)], head.map(|value| -value), tail);
+        arithmetic.add_quad([below(0), below(1), below(2), below(3)], head.map(|value| -value), tail);
     }
 }
 
@@ -237,18 +279,18 @@ fn subtract_panel(panel: &[f64], n: usize, first: usize, b: &mut [f64]) {
 pub fn lu_solve(a: &[f64], n: usize, pivots: &[usize], b: &mut [f64]) {
     vectorised(
         #[inline(always)]
-        || lu_solve_kernel(a, n, pivots, b),
+        |arithmetic| lu_solve_kernel(arithmetic, a, n, pivots, b),
     )
 }
 
 #[inline(always)]
-fn lu_solve_kernel(a: &[f64], n: usize, pivots: &[usize], b: &mut [f64]) {
+fn lu_solve_kernel(arithmetic: Arithmetic, a: &[f64], n: usize, pivots: &[usize], b: &mut [f64]) {
     for (j, &pivot) in pivots[..n].iter().enumerate() {
         b.swap(j, pivot);
     }
     let panels = || (0..n).step_by(QUAD).zip(a[..n * n].chunks((QUAD * n).max(1)));
     for (first, panel) in panels() {
-        subtract_panel(panel, n, first, &mut b[first..n]);
+        subtract_panel(arithmetic, panel, n, first, &mut b[first..n]);
     }
     for (first, panel) in panels().rev() {
         let width = panel.len() / n;
@@ -256,18 +298,18 @@ fn lu_solve_kernel(a: &[f64], n: usize, pivots: &[usize], b: &mut [f64]) {
         for j in (0..width).rev() {
             let (rest, unknown) = own[..=j].split_at_mut(j);
             unknown[0] /= panel[j * n + first + j];
-            add_multiple(&panel[j * n + first..][..j], -unknown[0], rest);
+            arithmetic.add_multiple(&panel[j * n + first..][..j], -unknown[0], rest);
         }
         let column = |j: usize| &panel[j * n..j * n + first];
         if let Ok(own) = <[f64; QUAD]>::try_from(&*own) {
-            add_quad(
+            arithmetic.add_quad(
                 [column(0), column(1), column(2), column(3)],
                 own.map(|value| -value),
                 above,
             );
         } else {
             for (j, value) in own.iter().enumerate() {
-                add_multiple(column(j), -value, above);
+                arithmetic.add_multiple(column(j), -value, above);
             }
         }
     }

@@ -84,7 +84,7 @@ pub fn saturation(slip: f64, regularisation: f64) -> f64 {
 pub fn saturations(slip: &[f64], regularisation: f64, out: &mut [f64]) {
     dense::vectorised(
         #[inline(always)]
-        || {
+        |_| {
             for (out, slip) in out.iter_mut().zip(slip) {
                 *out = saturation(*slip, regularisation);
             }

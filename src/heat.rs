@@ -6,7 +6,7 @@
 //! a = (aⁿ/Δt + |V|/Δx a_upstream + φ(0) q/(ρ c_p)) / (1/Δt + |V|/Δx + κ λ), so its surface temperature is linear in
 //! the surface flux q, and the surface condition (23) is one scalar equation a column.
 
-use crate::dense;
+use crate::dense::{self, Arithmetic};
 use crate::error::{Error, Result};
 use crate::friction;
 use crate::injection::{self, Solver};
@@ -209,13 +209,14 @@ impl HeatMarch<'_> {
     ) -> Result<()> {
         dense::vectorised(
             #[inline(always)]
-            || self.advance_kernel(before, exchange, after, scratch),
+            |arithmetic| self.advance_kernel(arithmetic, before, exchange, after, scratch),
         )
     }
 
     #[inline(always)]
     fn advance_kernel(
         &self,
+        arithmetic: Arithmetic,
         before: &[f64],
         exchange: &[SurfaceExchange],
         after: &mut Heated,
@@ -256,9 +257,9 @@ impl HeatMarch<'_> {
                     carry[mode] = advection * inverse;
                     take[mode] = surface[mode] * inverse / capacity;
                 }
-                response = dense::dot(surface, take);
+                response = arithmetic.dot(surface, take);
             }
-            let unheated = carry_over(own, (keep, old), (carry, upstream), surface);
+            let unheated = carry_over(arithmetic, own, (keep, old), (carry, upstream), surface);
             after.surface[column.index] = unheated;
             let Some(exchange) = heating else {
                 if let Some(flux) = after.flux.get_mut(contact) {
@@ -270,7 +271,7 @@ impl HeatMarch<'_> {
             after.flux[contact] = q;
             after.surface[column.index] += response * q;
             for mode in 0..m {
-                own[mode] += q * take[mode];
+                own[mode] = arithmetic.multiply_add(q, take[mode], own[mode]);
             }
         }
         Ok(())
@@ -317,9 +318,10 @@ impl HeatMarch<'_> {
     }
 }
 
-/// own = keep · old + carry · upstream, and the surface value of it: as [`dense::dot`], in the same pass.
+/// own = keep · old + carry · upstream, and the surface value of it: as [`Arithmetic::dot`], in the same pass.
 #[inline(always)]
 fn carry_over(
+    arithmetic: Arithmetic,
     own: &mut [f64],
     (keep, old): (&[f64], &[f64]),
     (carry, upstream): (&[f64], &[f64]),
@@ -333,8 +335,8 @@ fn carry_over(
     for first in (0..whole).step_by(LANES) {
         for lane in 0..LANES {
             let mode = first + lane;
-            own[mode] = keep[mode] * old[mode] + carry[mode] * upstream[mode];
-            sums[lane] += own[mode] * surface[mode];
+            own[mode] = arithmetic.multiply_add(keep[mode], old[mode], carry[mode] * upstream[mode]);
+            sums[lane] = arithmetic.multiply_add(own[mode], surface[mode], sums[lane]);
         }
     }
     let mut tail = 0.0;

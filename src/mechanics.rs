@@ -311,7 +311,7 @@ impl Mechanics {
                     let moved = compliance.tangential_normal.column(node);
                     dense::vectorised(
                         #[inline(always)]
-                        || dense::add_multiple(moved.as_slice(), -p, &mut self.displacement),
+                        |arithmetic| arithmetic.add_multiple(moved.as_slice(), -p, &mut self.displacement),
                     );
                 }
             }

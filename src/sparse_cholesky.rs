@@ -4,7 +4,7 @@
 //! faer's own is slow without faer's feature `std`, and that feature's matrix product keeps a thread-local buffer with a
 //! destructor, which a library that is unloaded at run time must not have.
 
-use crate::dense;
+use crate::dense::{self, Arithmetic};
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::llt::factor::LltRegularization;
 use faer::sparse::linalg::cholesky::supernodal::SupernodalLltRef;
@@ -83,7 +83,7 @@ impl SparseCholesky {
         let factor = SupernodalLltRef::new(symbolic, &self.values);
         dense::vectorised(
             #[inline(always)]
-            || {
+            |arithmetic| {
                 for node in 0..symbolic.n_supernodes() {
                     let node = factor.supernode(node);
                     let (start, block) = (node.start(), node.val());
@@ -95,7 +95,7 @@ impl SparseCholesky {
                         };
                         let mut sum = rows[target];
                         for column in 0..row.min(columns) {
-                            subtract(&mut sum, block[(row, column)], &rows[start + column]);
+                            subtract(arithmetic, &mut sum, block[(row, column)], &rows[start + column]);
                         }
                         if row < columns {
                             divide(&mut sum, block[(row, row)]);
@@ -110,10 +110,10 @@ impl SparseCholesky {
                     for column in (0..columns).rev() {
                         let mut sum = rows[start + column];
                         for row in column + 1..columns {
-                            subtract(&mut sum, block[(row, column)], &rows[start + row]);
+                            subtract(arithmetic, &mut sum, block[(row, column)], &rows[start + row]);
                         }
                         for (below, place) in node.pattern().iter().enumerate() {
-                            subtract(&mut sum, block[(columns + below, column)], &rows[*place]);
+                            subtract(arithmetic, &mut sum, block[(columns + below, column)], &rows[*place]);
                         }
                         divide(&mut sum, block[(column, column)]);
                         rows[start + column] = sum;
@@ -125,9 +125,9 @@ impl SparseCholesky {
 }
 
 #[inline(always)]
-fn subtract(sum: &mut Row, factor: f64, row: &Row) {
+fn subtract(arithmetic: Arithmetic, sum: &mut Row, factor: f64, row: &Row) {
     for (sum, value) in sum.iter_mut().zip(row) {
-        *sum -= factor * value;
+        *sum = arithmetic.multiply_add(-factor, *value, *sum);
     }
 }
 

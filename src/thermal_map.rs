@@ -10,7 +10,7 @@
 //!    the block what these leave is added from the moments themselves.
 
 use crate::compliance::ThermalDisplacement;
-use crate::dense;
+use crate::dense::{self, Arithmetic};
 use crate::heat::DepthBasis;
 use crate::mesh::Mesh;
 use nalgebra::{Cholesky, DMatrix, SymmetricEigen};
@@ -163,10 +163,10 @@ fn split_off(rows: &mut [f64], inputs: usize, far: impl Fn(usize) -> bool, toler
         direction.iter_mut().for_each(|value| *value /= length);
         dense::vectorised(
             #[inline(always)]
-            || {
+            |arithmetic| {
                 for row in rows.chunks_exact_mut(inputs) {
-                    let part = dense::dot(row, &direction);
-                    dense::add_multiple(&direction, -part, row);
+                    let part = arithmetic.dot(row, &direction);
+                    arithmetic.add_multiple(&direction, -part, row);
                     parts.push(part);
                 }
             },
@@ -269,12 +269,12 @@ impl ThermalMap {
     pub fn apply(&self, amplitudes: &[f64], scratch: &mut [f64], displacement: &mut [f64]) {
         dense::vectorised(
             #[inline(always)]
-            || self.apply_kernel(amplitudes, scratch, displacement),
+            |arithmetic| self.apply_kernel(arithmetic, amplitudes, scratch, displacement),
         )
     }
 
     #[inline(always)]
-    fn apply_kernel(&self, amplitudes: &[f64], scratch: &mut [f64], displacement: &mut [f64]) {
+    fn apply_kernel(&self, arithmetic: Arithmetic, amplitudes: &[f64], scratch: &mut [f64], displacement: &mut [f64]) {
         displacement.fill(0.0);
         // Upstream, the rail has not been heated since it entered.
         let is_warm = |block: &&Block| {
@@ -299,22 +299,27 @@ impl ThermalMap {
                 .chunks_exact(self.modes)
                 .zip(moments.chunks_exact_mut(self.moments))
             {
-                self.column_moments(column, moments);
+                self.column_moments(arithmetic, column, moments);
             }
-            multiply_add(&block.combinations, moments, &mut effects[block.effects.clone()]);
+            multiply_add(
+                arithmetic,
+                &block.combinations,
+                moments,
+                &mut effects[block.effects.clone()],
+            );
             let (along, upward) = block.gains.split_at(block.gains.len() / 2);
-            multiply_add(along, moments, &mut shifts[block.near.clone()]);
-            multiply_add(upward, moments, &mut lifts[block.near.clone()]);
+            multiply_add(arithmetic, along, moments, &mut shifts[block.near.clone()]);
+            multiply_add(arithmetic, upward, moments, &mut lifts[block.near.clone()]);
         }
         let end = warm[warm.len() - 1].effects.end;
         let range = warm[0].effects.start / LANES * LANES..end.next_multiple_of(LANES);
         for (row, displacement) in self.far.chunks_exact(self.effects).zip(displacement) {
-            *displacement += dot(&row[range.clone()], &effects[range.clone()]);
+            *displacement += dot(arithmetic, &row[range.clone()], &effects[range.clone()]);
         }
     }
 
     #[inline(always)]
-    fn column_moments(&self, column: &[f64], moments: &mut [f64]) {
+    fn column_moments(&self, arithmetic: Arithmetic, column: &[f64], moments: &mut [f64]) {
         for (moments, weights) in moments
             .chunks_exact_mut(LANES)
             .zip(self.weights.chunks_exact(self.modes))
@@ -323,11 +328,11 @@ impl ThermalMap {
             let (mut even, mut odd) = ([0.0; LANES], [0.0; LANES]);
             for (amplitudes, weights) in column.chunks(2).zip(weights.chunks(2)) {
                 for lane in 0..LANES {
-                    even[lane] += amplitudes[0] * weights[0][lane];
+                    even[lane] = arithmetic.multiply_add(amplitudes[0], weights[0][lane], even[lane]);
                 }
                 if let ([_, amplitude], [_, weights]) = (amplitudes, weights) {
                     for lane in 0..LANES {
-                        odd[lane] += amplitude * weights[lane];
+                        odd[lane] = arithmetic.multiply_add(*amplitude, weights[lane], odd[lane]);
                     }
                 }
             }
@@ -340,19 +345,19 @@ impl ThermalMap {
 
 /// `out += rows · x`.
 #[inline(always)]
-fn multiply_add(rows: &[f32], x: &[f64], out: &mut [f64]) {
+fn multiply_add(arithmetic: Arithmetic, rows: &[f32], x: &[f64], out: &mut [f64]) {
     for (row, out) in rows.chunks_exact(x.len()).zip(out) {
-        *out += dot(row, x);
+        *out += dot(arithmetic, row, x);
     }
 }
 
 /// Σ gains · x of a multiple of [`LANES`] values.
 #[inline(always)]
-fn dot(gains: &[f32], x: &[f64]) -> f64 {
+fn dot(arithmetic: Arithmetic, gains: &[f32], x: &[f64]) -> f64 {
     let mut sums = [0.0; LANES];
     for (gains, x) in gains.chunks_exact(LANES).zip(x.chunks_exact(LANES)) {
         for lane in 0..LANES {
-            sums[lane] += f64::from(gains[lane]) * x[lane];
+            sums[lane] = arithmetic.multiply_add(f64::from(gains[lane]), x[lane], sums[lane]);
         }
     }
     // Not in pairs: the compiler then takes registers of half the width.
