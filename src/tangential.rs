@@ -30,7 +30,7 @@ pub struct TangentialProblem<'a> {
     pub strain_speed: f64,
     /// ε, `m/s`.
     pub regularisation: f64,
-    /// Newton step at which the iteration stops, relative to the largest pressure.
+    /// Newton step that may be left out, relative to the largest pressure.
     pub tolerance: f64,
 }
 
@@ -52,6 +52,12 @@ const CONTINUATION: i32 = 10;
 /// A factorisation is kept while each step is shorter than this share of the one before.
 const SLOW_CONTRACTION: f64 = 0.1;
 
+/// What is expected of a fresh factorisation, as long as no second step has shown it. What it promises too much is left to
+/// the next sweep, which starts from the residual that there is.
+const FRESH_CONTRACTION: f64 = 0.01;
+/// Nor is less believed where the steps are round-off.
+const LEAST_CONTRACTION: f64 = 1e-3;
+
 /// Scratch of the Newton method, and its last factorised matrix.
 #[derive(Debug, Clone)]
 pub struct Tangential {
@@ -69,6 +75,8 @@ pub struct Tangential {
     pivots: Vec<usize>,
     /// Whether `factor` may still be used.
     factored: bool,
+    /// Length of a step over that of the step before, with this `factor`.
+    contraction: f64,
 }
 
 impl Tangential {
@@ -86,6 +94,7 @@ impl Tangential {
             factor: vec![0.0; nodes * nodes],
             pivots: vec![0; nodes],
             factored: false,
+            contraction: FRESH_CONTRACTION,
         }
     }
 
@@ -168,12 +177,16 @@ impl Tangential {
             }
             self.find_step(m);
             let length = largest(&self.step[..m]);
-            let contracts = length <= SLOW_CONTRACTION * last_length || length <= tolerance;
+            if !fresh && last_length.is_finite() {
+                self.contraction = (length / last_length).max(LEAST_CONTRACTION);
+            }
+            let round_off = length <= tolerance;
+            let contracts = length <= SLOW_CONTRACTION * last_length || round_off;
             if !fresh && !contracts {
                 self.factored = false;
                 continue;
             }
-            let last = length <= tolerance;
+            let last = round_off || length * self.contraction <= tolerance;
             self.trial[..m].copy_from_slice(&self.change[..m]);
             let mut damping = 1.0;
             for halving in 0..=HALVINGS {
@@ -181,8 +194,8 @@ impl Tangential {
                     *change = trial + damping * step;
                 }
                 let trial = self.update_residual(problem, regularisation, shear);
-                // The last step is within round-off of the residual: it is not asked to fall.
-                if last || trial <= (1.0 - 0.1 * damping) * norm {
+                // So short a step is within round-off of the residual: it is not asked to fall.
+                if round_off || trial <= (1.0 - 0.1 * damping) * norm {
                     norm = trial;
                     break;
                 }
@@ -198,7 +211,7 @@ impl Tangential {
                 }
                 damping *= 0.5;
             }
-            if last {
+            if last && self.factored && damping == 1.0 {
                 return Ok(steps);
             }
             last_length = if damping < 1.0 {
@@ -247,6 +260,7 @@ impl Tangential {
             self.factor[column * m + column] += 1.0;
         }
         self.factored = dense::lu(&mut self.factor[..m * m], m, &mut self.pivots);
+        self.contraction = FRESH_CONTRACTION;
         self.factored
     }
 
