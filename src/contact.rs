@@ -23,8 +23,6 @@ const SPLITS: usize = 100;
 /// Error of surface temperature and wear at which the split rests (η), relative to the largest temperature (at least 1 K)
 /// and to the displacement scale.
 const TOLERANCE: f64 = 1e-9;
-/// Change that is round-off.
-const ROUND_OFF: f64 = 1e-14;
 /// Error of the shear at which the split rests, relative to the peak pressure.
 const SHEAR_TOLERANCE: f64 = 1e-9;
 /// Tolerance of the mechanics where they are solved alone, for the initial state.
@@ -33,7 +31,7 @@ const MECHANICS_ALONE_TOLERANCE: f64 = 1e-11;
 const FIRST_MECHANICS_TOLERANCE: f64 = 1e-8;
 const LAST_MECHANICS_TOLERANCE: f64 = 1e-12;
 const MECHANICS_TOLERANCE: f64 = 1e-4;
-/// Change of the thermal displacement that is left out, relative to [`TOLERANCE`].
+/// Change of the thermal displacement that is left out between iterations, relative to [`TOLERANCE`].
 const UNFELT: f64 = 0.1;
 /// Iterations after which a split that has not come to rest is accelerated.
 const ACCELERATE_FROM: usize = 2;
@@ -143,25 +141,34 @@ impl Contact<'_> {
             let sweep = self.sweep_mechanics(fields, scratch, tolerance)?;
             // Step 3: wear and temperature for given tractions.
             self.march_wear(before, fields, scratch);
-            self.march_heat(before, fields, scratch, iterations == 1)?;
+            self.march_heat(before, fields, scratch)?;
             self.soften(fields, scratch);
             self.gather(fields, &scratch.softening, &mut scratch.image);
-            // Step 4: rest? The next change would be smaller by the contraction.
+            // Step 4: rest? The next change would be smaller by the contraction. One iteration cannot tell: the mechanics have
+            // not yet seen what it changed.
+            let bulging = if iterations > 1 {
+                self.bulging(fields, scratch)
+            } else {
+                f64::INFINITY
+            };
             let last = residual;
-            residual = self.change(&scratch.iterate, &scratch.image);
+            residual = self.change(&scratch.iterate, &scratch.image).max(bulging);
             let contraction = if residual < TRUSTED_CONTRACTION * last && last.is_finite() {
                 (residual / last).max(LEAST_CONTRACTION)
             } else {
                 1.0
             };
-            // One iteration cannot tell: the mechanics have not yet seen what it changed.
-            let seen = (iterations > 1 || residual <= ROUND_OFF) && !sweep.set_changed;
-            if seen && residual * contraction <= TOLERANCE && sweep.shear_change * contraction <= SHEAR_TOLERANCE {
+            let rests = residual * contraction <= TOLERANCE && sweep.shear_change * contraction <= SHEAR_TOLERANCE;
+            if rests && !sweep.set_changed {
                 injection::passes(Solver::Split)?;
                 self.check_window(fields)?;
                 self.close_friction(fields);
                 self.warm_wheel(before, fields);
                 return Ok(Convergence { iterations, residual });
+            }
+            if bulging > UNFELT * TOLERANCE {
+                self.bulge(fields, scratch);
+                residual = self.change(&scratch.iterate, &scratch.image);
             }
             if iterations >= ACCELERATE_FROM {
                 scratch.anderson.next(&scratch.iterate, &mut scratch.image);
@@ -368,9 +375,9 @@ impl Contact<'_> {
         }
     }
 
-    /// (19), (23) together with the rim's temperature, and the thermal displacement; `first` in the first iteration. What the
-    /// rail gives to the wheel and what the wheel takes is the same heat. With a cold wheel this is one march.
-    fn march_heat(&self, before: &Fields, fields: &mut Fields, scratch: &mut Scratch, first: bool) -> Result<()> {
+    /// (19), (23) together with the rim's temperature: what the rail gives to the wheel and what the wheel takes is the same
+    /// heat. With a cold wheel this is one march.
+    fn march_heat(&self, before: &Fields, fields: &mut Fields, scratch: &mut Scratch) -> Result<()> {
         let ambient = self.conditions.inputs.ambient_temperature;
         let guess = scratch.iterate[gathered(fields.pressure.len()) - 1] * TEMPERATURE_SCALE;
         let mut wheel = rim::FixedPoint::new(match self.parameters.wheel_heating {
@@ -389,18 +396,31 @@ impl Contact<'_> {
                 break;
             }
         }
-        // Flux that changes from one iteration to the next moves the surface less than in proportion to all that the flux
-        // has heated so far: the last iteration of a step need not apply the map.
-        let moved = largest_change(&fields.heat_flux, &scratch.mapped_flux) * largest(&fields.thermal_displacement);
-        if first || moved > UNFELT * TOLERANCE * largest(&scratch.mapped_flux) {
-            self.rail.thermal_map.apply(
-                &fields.temperature,
-                &mut scratch.moments,
-                &mut fields.thermal_displacement,
-            );
-            scratch.mapped_flux.copy_from_slice(&fields.heat_flux);
-        }
         Ok(())
+    }
+
+    /// Bound of what the heat of this iteration changes in the thermal displacement: flux that changes from one iteration to
+    /// the next moves the surface less than in proportion to all that the flux has heated so far. It spares the last
+    /// iteration of a step the thermal map: the fields keep the displacement that the tractions have felt.
+    fn bulging(&self, fields: &Fields, scratch: &Scratch) -> f64 {
+        let flux = largest(&scratch.mapped_flux);
+        let change = largest_change(&fields.heat_flux, &scratch.mapped_flux);
+        if change == 0.0 {
+            0.0
+        } else {
+            change / flux * largest(&fields.thermal_displacement)
+        }
+    }
+
+    /// The thermal displacement of the temperature, for the fields and for the next iteration.
+    fn bulge(&self, fields: &mut Fields, scratch: &mut Scratch) {
+        self.rail.thermal_map.apply(
+            &fields.temperature,
+            &mut scratch.moments,
+            &mut fields.thermal_displacement,
+        );
+        scratch.mapped_flux.copy_from_slice(&fields.heat_flux);
+        scratch.image[..fields.thermal_displacement.len()].copy_from_slice(&fields.thermal_displacement);
     }
 
     /// (19), (23) with the wheel at θ_w.

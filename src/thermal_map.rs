@@ -176,8 +176,98 @@ fn split_off(rows: &mut [f64], inputs: usize, far: impl Fn(usize) -> bool, toler
     (combinations, parts)
 }
 
-fn single(values: &[f64]) -> impl Iterator<Item = f32> + '_ {
-    values.iter().map(|&value| value as f32)
+fn single(values: &[f64]) -> Vec<f32> {
+    values.iter().map(|&value| value as f32).collect()
+}
+
+/// What becomes a [`Block`].
+struct Piece {
+    columns: Range<usize>,
+    near: Range<usize>,
+    /// Effects per moment, row by row.
+    combinations: Vec<f64>,
+    /// Displacement per effect, effect by effect, 2n each.
+    parts: Vec<f64>,
+    /// As those of [`Block`].
+    gains: Vec<f64>,
+}
+
+impl Piece {
+    fn new(moments: &Moments, columns: Range<usize>, near: Range<usize>, tolerance: f64) -> Piece {
+        let (n, inputs) = (moments.images[0].nrows() / 2, columns.len() * moments.images[0].ncols());
+        let mut rows = moments.rows(columns.clone());
+        let (combinations, parts) = split_off(&mut rows, inputs, |row| !near.contains(&(row % n)), tolerance);
+        let next_to = |first: usize| &rows[(first + near.start) * inputs..(first + near.end) * inputs];
+        let gains = [next_to(0), next_to(n)].concat();
+        Piece {
+            columns,
+            near,
+            combinations,
+            parts,
+            gains,
+        }
+    }
+
+    /// The mirror image in x₁ = 0 on a mesh of so many columns, with n contact nodes and so many moments a column: u₁
+    /// changes its sign.
+    fn mirrored(&self, mesh_columns: usize, n: usize, moments: usize) -> Piece {
+        let opposite = |range: &Range<usize>, count: usize| count - range.end..count - range.start;
+        // Values at nodes or columns, `size` each, in opposite order.
+        let reversed =
+            |values: &[f64], size: usize| values.rchunks_exact(size).flatten().copied().collect::<Vec<f64>>();
+        let inputs = self.columns.len() * moments;
+        let opposite_inputs = |rows: &[f64]| -> Vec<f64> {
+            rows.chunks_exact(inputs)
+                .flat_map(|row| reversed(row, moments))
+                .collect()
+        };
+        let opposite_nodes = |along_and_upward: &[f64], size: usize| -> Vec<f64> {
+            let (along, upward) = along_and_upward.split_at(along_and_upward.len() / 2);
+            let along: Vec<f64> = along.iter().map(|value| -value).collect();
+            [reversed(&along, size), reversed(upward, size)].concat()
+        };
+        Piece {
+            columns: opposite(&self.columns, mesh_columns),
+            near: opposite(&self.near, n),
+            combinations: opposite_inputs(&self.combinations),
+            parts: self
+                .parts
+                .chunks_exact(2 * n)
+                .flat_map(|part| opposite_nodes(part, 1))
+                .collect(),
+            gains: opposite_nodes(&opposite_inputs(&self.gains), inputs),
+        }
+    }
+}
+
+/// Blocks of √n columns from the middle to the left, their mirror images, and between them the middle column, if there is
+/// one: mirrored motion is to give mirrored fields to round-off.
+fn pieces(mesh: &Mesh, moments: &Moments, tolerance: f64) -> Vec<Piece> {
+    let (n, columns) = (mesh.contact_nodes, mesh.columns());
+    let width = (n as f64).sqrt().round() as usize;
+    let half = columns / 2;
+    let mut left: Vec<Piece> = (0..half)
+        .step_by(width)
+        .map(|distance| {
+            let own = half.saturating_sub(distance + width)..half - distance;
+            let reach = NEAR * mesh.contact_spacing();
+            let (from, to) = (mesh.x[own.start] - reach, mesh.x[own.end - 1] + reach);
+            let is_near = |node: &usize| (from..=to).contains(&mesh.contact_position(*node));
+            let near = match ((0..n).find(is_near), (0..n).rfind(is_near)) {
+                (Some(first), Some(last)) => first..last + 1,
+                _ => 0..0,
+            };
+            Piece::new(moments, own, near, tolerance)
+        })
+        .collect();
+    let right: Vec<Piece> = left
+        .iter()
+        .map(|piece| piece.mirrored(columns, n, moments.images[0].ncols()))
+        .collect();
+    left.reverse();
+    // Its own mirror image: all nodes are next to it.
+    let middle = (columns % 2 == 1).then(|| Piece::new(moments, half..half + 1, 0..n, tolerance));
+    left.into_iter().chain(middle).chain(right).collect()
 }
 
 impl ThermalMap {
@@ -201,52 +291,35 @@ impl ThermalMap {
                 (0..modes).map(|mode| std::array::from_fn(|lane| column_moments.weights[(mode, first + lane)])),
             );
         }
-        let width = if moments == 0 {
-            mesh.columns()
+        let pieces = if moments == 0 {
+            Vec::new()
         } else {
-            (n as f64).sqrt().round() as usize
+            pieces(mesh, &column_moments, tolerance)
         };
-        let (mut blocks, mut effects) = (Vec::new(), 0);
+        let mut blocks = Vec::with_capacity(pieces.len());
         // Displacement per effect, effect by effect.
-        let mut far = Vec::new();
-        for first in (0..mesh.columns()).step_by(width) {
-            let columns = first..mesh.columns().min(first + width);
-            let inputs = columns.len() * moments;
-            let reach = NEAR * mesh.contact_spacing();
-            let (from, to) = (mesh.x[columns.start] - reach, mesh.x[columns.end - 1] + reach);
-            let is_near = |node: &usize| (from..=to).contains(&mesh.contact_position(*node));
-            let near = match ((0..n).find(is_near), (0..n).rfind(is_near)) {
-                (Some(first), Some(last)) => first..last + 1,
-                _ => 0..0,
-            };
-            let mut rows = column_moments.rows(columns.clone());
-            let (combinations, parts) = if moments == 0 {
-                Default::default()
-            } else {
-                split_off(&mut rows, inputs, |row| !near.contains(&(row % n)), tolerance)
-            };
-            let own = parts.len() / (2 * n);
-            far.extend(parts);
-            let next_to = |offset: usize| &rows[(offset + near.start) * inputs..(offset + near.end) * inputs];
+        let (mut effects, mut far) = (0, Vec::new());
+        for piece in pieces {
+            let own = piece.parts.len() / (2 * n);
+            far.extend(piece.parts);
             blocks.push(Block {
+                columns: piece.columns,
                 effects: effects..effects + own,
-                combinations: single(&combinations).collect(),
-                gains: single(next_to(0)).chain(single(next_to(n))).collect(),
-                columns,
-                near,
+                combinations: single(&piece.combinations),
+                near: piece.near,
+                gains: single(&piece.gains),
             });
             effects += own;
         }
         let far = DMatrix::from_vec(2 * n, effects, far).transpose();
         effects = effects.next_multiple_of(LANES);
-        let far = far.resize_vertically(effects, 0.0);
         ThermalMap {
             modes,
             moments,
             effects,
             weights,
             blocks,
-            far: single(far.as_slice()).collect(),
+            far: single(far.resize_vertically(effects, 0.0).as_slice()),
         }
     }
 
