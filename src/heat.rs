@@ -328,21 +328,28 @@ fn carry_over(
     surface: &[f64],
 ) -> f64 {
     const LANES: usize = 8;
-    let m = own.len();
-    let (keep, old, carry, upstream, surface) = (&keep[..m], &old[..m], &carry[..m], &upstream[..m], &surface[..m]);
-    let whole = m - m % LANES;
     let mut sums = [0.0; LANES];
-    for first in (0..whole).step_by(LANES) {
+    let (blocks, rest) = own.as_chunks_mut::<LANES>();
+    let whole = LANES * blocks.len();
+    let inputs = keep.as_chunks::<LANES>().0.iter().zip(old.as_chunks::<LANES>().0);
+    let inputs = inputs.zip(carry.as_chunks::<LANES>().0.iter().zip(upstream.as_chunks::<LANES>().0));
+    for ((own, ((keep, old), (carry, upstream))), surface) in
+        blocks.iter_mut().zip(inputs).zip(surface.as_chunks::<LANES>().0)
+    {
+        // All are loaded before one is stored, or the compiler would fear that they overlap.
+        let mut values = [0.0; LANES];
         for lane in 0..LANES {
-            let mode = first + lane;
-            own[mode] = arithmetic.multiply_add(keep[mode], old[mode], carry[mode] * upstream[mode]);
-            sums[lane] = arithmetic.multiply_add(own[mode], surface[mode], sums[lane]);
+            values[lane] = arithmetic.multiply_add(keep[lane], old[lane], carry[lane] * upstream[lane]);
+        }
+        *own = values;
+        for lane in 0..LANES {
+            sums[lane] = arithmetic.multiply_add(values[lane], surface[lane], sums[lane]);
         }
     }
     let mut tail = 0.0;
-    for mode in whole..m {
-        own[mode] = keep[mode] * old[mode] + carry[mode] * upstream[mode];
-        tail += own[mode] * surface[mode];
+    for (own, mode) in rest.iter_mut().zip(whole..) {
+        *own = keep[mode] * old[mode] + carry[mode] * upstream[mode];
+        tail += *own * surface[mode];
     }
     tail + sums.iter().sum::<f64>()
 }
