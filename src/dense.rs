@@ -200,7 +200,8 @@ pub fn multiply(a: &[f64], n: usize, x: &[f64], out: &mut [f64]) {
     );
 }
 
-/// LU factors with row pivoting of the n × n matrix in `a`, in place. False where it is singular.
+/// LU factors with row pivoting of the n × n matrix in `a`, in place, the diagonal of U inverted. False where it is
+/// singular.
 pub fn lu(a: &mut [f64], n: usize, pivots: &mut [usize]) -> bool {
     vectorised(
         #[inline(always)]
@@ -224,11 +225,12 @@ fn lu_kernel(arithmetic: Arithmetic, a: &mut [f64], n: usize, pivots: &mut [usiz
                     a.swap(k * n + j, k * n + pivot);
                 }
             }
-            let scale = 1.0 / a[j * n + j];
+            let inverse = 1.0 / a[j * n + j];
             let (left, right) = a.split_at_mut((j + 1) * n);
-            let multipliers = &mut left[j * n + j + 1..];
+            let (diagonal, multipliers) = left[j * n + j..].split_at_mut(1);
+            diagonal[0] = inverse;
             for value in &mut *multipliers {
-                *value *= scale;
+                *value *= inverse;
             }
             for column in right.chunks_exact_mut(n).take(end - (j + 1)) {
                 arithmetic.add_multiple(multipliers, -column[j], &mut column[j + 1..]);
@@ -248,14 +250,14 @@ fn lu_kernel(arithmetic: Arithmetic, a: &mut [f64], n: usize, pivots: &mut [usiz
 fn position_of_largest(values: &[f64]) -> usize {
     const LANES: usize = 8;
     let mut sizes = [0.0; LANES];
-    for block in values.chunks(LANES) {
-        for (size, value) in sizes.iter_mut().zip(block) {
-            if value.abs() > *size {
-                *size = value.abs();
-            }
+    let (blocks, rest) = values.as_chunks::<LANES>();
+    for block in blocks {
+        for lane in 0..LANES {
+            let size = block[lane].abs();
+            sizes[lane] = if size > sizes[lane] { size } else { sizes[lane] };
         }
     }
-    let size = largest(&sizes);
+    let size = largest(&sizes).max(largest(rest));
     values.iter().position(|value| value.abs() == size).unwrap_or(0)
 }
 
@@ -297,7 +299,7 @@ fn lu_solve_kernel(arithmetic: Arithmetic, a: &[f64], n: usize, pivots: &[usize]
         let (above, own) = b[..first + width].split_at_mut(first);
         for j in (0..width).rev() {
             let (rest, unknown) = own[..=j].split_at_mut(j);
-            unknown[0] /= panel[j * n + first + j];
+            unknown[0] *= panel[j * n + first + j];
             arithmetic.add_multiple(&panel[j * n + first..][..j], -unknown[0], rest);
         }
         let column = |j: usize| &panel[j * n..j * n + first];

@@ -81,7 +81,13 @@ impl Fields {
 
     /// Overwrites these fields with others of the same sizes, without allocating.
     pub fn copy_from(&mut self, other: &Fields) {
-        for (own, other) in self.vectors_mut().into_iter().zip(other.vectors()) {
+        self.temperature.copy_from_slice(&other.temperature);
+        self.copy_surface_from(other);
+    }
+
+    /// As [`Fields::copy_from`], but for the temperature below the surface, most of all values.
+    pub fn copy_surface_from(&mut self, other: &Fields) {
+        for (own, other) in self.vectors_mut().into_iter().zip(other.vectors()).skip(1) {
             own.copy_from_slice(other);
         }
         self.penetration = other.penetration;

@@ -15,14 +15,16 @@ pub fn advance(
     after: &mut [f64],
 ) {
     let storage = 1.0 / duration;
+    let mut upstream = after[transport.inflow()];
     for column in transport.columns() {
         let advection = transport.speed() / column.spacing;
         let contact = column.index.wrapping_sub(first_contact);
         let worn = rate.get(contact).copied().unwrap_or(0.0);
-        // The column upstream last: what does not wait for it is done by then.
+        // The depth upstream last: what does not wait for it is done by then.
         let inverse = 1.0 / (storage + advection);
         let own = (storage * before[column.index] + worn) * inverse;
-        after[column.index] = own + advection * inverse * after[column.upstream];
+        upstream = own + advection * inverse * upstream;
+        after[column.index] = upstream;
     }
 }
 

@@ -235,7 +235,8 @@ impl Model {
         duration: f64,
     ) -> Result<Convergence> {
         let Workspace { scratch, trial } = workspace;
-        trial.copy_from(&state.fields);
+        // The march makes the temperature anew.
+        trial.copy_surface_from(&state.fields);
         // Not further than it was observed.
         state.trend.extrapolate(trial, duration.min(state.duration));
         let contact = self.contact(inputs, duration);
