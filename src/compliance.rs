@@ -96,7 +96,7 @@ pub fn build(
         elastic_wheel::add(&mut compliance, mesh, parameters, scales)?;
     }
     let thermal_stress = parameters.thermal_expansion * (3.0 * parameters.lame_lambda + 2.0 * parameters.shear_modulus);
-    let thermal = thermal_displacement(&rail, &fields) * (thermal_stress / scales.displacement);
+    let thermal = thermal_displacement(mesh, &rail, &fields) * (thermal_stress / scales.displacement);
     Ok((compliance, thermal))
 }
 
@@ -163,17 +163,31 @@ fn inertia_form(rail: &Elasticity, fields: &Fields) -> DMatrix<f64> {
 }
 
 /// Adjoint of the thermal load: the displacement at a contact node caused by a unit thermal stress at a node is the
-/// work of that stress on the contact node's unit-load field. 2n × nodes.
-fn thermal_displacement(rail: &Elasticity, fields: &Fields) -> DMatrix<f64> {
-    let nodes = fields.nrows() / 2;
-    let mut map = DMatrix::zeros(nodes, fields.ncols());
-    for (field, mut work) in map.column_iter_mut().enumerate() {
-        let work = work.as_mut_slice();
-        for (node, displacement) in fields.col_as_slice(field).chunks_exact(2).enumerate() {
-            for ((heated, along_x), (_, along_y)) in rail.thermal_load_x.row(node).zip(rail.thermal_load_y.row(node)) {
-                work[heated] += along_x * displacement[0] + along_y * displacement[1];
+/// work of that stress on the contact node's unit-load field. 2n × nodes. The rows of the nodes on the right are the
+/// mirror images of those on the left, u₁ with the opposite sign.
+fn thermal_displacement(mesh: &Mesh, rail: &Elasticity, fields: &Fields) -> ThermalDisplacement {
+    let (n, nodes) = (mesh.contact_nodes, mesh.nodes());
+    let mut map = ThermalDisplacement::zeros(2 * n, nodes);
+    let mut work = vec![0.0; nodes];
+    for direction in 0..2 {
+        for i in 0..n.div_ceil(2) {
+            work.fill(0.0);
+            let field = fields.col_as_slice(direction * n + i);
+            for (node, displacement) in field.chunks_exact(2).enumerate() {
+                let loads = rail.thermal_load_x.row(node).zip(rail.thermal_load_y.row(node));
+                for ((heated, along_x), (_, along_y)) in loads {
+                    work[heated] += along_x * displacement[0] + along_y * displacement[1];
+                }
+            }
+            let sign = if direction == 0 { -1.0 } else { 1.0 };
+            for (column, work) in work.chunks_exact(mesh.rows()).enumerate() {
+                for (row, work) in work.iter().enumerate() {
+                    let opposite = mesh.node(mesh.columns() - 1 - column, row);
+                    map[(direction * n + n - 1 - i, opposite)] = sign * work;
+                    map[(direction * n + i, mesh.node(column, row))] = *work;
+                }
             }
         }
     }
-    map.transpose()
+    map
 }

@@ -58,17 +58,15 @@ impl SparseCholesky {
         let mut rows = vec![[0.0; WIDTH]; fields.nrows()];
         for first in (0..fields.ncols()).step_by(WIDTH) {
             let lanes = WIDTH.min(fields.ncols() - first);
-            for lane in 0..lanes {
-                let field = fields.col_as_slice(first + lane);
-                for (index, row) in rows.iter_mut().enumerate() {
-                    row[lane] = field[place(index)];
+            for (index, row) in rows.iter_mut().enumerate() {
+                for (lane, value) in row[..lanes].iter_mut().enumerate() {
+                    *value = fields[(place(index), first + lane)];
                 }
             }
             self.solve_rows(&mut rows);
-            for lane in 0..lanes {
-                let field = fields.col_as_slice_mut(first + lane);
-                for (index, row) in rows.iter().enumerate() {
-                    field[place(index)] = row[lane];
+            for (index, row) in rows.iter().enumerate() {
+                for (lane, value) in row[..lanes].iter().enumerate() {
+                    fields[(place(index), first + lane)] = *value;
                 }
             }
         }
@@ -88,6 +86,10 @@ impl SparseCholesky {
                     let node = factor.supernode(node);
                     let (start, block) = (node.start(), node.val());
                     let columns = block.ncols();
+                    // Loads at a few nodes reach few of the supernodes.
+                    if rows[start..start + columns].iter().flatten().all(|value| *value == 0.0) {
+                        continue;
+                    }
                     for row in 0..block.nrows() {
                         let target = match row.checked_sub(columns) {
                             None => start + row,
