@@ -128,11 +128,14 @@ fn surface_displacement(mesh: &Mesh, fields: &Fields) -> DMatrix<f64> {
 /// Rows of the fields that are multiplied together: a block of all of them stays in the level-2 cache.
 const BLOCK: usize = 256;
 
-/// Zᵀ K₁ Z of the fields Z: 2n × 2n, symmetric.
+/// Zᵀ K₁ Z of the fields Z: 2n × 2n, symmetric, and mirrored fields give mirrored entries: of the four that are equal but
+/// for their sign one is computed.
 fn inertia_form(rail: &Elasticity, fields: &Fields) -> DMatrix<f64> {
-    let mut image = Fields::zeros(fields.nrows(), fields.ncols());
-    for field in 0..fields.ncols() {
-        let displacement = fields.col_as_slice(field);
+    let n = fields.ncols() / 2;
+    let half = n.div_ceil(2);
+    let mut image = Fields::zeros(fields.nrows(), 2 * half);
+    for field in 0..2 * half {
+        let displacement = fields.col_as_slice(field / half * n + field % half);
         for (node, image) in image.col_as_slice_mut(field).chunks_exact_mut(2).enumerate() {
             for (other, value) in rail.inertia.row(node) {
                 image[0] += value * displacement[2 * other];
@@ -140,25 +143,33 @@ fn inertia_form(rail: &Elasticity, fields: &Fields) -> DMatrix<f64> {
             }
         }
     }
-    // The form is symmetric. By dot products of columns: faer's product does not look for the vector instructions of the
-    // machine without faer's feature `std`.
-    let n = fields.ncols();
-    let mut form = DMatrix::zeros(n, n);
+    // With j the outer one of two contact nodes, on the left. By dot products of columns: faer's product does not look for
+    // the vector instructions of the machine without faer's feature `std`.
+    let mut form: DMatrix<f64> = DMatrix::zeros(2 * n, 2 * n);
     dense::vectorised(
         #[inline(always)]
         |arithmetic| {
             for start in (0..fields.nrows()).step_by(BLOCK) {
                 let block = start..fields.nrows().min(start + BLOCK);
-                for j in 0..n {
-                    let image = &image.col_as_slice(j)[block.clone()];
-                    for i in j..n {
-                        form[(i, j)] += arithmetic.dot(&fields.col_as_slice(i)[block.clone()], image);
+                for field in 0..2 * half {
+                    let image = &image.col_as_slice(field)[block.clone()];
+                    let (direction, j) = (field / half, field % half);
+                    for i in (j..n - j).chain(n + j..2 * n - j) {
+                        form[(i, direction * n + j)] += arithmetic.dot(&fields.col_as_slice(i)[block.clone()], image);
                     }
                 }
             }
-            form.fill_upper_triangle_with_lower_triangle();
         },
     );
+    for (direction, j) in (0..2 * half).map(|field| (field / half, field % half)) {
+        for (other, i) in (j..n - j).flat_map(|i| [(0, i), (1, i)]) {
+            let value = form[(other * n + i, direction * n + j)];
+            let image = if direction == other { value } else { -value };
+            form[(direction * n + j, other * n + i)] = value;
+            form[(other * n + n - 1 - i, direction * n + n - 1 - j)] = image;
+            form[(direction * n + n - 1 - j, other * n + n - 1 - i)] = image;
+        }
+    }
     form
 }
 

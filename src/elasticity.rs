@@ -6,13 +6,13 @@
 use crate::error::{Error, Result};
 use crate::mesh::Mesh;
 use crate::sparse_cholesky::SparseCholesky;
-use faer::sparse::{SparseColMat, Triplet};
+use faer::sparse::{SparseColMat, SymbolicSparseColMat};
 use faer::Mat;
 
 /// Displacement fields, one to a column: entry `(2 * node + direction, field)` in `m` (0 along x₁, 1 along x₂).
 pub type Fields = Mat<f64>;
 
-/// A sparse matrix between nodes, by rows.
+/// A sparse matrix between nodes (or unknowns), by rows.
 #[derive(Debug, Clone)]
 pub struct NodeMatrix {
     starts: Vec<usize>,
@@ -21,9 +21,9 @@ pub struct NodeMatrix {
 }
 
 impl NodeMatrix {
-    /// Sums element contributions `(row, column, value)`.
-    fn assemble(nodes: usize, entries: &[(usize, usize, f64)]) -> NodeMatrix {
-        let mut per_row = vec![Vec::<(usize, f64)>::with_capacity(9); nodes];
+    /// Sums element contributions `(row, column, value)`; rows are in ascending order of their columns.
+    fn assemble(rows: usize, entries: &[(usize, usize, f64)]) -> NodeMatrix {
+        let mut per_row = vec![Vec::<(usize, f64)>::with_capacity(18); rows];
         for &(row, column, value) in entries {
             let row = &mut per_row[row];
             match row.iter_mut().find(|(c, _)| *c == column) {
@@ -36,7 +36,8 @@ impl NodeMatrix {
             columns: Vec::new(),
             values: Vec::new(),
         };
-        for row in per_row {
+        for mut row in per_row {
+            row.sort_unstable_by_key(|(column, _)| *column);
             matrix.columns.extend(row.iter().map(|(c, _)| c));
             matrix.values.extend(row.iter().map(|(_, v)| v));
             matrix.starts.push(matrix.columns.len());
@@ -106,7 +107,8 @@ impl Elasticity {
                     for a in 0..2 {
                         for b in 0..2 {
                             let (row, column) = (unknown[2 * node_i + a], unknown[2 * node_j + b]);
-                            if row == usize::MAX || column == usize::MAX || row < column {
+                            // The upper triangle by rows is the lower one by columns.
+                            if row == usize::MAX || column == usize::MAX || column < row {
                                 continue;
                             }
                             // σ(u):ε(v) = λ div u div v + 2γ ε(u):ε(v)
@@ -115,15 +117,20 @@ impl Elasticity {
                                 value += shear * (grad[i][0] * grad[j][0] + grad[i][1] * grad[j][1])
                                     - rho_v2 * grad[i][0] * grad[j][0];
                             }
-                            stiffness.push(Triplet::new(row, column, measure * value));
+                            stiffness.push((row, column, measure * value));
                         }
                     }
                 }
             }
         }
         let failed = Error::StiffnessNotPositiveDefinite { unknowns };
-        let matrix = SparseColMat::<usize, f64>::try_new_from_triplets(unknowns, unknowns, &stiffness)
-            .map_err(|_| failed.clone())?;
+        let NodeMatrix {
+            starts,
+            columns,
+            values,
+        } = NodeMatrix::assemble(unknowns, &stiffness);
+        let pattern = SymbolicSparseColMat::new_checked(unknowns, unknowns, starts, None, columns);
+        let matrix = SparseColMat::new(pattern, values);
         let factor = SparseCholesky::new(&matrix).ok_or(failed)?;
         Ok(Elasticity {
             inertia: NodeMatrix::assemble(nodes, &inertia),

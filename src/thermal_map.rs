@@ -97,7 +97,7 @@ impl Moments {
         let mut gram = DMatrix::zeros(rows, rows);
         for column in 0..mesh.columns() {
             let block = of_column(column);
-            gram.gemm_tr(1.0, &block, &block, 1.0);
+            gram.gemm(1.0, &block.transpose(), &block, 1.0);
         }
         let scaled = &basis.modes * &root;
         let eigen = SymmetricEigen::new(scaled.transpose() * gram * &scaled);
