@@ -299,25 +299,26 @@ impl Parameters {
     /// [`Error::UnknownParameter`], [`Error::NotANumber`] or [`Error::OutOfRange`].
     pub fn set_by_name(&mut self, name: &str, text: &str) -> Result<()> {
         if let Some(entry) = REAL_PARAMETERS.iter().find(|entry| entry.name == name) {
-            let value = text.trim().parse().map_err(|_| Error::NotANumber {
-                name: entry.name,
-                text: text.to_owned(),
-                expected: "a real number",
-            })?;
+            let value = parse(entry.name, text, "a real number")?;
             entry.check(value)?;
             (entry.set)(self, value);
             return Ok(());
         }
         if let Some(entry) = INTEGER_PARAMETERS.iter().find(|entry| entry.name == name) {
-            let value = text.trim().parse().map_err(|_| Error::NotANumber {
-                name: entry.name,
-                text: text.to_owned(),
-                expected: "an integer",
-            })?;
+            let value = parse(entry.name, text, "an integer")?;
             entry.check(value)?;
             (entry.set)(self, value);
             return Ok(());
         }
         Err(Error::UnknownParameter { name: name.to_owned() })
     }
+}
+
+/// The number that a text holds.
+fn parse<T: std::str::FromStr>(name: &'static str, text: &str, expected: &'static str) -> Result<T> {
+    text.trim().parse().map_err(|_| Error::NotANumber {
+        name,
+        text: text.to_owned(),
+        expected,
+    })
 }

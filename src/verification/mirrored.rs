@@ -7,7 +7,7 @@ use crate::parameters::{Parameters, SlipSource, Wheel, WheelHeating};
 use crate::signals::Inputs;
 
 const SOURCE: &str = "symmetry of the equations";
-/// The solvers rest at 1e-11 of the peak pressure and of the temperature; both runs take the same path to it.
+/// Round-off: wherever the solvers come to rest, both runs take the same path to it.
 const TOLERANCE: f64 = 1e-10;
 
 /// Largest difference of each field from its mirror image, relative to the field's largest value.
