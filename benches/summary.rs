@@ -131,6 +131,9 @@ fn main() {
         println!("{what:<58} {value:>8.2} {unit:<3} target {relation} {bound} {unit:<3} {verdict}");
     };
     println!();
+    let (moments, effects, gains) = Run::new(61).model.rail().thermal_map.size();
+    println!("thermal map at default settings: {moments} moments a column, {effects} effects, {gains} gains");
+    println!();
     target(
         "step at default settings, median",
         measured[1].0.quantile(0.5),

@@ -88,8 +88,7 @@ pub fn build(
     scales: &Scales,
 ) -> Result<(RollingCompliance, ThermalDisplacement)> {
     let rail = Elasticity::new(mesh, parameters.lame_lambda, parameters.shear_modulus, 0.0)?;
-    let window = mesh.first_contact..mesh.first_contact + mesh.contact_nodes;
-    let fields = rail.unit_load_fields(mesh, window);
+    let fields = rail.unit_load_fields(mesh);
 
     let mut compliance = rolling_compliance(mesh, parameters, scales, &rail, &fields);
     if parameters.wheel == Wheel::Elastic {

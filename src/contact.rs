@@ -336,12 +336,6 @@ impl Contact<'_> {
         mechanics.tangent(&problem, change, tangent);
     }
 
-    /// Columns of the contact window.
-    pub(crate) fn window(&self) -> std::ops::Range<usize> {
-        let mesh = &self.rail.mesh;
-        mesh.first_contact..mesh.first_contact + mesh.contact_nodes
-    }
-
     pub(crate) fn upwind(&self) -> Upwind<'_> {
         Upwind::new(&self.rail.mesh.x, self.conditions.motion.rolling_speed)
     }
@@ -491,7 +485,7 @@ impl Contact<'_> {
     /// heat sees of the wheel, its temperature in hundreds of kelvin.
     pub(crate) fn gather(&self, fields: &Fields, softening: &Softening, values: &mut [f64]) {
         let n = self.rail.mesh.contact_nodes;
-        let window = self.window();
+        let window = self.rail.mesh.window();
         let (displacement, rest) = values.split_at_mut(2 * n);
         let (temperature, rest) = rest.split_at_mut(n);
         let (wear, wheel) = rest.split_at_mut(n);
@@ -523,7 +517,7 @@ impl Contact<'_> {
     /// equilibrium, and the friction power is the one that heated rail and wheel, to round-off.
     fn close_friction(&self, fields: &mut Fields) {
         let law = self.friction_state();
-        let first = self.window().start;
+        let first = self.rail.mesh.first_contact;
         for node in 0..fields.pressure.len() {
             let mu = law.coefficient(fields.surface_temperature[first + node]).0;
             fields.friction[node] = mu;

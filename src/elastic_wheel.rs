@@ -37,8 +37,7 @@ use crate::parameters::Parameters;
 /// [`crate::error::Error::StiffnessNotPositiveDefinite`].
 pub fn add(pair: &mut RollingCompliance, mesh: &Mesh, parameters: &Parameters, scales: &Scales) -> Result<()> {
     let body = Elasticity::new(mesh, parameters.wheel_lame_lambda, parameters.wheel_shear_modulus, 0.0)?;
-    let window = mesh.first_contact..mesh.first_contact + mesh.contact_nodes;
-    let fields = body.unit_load_fields(mesh, window);
+    let fields = body.unit_load_fields(mesh);
     let wheel = rolling_compliance(mesh, parameters, scales, &body, &fields);
     combine(&mut pair.at_rest, &wheel.at_rest, 1.0);
     combine(

@@ -162,13 +162,13 @@ impl Elasticity {
         displacements
     }
 
-    /// The fields of unit loads at the surface of the given columns, along x₁ for all of them, then along x₂. The columns
-    /// are mirrored about x₁ = 0, as the mesh is: those on the right are the mirror images of those on the left.
-    pub fn unit_load_fields(&self, mesh: &Mesh, columns: std::ops::Range<usize>) -> Fields {
-        let n = columns.len();
+    /// The fields of unit loads at the contact nodes, along x₁ for all of them, then along x₂. The mesh is mirrored about
+    /// x₁ = 0: those on the right are the mirror images of those on the left.
+    pub fn unit_load_fields(&self, mesh: &Mesh) -> Fields {
+        let n = mesh.contact_nodes;
         let half = n.div_ceil(2);
         let mut loads = Mat::zeros(2 * mesh.nodes(), 2 * half);
-        for (i, column) in columns.enumerate().take(half) {
+        for (i, column) in mesh.window().enumerate().take(half) {
             let node = mesh.node(column, 0);
             loads[(2 * node, i)] = 1.0;
             loads[(2 * node + 1, half + i)] = 1.0;
@@ -210,10 +210,9 @@ mod tests {
             };
             let mesh = Mesh::new(&parameters);
             let body = Elasticity::new(&mesh, parameters.lame_lambda, parameters.shear_modulus, 0.0).unwrap();
-            let window = mesh.first_contact..mesh.first_contact + contact_nodes;
-            let fields = body.unit_load_fields(&mesh, window.clone());
+            let fields = body.unit_load_fields(&mesh);
             let mut loads = Mat::zeros(2 * mesh.nodes(), 2 * contact_nodes);
-            for (i, column) in window.enumerate() {
+            for (i, column) in mesh.window().enumerate() {
                 let node = mesh.node(column, 0);
                 loads[(2 * node, i)] = 1.0;
                 loads[(2 * node + 1, contact_nodes + i)] = 1.0;

@@ -106,6 +106,11 @@ impl Mesh {
         column * self.rows() + row
     }
 
+    /// Columns of the contact window.
+    pub fn window(&self) -> std::ops::Range<usize> {
+        self.first_contact..self.first_contact + self.contact_nodes
+    }
+
     /// Column of a contact node.
     pub fn contact_column(&self, contact_node: usize) -> usize {
         self.first_contact + contact_node

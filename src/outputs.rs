@@ -114,7 +114,7 @@ fn contact_length(rail: &Rail, fields: &Fields) -> f64 {
 /// Wear depth at the end of the window where material leaves it; at rest the deepest, `m`.
 fn wear_left_behind(rail: &Rail, fields: &Fields, rolling_speed: f64) -> f64 {
     let mesh = &rail.mesh;
-    let window = &fields.wear[mesh.first_contact..mesh.first_contact + mesh.contact_nodes];
+    let window = &fields.wear[mesh.window()];
     if rolling_speed > 0.0 {
         window[0]
     } else if rolling_speed < 0.0 {

@@ -75,7 +75,7 @@ impl Profiles {
             shear: sample(&pascal(&fields.shear)),
             slip: sample(&fields.slip),
             temperature: sample(&surface),
-            wear_depth: sample(&fields.wear[mesh.first_contact..mesh.first_contact + n]),
+            wear_depth: sample(&fields.wear[mesh.window()]),
             depth,
             depth_temperature,
         }

@@ -167,7 +167,7 @@ impl<'a> Linearisation<'a> {
     /// dμ at the contact nodes.
     fn friction_tangent(&self, change: &InputTangent, temperature: &[f64], tangent: &mut Fields) {
         let law = self.contact.friction_state();
-        for (node, column) in self.contact.window().enumerate() {
+        for (node, column) in self.contact.rail.mesh.window().enumerate() {
             let rise = self.fields.surface_temperature[column];
             let absolute = law.ambient + rise;
             let slope = law.coefficient(rise).1;
@@ -242,7 +242,7 @@ impl<'a> Linearisation<'a> {
         let scale = contact.parameters.wear_coefficient * contact.rail.scales.pressure;
         let storage = 1.0 / contact.conditions.duration;
         let transport = contact.upwind();
-        let first = contact.window().start;
+        let first = contact.rail.mesh.first_contact;
         let fields = &*self.fields;
         tangent.wear[transport.inflow()] = change.inputs.incoming_wear_depth;
         for column in transport.columns() {
@@ -266,7 +266,7 @@ impl<'a> Linearisation<'a> {
         let (m, capacity) = (basis.len(), parameters.volumetric_heat_capacity());
         let storage = 1.0 / contact.conditions.duration;
         let transport = contact.upwind();
-        let first = contact.window().start;
+        let first = contact.rail.mesh.first_contact;
         let fields = &*self.fields;
         let law = contact.friction_state();
         let inflow = transport.inflow();

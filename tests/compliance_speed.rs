@@ -16,7 +16,7 @@ fn error_at(wheel: Wheel, speed: f64) -> f64 {
     let n = mesh.contact_nodes;
     let fields = |lambda, shear, density: f64| {
         let moving = Elasticity::new(&mesh, lambda, shear, density * speed * speed).unwrap();
-        moving.unit_load_fields(&mesh, mesh.first_contact..mesh.first_contact + n)
+        moving.unit_load_fields(&mesh)
     };
     let rail = fields(parameters.lame_lambda, parameters.shear_modulus, parameters.density);
     let body = (wheel == Wheel::Elastic).then(|| {
