@@ -3,52 +3,14 @@
 
 #![allow(unsafe_code, missing_docs)]
 
-#[path = "../tests/common/mod.rs"]
-mod common;
+mod interface;
 
-use common::{Api, Client, OK};
 use criterion::{criterion_group, criterion_main, Criterion};
+use interface::common::{Api, OK};
+use interface::{inputs, instance, native, STEP};
 use std::hint::black_box;
 use std::ptr::null_mut;
-use wheelrail::parameters::Parameters;
-use wheelrail::signals::Inputs;
-use wheelrail::verification::Run;
 use wheelrail::wheel_rail::State;
-
-const CREEPAGE: f64 = 0.004;
-/// Communication step, [s].
-const STEP: f64 = 1e-3;
-/// Steps from cold until the measurements begin: 0.1 s.
-const WARM_UP: u32 = 100;
-
-/// An instance in *stepComplete* after the warm-up, and its time.
-fn instance(api: &Api) -> (Client<'_>, f64) {
-    let client = Client::new(api);
-    client.expect(OK, client.setup(0.0, None));
-    client.expect(OK, client.enter());
-    client.expect(OK, client.set(&[("creepage", CREEPAGE)]));
-    client.expect(OK, client.exit());
-    let mut time = 0.0;
-    for _ in 0..WARM_UP {
-        client.expect(OK, client.step(time, STEP));
-        time += STEP;
-    }
-    (client, time)
-}
-
-fn inputs() -> Inputs {
-    Inputs {
-        creepage: CREEPAGE,
-        ..Inputs::default()
-    }
-}
-
-/// The same without the interface.
-fn native() -> Run {
-    let mut run = Run::new(&Parameters::default(), &inputs()).expect("a model");
-    run.hold(&inputs(), STEP, WARM_UP as usize).expect("steps");
-    run
-}
 
 fn state(c: &mut Criterion) {
     let api = Api::load();

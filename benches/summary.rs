@@ -6,8 +6,10 @@
 #![allow(unsafe_code)]
 
 mod braking;
+mod interface;
 
 use braking::Run;
+use interface::common::{Api, OK};
 use std::time::Instant;
 use wheelrail::wheel_rail::Model;
 
@@ -92,6 +94,43 @@ fn two_threads() -> f64 {
     one.as_secs_f64() / start.elapsed().as_secs_f64()
 }
 
+/// What the interface costs, `µs`, medians: a step in addition to the native one, saving, restoring.
+fn interface_costs() -> [f64; 3] {
+    const CALLS: usize = 2_000;
+    let api = Api::load();
+    let (client, start) = interface::instance(&api);
+    let mut native = interface::native();
+    let mut handle = client.save();
+    let mut time = start;
+    let timed = |call: &mut dyn FnMut()| {
+        let start = Instant::now();
+        call();
+        1e6 * start.elapsed().as_secs_f64()
+    };
+    let mut costs = [const { Vec::new() }; 3];
+    for _ in 0..CALLS {
+        let through = timed(&mut || {
+            client.expect(OK, client.step(time, interface::STEP));
+        });
+        time += interface::STEP;
+        let alone = timed(&mut || native.step(&interface::inputs(), interface::STEP).expect("a step"));
+        costs[0].push(through - alone);
+        // SAFETY: a live instance and its own state.
+        unsafe {
+            costs[1].push(timed(&mut || {
+                client.expect(OK, (api.get_state)(client.component, &mut handle))
+            }));
+            costs[2].push(timed(&mut || {
+                client.expect(OK, (api.set_state)(client.component, handle))
+            }));
+        }
+    }
+    costs.map(|mut costs| {
+        costs.sort_by(f64::total_cmp);
+        costs[CALLS / 2]
+    })
+}
+
 fn main() {
     println!("one step of 1 ms, braking manoeuvre, all effects on");
     println!("contact_nodes  in contact  median [us]  99 % [us]  99.9 % [us]  iterations  cold start [ms]");
@@ -163,5 +202,9 @@ fn main() {
         "",
     );
     target("cold start at default settings", measured[1].1, 60.0, true, "ms");
+    let [layer, save, restore] = interface_costs();
+    target("the interface's share of a step", layer, 1.0, true, "us");
+    target("save a state through the interface", save, 20.0, true, "us");
+    target("restore it", restore, 20.0, true, "us");
     target("64 instances, two threads over one", two_threads(), 1.9, false, "");
 }

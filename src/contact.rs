@@ -401,6 +401,8 @@ impl Contact<'_> {
         let change = largest_change(&fields.heat_flux, &scratch.mapped_flux);
         if change == 0.0 {
             0.0
+        } else if flux == 0.0 {
+            f64::INFINITY
         } else {
             change / flux * largest(&fields.thermal_displacement)
         }
