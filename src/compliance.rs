@@ -59,8 +59,8 @@ pub struct RollingCompliance {
     pub inertia: Compliance,
 }
 
-/// Thermal displacement of the contact nodes: row `i` (along x₁) and `n + i` (along x₂), scaled, per kelvin at every
-/// node of the mesh (column `node`). 2n × nodes.
+/// Thermal displacement of the contact nodes: column `i` (along x₁) and `n + i` (along x₂), scaled, per kelvin at every
+/// node of the mesh (row `node`). Nodes × 2n.
 pub type ThermalDisplacement = DMatrix<f64>;
 
 impl Compliance {
@@ -95,7 +95,8 @@ pub fn build(
         elastic_wheel::add(&mut compliance, mesh, parameters, scales)?;
     }
     let thermal_stress = parameters.thermal_expansion * (3.0 * parameters.lame_lambda + 2.0 * parameters.shear_modulus);
-    let thermal = thermal_displacement(mesh, &rail, &fields) * (thermal_stress / scales.displacement);
+    let mut thermal = thermal_displacement(mesh, &rail, &fields);
+    thermal *= thermal_stress / scales.displacement;
     Ok((compliance, thermal))
 }
 
@@ -124,42 +125,44 @@ fn surface_displacement(mesh: &Mesh, fields: &Fields) -> DMatrix<f64> {
     DMatrix::from_fn(2 * n, 2 * n, |i, j| 0.5 * (fields[(dof(i), j)] + fields[(dof(j), i)]))
 }
 
-/// Rows of the fields that are multiplied together: a block of all of them stays in the level-2 cache.
-const BLOCK: usize = 256;
+/// Nodes whose rows of the fields are multiplied together: a block of all of them stays in the level-2 cache.
+const BLOCK: usize = 128;
 
 /// Zᵀ K₁ Z of the fields Z: 2n × 2n, symmetric, and mirrored fields give mirrored entries: of the four that are equal but
 /// for their sign one is computed.
 fn inertia_form(rail: &Elasticity, fields: &Fields) -> DMatrix<f64> {
     let n = fields.ncols() / 2;
     let half = n.div_ceil(2);
-    let mut image = Fields::zeros(fields.nrows(), 2 * half);
-    for field in 0..2 * half {
-        let displacement = fields.col_as_slice(field / half * n + field % half);
-        for (node, image) in image.col_as_slice_mut(field).chunks_exact_mut(2).enumerate() {
-            for (other, value) in rail.inertia.row(node) {
-                image[0] += value * displacement[2 * other];
-                image[1] += value * displacement[2 * other + 1];
-            }
-        }
-    }
-    // With j the outer one of two contact nodes, on the left. By dot products of columns: faer's product does not look for
-    // the vector instructions of the machine without faer's feature `std`.
+    let mut image = vec![[0.0; 2 * BLOCK]; 2 * half];
     let mut form: DMatrix<f64> = DMatrix::zeros(2 * n, 2 * n);
-    dense::vectorised(
-        #[inline(always)]
-        |arithmetic| {
-            for start in (0..fields.nrows()).step_by(BLOCK) {
-                let block = start..fields.nrows().min(start + BLOCK);
-                for field in 0..2 * half {
-                    let image = &image.col_as_slice(field)[block.clone()];
-                    let (direction, j) = (field / half, field % half);
-                    for i in (j..n - j).chain(n + j..2 * n - j) {
-                        form[(i, direction * n + j)] += arithmetic.dot(&fields.col_as_slice(i)[block.clone()], image);
-                    }
+    let nodes = fields.nrows() / 2;
+    for first in (0..nodes).step_by(BLOCK) {
+        let block = first..nodes.min(first + BLOCK);
+        for (field, image) in image.iter_mut().enumerate() {
+            let displacement = fields.col_as_slice(field / half * n + field % half);
+            for (node, image) in block.clone().zip(image.chunks_exact_mut(2)) {
+                image.fill(0.0);
+                for (other, value) in rail.inertia.row(node) {
+                    image[0] += value * displacement[2 * other];
+                    image[1] += value * displacement[2 * other + 1];
                 }
             }
-        },
-    );
+        }
+        // With j the outer one of two contact nodes, on the left. By dot products of columns: faer's product does not look
+        // for the vector instructions of the machine without faer's feature `std`.
+        dense::vectorised(
+            #[inline(always)]
+            |arithmetic| {
+                for (field, image) in image.iter().enumerate() {
+                    let (direction, j) = (field / half, field % half);
+                    for i in (j..n - j).chain(n + j..2 * n - j) {
+                        let displacement = &fields.col_as_slice(i)[2 * block.start..2 * block.end];
+                        form[(i, direction * n + j)] += arithmetic.dot(displacement, &image[..displacement.len()]);
+                    }
+                }
+            },
+        );
+    }
     for (direction, j) in (0..2 * half).map(|field| (field / half, field % half)) {
         for (other, i) in (j..n - j).flat_map(|i| [(0, i), (1, i)]) {
             let value = form[(other * n + i, direction * n + j)];
@@ -173,28 +176,25 @@ fn inertia_form(rail: &Elasticity, fields: &Fields) -> DMatrix<f64> {
 }
 
 /// Adjoint of the thermal load: the displacement at a contact node caused by a unit thermal stress at a node is the
-/// work of that stress on the contact node's unit-load field. 2n × nodes. The rows of the nodes on the right are the
-/// mirror images of those on the left, u₁ with the opposite sign.
+/// work of that stress on the contact node's unit-load field. Nodes × 2n. The displacements on the right are the mirror
+/// images of those on the left, u₁ with the opposite sign.
 fn thermal_displacement(mesh: &Mesh, rail: &Elasticity, fields: &Fields) -> ThermalDisplacement {
     let (n, nodes) = (mesh.contact_nodes, mesh.nodes());
-    let mut map = ThermalDisplacement::zeros(2 * n, nodes);
-    let mut work = vec![0.0; nodes];
-    for direction in 0..2 {
+    let mut map = ThermalDisplacement::zeros(nodes, 2 * n);
+    for (direction, sign) in [(0, -1.0), (1, 1.0)] {
         for i in 0..n.div_ceil(2) {
-            work.fill(0.0);
-            let field = fields.col_as_slice(direction * n + i);
-            for (node, displacement) in field.chunks_exact(2).enumerate() {
-                let loads = rail.thermal_load_x.row(node).zip(rail.thermal_load_y.row(node));
-                for ((heated, along_x), (_, along_y)) in loads {
-                    work[heated] += along_x * displacement[0] + along_y * displacement[1];
+            let (left, right) = (direction * n + i, direction * n + n - 1 - i);
+            let (own, rest) = map.as_mut_slice()[nodes * left..nodes * (right + 1)].split_at_mut(nodes);
+            for (node, displacement) in fields.col_as_slice(left).chunks_exact(2).enumerate() {
+                for (heated, load) in rail.thermal_load.row(node) {
+                    own[heated] += load.x * displacement[0] + load.y * displacement[1];
                 }
             }
-            let sign = if direction == 0 { -1.0 } else { 1.0 };
-            for (column, work) in work.chunks_exact(mesh.rows()).enumerate() {
-                for (row, work) in work.iter().enumerate() {
-                    let opposite = mesh.node(mesh.columns() - 1 - column, row);
-                    map[(direction * n + n - 1 - i, opposite)] = sign * work;
-                    map[(direction * n + i, mesh.node(column, row))] = *work;
+            // The middle node is its own mirror image.
+            let image = rest.rchunks_exact_mut(nodes).next().unwrap_or_default();
+            for (image, own) in image.rchunks_exact_mut(mesh.rows()).zip(own.chunks_exact(mesh.rows())) {
+                for (image, own) in image.iter_mut().zip(own) {
+                    *image = sign * own;
                 }
             }
         }

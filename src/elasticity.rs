@@ -5,38 +5,49 @@
 
 use crate::error::{Error, Result};
 use crate::mesh::Mesh;
-use crate::sparse_cholesky::SparseCholesky;
+use crate::sparse_cholesky::{SparseCholesky, WIDTH};
 use faer::sparse::{SparseColMat, SymbolicSparseColMat};
 use faer::Mat;
+use nalgebra::Vector2;
+use std::ops::AddAssign;
 
 /// Displacement fields, one to a column: entry `(2 * node + direction, field)` in `m` (0 along x₁, 1 along x₂).
 pub type Fields = Mat<f64>;
 
 /// A sparse matrix between nodes (or unknowns), by rows.
 #[derive(Debug, Clone)]
-pub struct NodeMatrix {
+pub struct NodeMatrix<T> {
     starts: Vec<usize>,
     columns: Vec<usize>,
-    values: Vec<f64>,
+    values: Vec<T>,
 }
 
-impl NodeMatrix {
-    /// Sums element contributions `(row, column, value)`; rows are in ascending order of their columns.
-    fn assemble(rows: usize, entries: &[(usize, usize, f64)]) -> NodeMatrix {
-        let mut per_row = vec![Vec::<(usize, f64)>::with_capacity(18); rows];
-        for &(row, column, value) in entries {
-            let row = &mut per_row[row];
-            match row.iter_mut().find(|(c, _)| *c == column) {
-                Some((_, sum)) => *sum += value,
-                None => row.push((column, value)),
-            }
+/// The sums of element contributions to a [`NodeMatrix`], row by row.
+struct Sums<T>(Vec<Vec<(usize, T)>>);
+
+impl<T: Copy + AddAssign> Sums<T> {
+    fn new(rows: usize) -> Sums<T> {
+        // A node of the mesh has six to eight neighbours.
+        Sums(vec![Vec::with_capacity(9); rows])
+    }
+
+    fn add(&mut self, row: usize, column: usize, value: T) {
+        let row = &mut self.0[row];
+        match row.iter_mut().find(|(c, _)| *c == column) {
+            Some((_, sum)) => *sum += value,
+            None => row.push((column, value)),
         }
+    }
+
+    /// Rows in ascending order of their columns.
+    fn compressed(self) -> NodeMatrix<T> {
+        let count = self.0.iter().map(Vec::len).sum();
         let mut matrix = NodeMatrix {
             starts: vec![0],
-            columns: Vec::new(),
-            values: Vec::new(),
+            columns: Vec::with_capacity(count),
+            values: Vec::with_capacity(count),
         };
-        for mut row in per_row {
+        for mut row in self.0 {
             row.sort_unstable_by_key(|(column, _)| *column);
             matrix.columns.extend(row.iter().map(|(c, _)| c));
             matrix.values.extend(row.iter().map(|(_, v)| v));
@@ -44,9 +55,11 @@ impl NodeMatrix {
         }
         matrix
     }
+}
 
+impl<T: Copy> NodeMatrix<T> {
     /// Non-zero entries `(column, value)` of a row.
-    pub fn row(&self, row: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
+    pub fn row(&self, row: usize) -> impl Iterator<Item = (usize, T)> + '_ {
         let range = self.starts[row]..self.starts[row + 1];
         range.map(move |k| (self.columns[k], self.values[k]))
     }
@@ -55,14 +68,12 @@ impl NodeMatrix {
 /// The assembled forms of the rail.
 pub struct Elasticity {
     /// ∫ N_i,₁ N_j,₁: the convective inertia is −ρV² times this, the same for both directions.
-    pub inertia: NodeMatrix,
-    /// ∫ N_i,₁ N_j: load along x₁ at node i of a unit thermal stress at node j.
-    pub thermal_load_x: NodeMatrix,
-    /// ∫ N_i,₂ N_j: the same along x₂.
-    pub thermal_load_y: NodeMatrix,
+    pub inertia: NodeMatrix<f64>,
+    /// ∫ ∇N_i N_j: load along x₁ and x₂ at node i of a unit thermal stress at node j.
+    pub thermal_load: NodeMatrix<Vector2<f64>>,
     factor: SparseCholesky,
-    /// Free unknown of each `2 * node + direction`, `usize::MAX` where clamped.
-    unknown: Vec<usize>,
+    /// The row in `factor` of each `2 * node + direction`, `None` where clamped.
+    rows: Vec<Option<usize>>,
     unknowns: usize,
 }
 
@@ -91,19 +102,16 @@ impl Elasticity {
             }
         }
 
-        let triangles = mesh.triangles();
-        let mut stiffness = Vec::with_capacity(21 * triangles.len());
-        let mut inertia = Vec::with_capacity(9 * triangles.len());
-        let mut load_x = Vec::with_capacity(9 * triangles.len());
-        let mut load_y = Vec::with_capacity(9 * triangles.len());
-        for triangle in &triangles {
+        let mut stiffness = Sums::new(unknowns);
+        let mut inertia = Sums::new(nodes);
+        let mut thermal_load = Sums::new(nodes);
+        for triangle in mesh.triangles() {
             let (grad, area) = gradients(triangle.nodes.map(|n| mesh.coordinates(n)));
             let measure = area * triangle.weight;
             for (i, &node_i) in triangle.nodes.iter().enumerate() {
                 for (j, &node_j) in triangle.nodes.iter().enumerate() {
-                    inertia.push((node_i, node_j, measure * grad[i][0] * grad[j][0]));
-                    load_x.push((node_i, node_j, measure / 3.0 * grad[i][0]));
-                    load_y.push((node_i, node_j, measure / 3.0 * grad[i][1]));
+                    inertia.add(node_i, node_j, measure * grad[i][0] * grad[j][0]);
+                    thermal_load.add(node_i, node_j, Vector2::from(grad[i]) * (measure / 3.0));
                     for a in 0..2 {
                         for b in 0..2 {
                             let (row, column) = (unknown[2 * node_i + a], unknown[2 * node_j + b]);
@@ -117,7 +125,7 @@ impl Elasticity {
                                 value += shear * (grad[i][0] * grad[j][0] + grad[i][1] * grad[j][1])
                                     - rho_v2 * grad[i][0] * grad[j][0];
                             }
-                            stiffness.push((row, column, measure * value));
+                            stiffness.add(row, column, measure * value);
                         }
                     }
                 }
@@ -128,70 +136,91 @@ impl Elasticity {
             starts,
             columns,
             values,
-        } = NodeMatrix::assemble(unknowns, &stiffness);
+        } = stiffness.compressed();
         let pattern = SymbolicSparseColMat::new_checked(unknowns, unknowns, starts, None, columns);
         let matrix = SparseColMat::new(pattern, values);
         let factor = SparseCholesky::new(&matrix).ok_or(failed)?;
+        let rows = unknown
+            .into_iter()
+            .map(|unknown| (unknown != usize::MAX).then(|| factor.row_of(unknown)))
+            .collect();
         Ok(Elasticity {
-            inertia: NodeMatrix::assemble(nodes, &inertia),
-            thermal_load_x: NodeMatrix::assemble(nodes, &load_x),
-            thermal_load_y: NodeMatrix::assemble(nodes, &load_y),
+            inertia: inertia.compressed(),
+            thermal_load: thermal_load.compressed(),
             factor,
-            unknown,
+            rows,
             unknowns,
         })
     }
 
     /// Displacements under nodal loads, [N/m per metre of width]: `loads` and result are [`Fields`].
     pub fn solve(&self, loads: &Fields) -> Fields {
-        let mut reduced = Mat::zeros(self.unknowns, loads.ncols());
-        for field in 0..loads.ncols() {
-            let (reduced, load) = (reduced.col_as_slice_mut(field), loads.col_as_slice(field));
-            for (&unknown, load) in self.unknown.iter().zip(load).filter(|(u, _)| **u != usize::MAX) {
-                reduced[unknown] = *load;
-            }
-        }
-        self.factor.solve_in_place(&mut reduced);
         let mut displacements = Mat::zeros(loads.nrows(), loads.ncols());
-        for field in 0..loads.ncols() {
-            let (displacement, reduced) = (displacements.col_as_slice_mut(field), reduced.col_as_slice(field));
-            for (&unknown, displacement) in self.unknown.iter().zip(displacement).filter(|(u, _)| **u != usize::MAX) {
-                *displacement = reduced[unknown];
-            }
-        }
+        self.solve_each(
+            loads.ncols(),
+            |field| loads.col_as_slice(field).iter().copied().enumerate(),
+            |place, first, values| {
+                for (lane, value) in values.iter().enumerate() {
+                    displacements[(place, first + lane)] = *value;
+                }
+            },
+        );
         displacements
     }
 
     /// The fields of unit loads at the contact nodes, along x₁ for all of them, then along x₂. The mesh is mirrored about
     /// x₁ = 0: those on the right are the mirror images of those on the left.
     pub fn unit_load_fields(&self, mesh: &Mesh) -> Fields {
-        let n = mesh.contact_nodes;
+        let (n, rows) = (mesh.contact_nodes, mesh.rows());
         let half = n.div_ceil(2);
-        let mut loads = Mat::zeros(2 * mesh.nodes(), 2 * half);
-        for (i, column) in mesh.window().enumerate().take(half) {
-            let node = mesh.node(column, 0);
-            loads[(2 * node, i)] = 1.0;
-            loads[(2 * node + 1, half + i)] = 1.0;
-        }
-        let left = self.solve(&loads);
         let mut fields = Mat::zeros(2 * mesh.nodes(), 2 * n);
-        let height = 2 * mesh.rows();
-        for direction in 0..2 {
-            for i in 0..half {
-                let solved = left.col_as_slice(direction * half + i);
-                fields.col_as_slice_mut(direction * n + i).copy_from_slice(solved);
-                // The mirror image of a load along x₁ is its opposite.
-                let sign = if direction == 0 { 1.0 } else { -1.0 };
-                let image = fields.col_as_slice_mut(direction * n + n - 1 - i);
-                for (image, solved) in image.rchunks_exact_mut(height).zip(solved.chunks_exact(height)) {
-                    for (image, solved) in image.chunks_exact_mut(2).zip(solved.chunks_exact(2)) {
-                        image[0] = sign * solved[0];
-                        image[1] = -sign * solved[1];
+        self.solve_each(
+            2 * half,
+            |field| {
+                let node = mesh.node(mesh.contact_column(field % half), 0);
+                [(2 * node + field / half, 1.0)]
+            },
+            |place, first, values| {
+                let (node, direction) = (place / 2, place % 2);
+                let opposite = mesh.node(mesh.columns() - 1 - node / rows, node % rows);
+                for (field, value) in (first..).zip(values) {
+                    let (loaded, i) = (field / half, field % half);
+                    // The mirror image of a load along x₁ is its opposite.
+                    let sign = if loaded == direction { 1.0 } else { -1.0 };
+                    fields[(2 * opposite + direction, loaded * n + n - 1 - i)] = sign * value;
+                    fields[(place, loaded * n + i)] = *value;
+                }
+            },
+        );
+        fields
+    }
+
+    /// Solves for so many fields, [`WIDTH`] of them at a time: `load` gives the places `2 * node + direction` that a field
+    /// loads and their loads; `take` receives a place, the first of some fields, and the displacements there in these.
+    fn solve_each<L: IntoIterator<Item = (usize, f64)>>(
+        &self,
+        fields: usize,
+        load: impl Fn(usize) -> L,
+        mut take: impl FnMut(usize, usize, &[f64]),
+    ) {
+        let mut solution = vec![[0.0; WIDTH]; self.unknowns];
+        for first in (0..fields).step_by(WIDTH) {
+            let lanes = WIDTH.min(fields - first);
+            solution.fill([0.0; WIDTH]);
+            for lane in 0..lanes {
+                for (place, value) in load(first + lane) {
+                    if let Some(row) = self.rows[place] {
+                        solution[row][lane] = value;
                     }
                 }
             }
+            self.factor.solve_in_place(&mut solution);
+            for (place, row) in self.rows.iter().enumerate() {
+                if let Some(row) = row {
+                    take(place, first, &solution[*row][..lanes]);
+                }
+            }
         }
-        fields
     }
 }
 

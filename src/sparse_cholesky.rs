@@ -13,11 +13,12 @@ use faer::sparse::linalg::cholesky::{
 };
 use faer::sparse::linalg::SupernodalThreshold;
 use faer::sparse::SparseColMat;
-use faer::{Mat, Par, Side};
+use faer::{Par, Side};
 
 /// Right-hand sides that are solved together: eight vector registers of AVX2.
-const WIDTH: usize = 32;
-type Row = [f64; WIDTH];
+pub const WIDTH: usize = 32;
+/// The values of one unknown in all of them.
+pub type Row = [f64; WIDTH];
 
 /// P A Pᵀ = L Lᵀ for the lower triangle of a symmetric positive definite A.
 #[derive(Debug)]
@@ -51,30 +52,16 @@ impl SparseCholesky {
         Some(SparseCholesky { symbolic, values })
     }
 
-    /// Solves A X = B in place, one right-hand side to a column.
-    pub fn solve_in_place(&self, fields: &mut Mat<f64>) {
-        let order = self.symbolic.perm().map(|permutation| permutation.arrays().0);
-        let place = |row: usize| order.map_or(row, |order| order[row]);
-        let mut rows = vec![[0.0; WIDTH]; fields.nrows()];
-        for first in (0..fields.ncols()).step_by(WIDTH) {
-            let lanes = WIDTH.min(fields.ncols() - first);
-            for (index, row) in rows.iter_mut().enumerate() {
-                for (lane, value) in row[..lanes].iter_mut().enumerate() {
-                    *value = fields[(place(index), first + lane)];
-                }
-            }
-            self.solve_rows(&mut rows);
-            for (index, row) in rows.iter().enumerate() {
-                for (lane, value) in row[..lanes].iter().enumerate() {
-                    fields[(place(index), first + lane)] = *value;
-                }
-            }
-        }
+    /// The row of an unknown in what [`SparseCholesky::solve_in_place`] solves: the order of the factor.
+    pub fn row_of(&self, unknown: usize) -> usize {
+        self.symbolic
+            .perm()
+            .map_or(unknown, |permutation| permutation.arrays().1[unknown])
     }
 
-    /// Forward with L, backward with Lᵀ. A supernode is a run of columns with one pattern: a dense triangle, and below
-    /// it a dense block whose rows lie at the places of the pattern.
-    fn solve_rows(&self, rows: &mut [Row]) {
+    /// Solves A X = B in place, rows in the order of the factor: forward with L, backward with Lᵀ. A supernode is a run of
+    /// columns with one pattern: a dense triangle, and below it a dense block whose rows lie at the places of the pattern.
+    pub fn solve_in_place(&self, rows: &mut [Row]) {
         let SymbolicCholeskyRaw::Supernodal(symbolic) = self.symbolic.raw() else {
             unreachable!("a supernodal factorisation was asked for");
         };
@@ -145,10 +132,10 @@ mod tests {
     use super::*;
     use faer::sparse::Triplet;
 
-    /// The five-point Laplacian plus one on a grid, with more right-hand sides than are solved at once.
+    /// The five-point Laplacian plus one on a grid.
     #[test]
     fn the_solution_satisfies_the_equations() {
-        let (side, fields) = (23, WIDTH + 5);
+        let side = 23;
         let n = side * side;
         let mut entries = Vec::new();
         for i in 0..n {
@@ -162,15 +149,19 @@ mod tests {
         }
         let matrix = SparseColMat::<usize, f64>::try_new_from_triplets(n, n, &entries).unwrap();
         let factor = SparseCholesky::new(&matrix).unwrap();
-        let right = Mat::from_fn(n, fields, |i, j| ((7 * i + 13 * j) % 11) as f64 - 5.0);
-        let mut solution = right.clone();
-        factor.solve_in_place(&mut solution);
-        for field in 0..fields {
-            let mut residual: Vec<f64> = (0..n).map(|i| right[(i, field)]).collect();
+        let right = |i: usize, field: usize| ((7 * i + 13 * field) % 11) as f64 - 5.0;
+        let mut rows = vec![[0.0; WIDTH]; n];
+        for i in 0..n {
+            rows[factor.row_of(i)] = std::array::from_fn(|field| right(i, field));
+        }
+        factor.solve_in_place(&mut rows);
+        for field in 0..WIDTH {
+            let solution = |i: usize| rows[factor.row_of(i)][field];
+            let mut residual: Vec<f64> = (0..n).map(|i| right(i, field)).collect();
             for entry in &entries {
-                residual[entry.row] -= entry.val * solution[(entry.col, field)];
+                residual[entry.row] -= entry.val * solution(entry.col);
                 if entry.row != entry.col {
-                    residual[entry.col] -= entry.val * solution[(entry.row, field)];
+                    residual[entry.col] -= entry.val * solution(entry.row);
                 }
             }
             assert!(residual.iter().all(|r| r.abs() < 1e-12), "{field}");

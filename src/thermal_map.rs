@@ -13,7 +13,7 @@ use crate::compliance::ThermalDisplacement;
 use crate::dense::{self, Arithmetic};
 use crate::heat::DepthBasis;
 use crate::mesh::Mesh;
-use nalgebra::{Cholesky, DMatrix, SymmetricEigen};
+use nalgebra::{Cholesky, DMatrix, DVector, SymmetricEigen};
 use std::ops::Range;
 
 /// Error of the compressed map relative to the largest displacement of a heated profile.
@@ -76,7 +76,7 @@ struct Moments {
 impl Moments {
     fn new(mesh: &Mesh, basis: &DepthBasis, exact: &ThermalDisplacement, diffusivity: f64, tolerance: f64) -> Moments {
         let (rows, m) = (mesh.rows(), basis.len());
-        let of_column = |column: usize| exact.columns(column * rows, rows);
+        let of_column = |column: usize| exact.rows(column * rows, rows).transpose();
         // Each profile counts by the displacement that it makes in the middle of the window.
         let middle = of_column(mesh.contact_column(mesh.contact_nodes / 2)) * &basis.modes;
         let mut profiles = heated_profiles(basis, diffusivity);
@@ -450,7 +450,5 @@ pub fn exact_displacement(
             temperature[mesh.node(column, row)] = basis.value(a, row);
         }
     }
-    let mut displacement = vec![0.0; exact.nrows()];
-    dense::multiply_add(exact, &temperature, 1.0, &mut displacement);
-    displacement
+    exact.tr_mul(&DVector::from_vec(temperature)).as_slice().to_vec()
 }

@@ -169,12 +169,10 @@ fn displacement_error(cells: usize) -> Result<f64> {
         }
     }
     for node in 0..mesh.nodes() {
-        let along_x = rail.thermal_load_x.row(node);
-        let along_y = rail.thermal_load_y.row(node);
-        for ((heated, x), (_, y)) in along_x.zip(along_y) {
+        for (heated, load) in rail.thermal_load.row(node) {
             let stress = THERMAL_STRESS * Exact::at(mesh.coordinates(heated)).temperature[0];
-            loads[(2 * node, 0)] += x * stress;
-            loads[(2 * node + 1, 0)] += y * stress;
+            loads[(2 * node, 0)] += load.x * stress;
+            loads[(2 * node + 1, 0)] += load.y * stress;
         }
     }
     let solution = rail.solve(&loads);
