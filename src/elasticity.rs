@@ -207,10 +207,10 @@ impl Elasticity {
         for first in (0..fields).step_by(WIDTH) {
             let lanes = WIDTH.min(fields - first);
             solution.fill([0.0; WIDTH]);
-            for lane in 0..lanes {
-                for (place, value) in load(first + lane) {
+            for field in first..first + lanes {
+                for (place, value) in load(field) {
                     if let Some(row) = self.rows[place] {
-                        solution[row][lane] = value;
+                        solution[row][field - first] = value;
                     }
                 }
             }

@@ -156,7 +156,7 @@ mod tests {
         }
         factor.solve_in_place(&mut rows);
         for field in 0..WIDTH {
-            let solution = |i: usize| rows[factor.row_of(i)][field];
+            let solution = |i: usize| rows[factor.row_of(i)].as_slice()[field];
             let mut residual: Vec<f64> = (0..n).map(|i| right(i, field)).collect();
             for entry in &entries {
                 residual[entry.row] -= entry.val * solution(entry.col);
