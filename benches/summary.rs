@@ -21,6 +21,8 @@ const FINE_STEPS: usize = 3_000;
 /// Instances on two threads.
 const INSTANCES: usize = 64;
 const ROUNDS: usize = 4;
+/// Rounds of [`two_threads`], a tenth of a second each.
+const SHORT_ROUNDS: usize = 50;
 
 /// Time this thread has computed, `s`.
 fn thread_time() -> f64 {
@@ -116,7 +118,7 @@ fn two_threads() -> f64 {
     let step = |runs: &mut [Run]| runs.iter_mut().for_each(|run| (0..20).for_each(|_| run.step()));
     let mut runs: Vec<Run> = (0..INSTANCES).map(|_| Run::new(61)).collect();
     let (mut one, mut two) = (f64::INFINITY, f64::INFINITY);
-    for _ in 0..2 * ROUNDS {
+    for _ in 0..SHORT_ROUNDS {
         let start = Instant::now();
         step(&mut runs);
         one = one.min(start.elapsed().as_secs_f64());
