@@ -27,8 +27,8 @@ struct Sums<T>(Vec<Vec<(usize, T)>>);
 
 impl<T: Copy + AddAssign> Sums<T> {
     fn new(rows: usize) -> Sums<T> {
-        // A node of the mesh has six to eight neighbours.
-        Sums(vec![Vec::with_capacity(9); rows])
+        // A node of the mesh has up to eight neighbours.
+        Sums((0..rows).map(|_| Vec::with_capacity(9)).collect())
     }
 
     fn add(&mut self, row: usize, column: usize, value: T) {
