@@ -21,6 +21,9 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
+//! One model serves any number of wheels with its parameters, on any number of threads: a wheel has its state, a thread its
+//! workspace.
+//!
 //! # The equations
 //!
 //! Units are SI throughout. x₁ points along the rail in the direction of travel, x₂ upward; the observer moves with the
