@@ -1,12 +1,12 @@
 //! What the interface costs: saving and restoring a state, its serialised form, and a step, each through the C functions of
-//! the shared library and natively, at default settings.
+//! the shared library and natively, and a directional derivative, at default settings.
 
 #![allow(unsafe_code, missing_docs)]
 
 mod interface;
 
 use criterion::{criterion_group, criterion_main, Criterion};
-use interface::common::{Api, OK};
+use interface::common::{reference, Api, OK};
 use interface::{inputs, instance, native, STEP};
 use std::hint::black_box;
 use std::ptr::null_mut;
@@ -65,6 +65,12 @@ fn step(c: &mut Criterion) {
             client.expect(OK, client.step(time, STEP));
             time += STEP;
         });
+    });
+    let (force, creepage) = (reference("traction_force"), reference("creepage"));
+    group.bench_function("directional derivative after it", |b| {
+        let mut value = 0.0;
+        // SAFETY: a live instance, one element each.
+        b.iter(|| unsafe { (api.directional_derivative)(client.component, &force, 1, &creepage, 1, &1.0, &mut value) });
     });
     let mut run = native();
     group.bench_function("natively", |b| b.iter(|| run.step(&inputs(), STEP).expect("a step")));

@@ -76,23 +76,16 @@ impl<'a> Linearisation<'a> {
         })
     }
 
-    /// One entry per row of [`OUTPUTS`], whose fields hold the derivatives with respect to the inputs.
+    /// Derivatives of all outputs with respect to the input in a row of [`INPUTS`].
     ///
     /// # Errors
     /// [`Error::SplitNotConverged`].
-    pub fn output_sensitivities(&mut self) -> Result<Vec<Inputs>> {
-        let mut sensitivities = vec![Inputs::ZERO; OUTPUTS.len()];
-        for input in INPUTS {
-            let mut direction = Inputs::ZERO;
-            (input.set)(&mut direction, 1.0);
-            let change = self.input_tangent(&direction);
-            let tangent = self.fields_tangent(&change)?;
-            let outputs = self.output_tangent(&change, &tangent);
-            for (row, output) in sensitivities.iter_mut().zip(OUTPUTS) {
-                (input.set)(row, (output.get)(&outputs));
-            }
-        }
-        Ok(sensitivities)
+    pub fn output_sensitivity(&mut self, input: usize) -> Result<Outputs> {
+        let mut direction = Inputs::ZERO;
+        (INPUTS[input].set)(&mut direction, 1.0);
+        let change = self.input_tangent(&direction);
+        let tangent = self.fields_tangent(&change)?;
+        Ok(self.output_tangent(&change, &tangent))
     }
 
     /// dV and d(ω r₀ − V).

@@ -313,19 +313,24 @@ impl Model {
         state.output_rates
     }
 
-    /// Derivatives of the outputs with respect to the inputs at the communication point, from the linearised discrete
-    /// equations of the last sub-step ([`crate::sensitivity`]): one entry per row of [`OUTPUTS`], whose fields hold the
-    /// derivatives with respect to the inputs.
+    /// Derivatives of the outputs with respect to inputs at the communication point, from the linearised discrete equations
+    /// of the last sub-step ([`crate::sensitivity`]): one entry for each of the given rows of [`crate::signals::INPUTS`].
     ///
     /// Held fixed are temperature, wear and totals at the beginning of that sub-step and its length; after
     /// initialisation, where no time has passed yet, temperature and wear themselves.
     ///
     /// # Errors
     /// A linear system that could not be solved.
-    pub fn output_sensitivities(&self, workspace: &mut Workspace, state: &State) -> Result<Vec<Inputs>> {
+    pub fn output_sensitivities(
+        &self,
+        workspace: &mut Workspace,
+        state: &State,
+        inputs: impl IntoIterator<Item = usize>,
+    ) -> Result<Vec<Outputs>> {
         let Workspace { scratch, trial } = workspace;
         trial.copy_from(&state.fields);
-        Linearisation::new(self.contact(&state.inputs, state.duration), trial, scratch)?.output_sensitivities()
+        let mut step = Linearisation::new(self.contact(&state.inputs, state.duration), trial, scratch)?;
+        inputs.into_iter().map(|input| step.output_sensitivity(input)).collect()
     }
 
     /// How the last step converged.

@@ -107,12 +107,14 @@ fn check(parameters: Parameters, inputs: Inputs, step: f64) -> usize {
         .step(&mut workspace, &mut state, &inputs, &Inputs::ZERO, step)
         .unwrap();
     assert_eq!(state.duration, step, "the step must not be divided");
-    let sensitivities = model.output_sensitivities(&mut workspace, &state).unwrap();
+    let sensitivities = model
+        .output_sensitivities(&mut workspace, &state, 0..INPUTS.len())
+        .unwrap();
     let mut compared = 0;
     for (row, input) in INPUTS.iter().enumerate() {
         let (differences, smooth) = difference(&model, &mut workspace, &before, &inputs, (row, step));
         for (index, output) in OUTPUTS.iter().enumerate() {
-            let exact = (input.get)(&sensitivities[index]);
+            let exact = (output.get)(&sensitivities[row]);
             let scale = output.nominal.max((output.get)(&state.outputs).abs()) / nominal(&model, row);
             if !smooth[index] {
                 continue;

@@ -7,6 +7,7 @@ use super::modes::Mode;
 use super::types::{Integer, Real, StatusKind, ValueReference, LAST_SUCCESSFUL_TIME};
 use super::variables::RealVariable;
 use crate::signals::{Inputs, INPUTS, OUTPUTS};
+use std::collections::BTreeMap;
 use std::mem::MaybeUninit;
 
 /// Room for rounding in times that a master adds up step by step: relative, some 10⁶ roundings.
@@ -153,20 +154,26 @@ impl Instance {
         for unknown in unknowns {
             output(*unknown)?;
         }
+        // Each input once, however often it is named.
+        let mut directions = BTreeMap::new();
         for (known, value) in knowns.iter().zip(direction) {
-            let name = INPUTS[input(*known)?].name;
+            let row = input(*known)?;
             if !value.is_finite() {
+                let name = INPUTS[row].name;
                 return Err(Failure::Direction { name, value: *value });
             }
+            *directions.entry(row).or_insert(0.0) += value;
         }
         let (Built { model, workspace }, state) = self.solved()?;
-        let rows = model.output_sensitivities(workspace, state).map_err(Failure::Model)?;
+        let sensitivities = model
+            .output_sensitivities(workspace, state, directions.keys().copied())
+            .map_err(Failure::Model)?;
         for (unknown, place) in unknowns.iter().zip(derivatives) {
-            let row = rows.get(output(*unknown)?).ok_or(Failure::NothingComputed)?;
-            let mut derivative = 0.0;
-            for (known, value) in knowns.iter().zip(direction) {
-                derivative += (INPUTS[input(*known)?].get)(row) * value;
-            }
+            let output = &OUTPUTS[output(*unknown)?];
+            let derivative = sensitivities
+                .iter()
+                .zip(directions.values())
+                .fold(0.0, |sum, (sensitivity, value)| sum + (output.get)(sensitivity) * value);
             place.write(derivative);
         }
         Ok(())
