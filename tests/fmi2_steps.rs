@@ -276,8 +276,25 @@ fn directional_derivatives_are_linear_in_the_direction() {
         let expected = 2.0 * first[row] - 3.0 * second[row];
         assert!((both[row] - expected).abs() <= 1e-12 * (first[row].abs() + second[row].abs()));
     }
+    // An input that is named again and again counts as often, and is solved for once.
+    let (often, direction) = ([knowns[0]; 1000], [1e-3; 1000]);
+    let mut value = f64::NAN;
+    // SAFETY: as many elements as are counted.
+    let status = unsafe {
+        (api.directional_derivative)(
+            client.component,
+            &unknowns[0],
+            1,
+            often.as_ptr(),
+            often.len(),
+            direction.as_ptr(),
+            &mut value,
+        )
+    };
+    client.expect(OK, status);
+    // A thousand roundings.
+    assert!((value - first[0]).abs() <= 1e-12 * first[0].abs());
     // A direction that is not finite is refused.
-    let mut value = 0.0;
     // SAFETY: one element each.
     let status = unsafe {
         (api.directional_derivative)(client.component, &unknowns[0], 1, &knowns[0], 1, &f64::NAN, &mut value)
