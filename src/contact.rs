@@ -96,7 +96,7 @@ impl Scratch {
             displacement: vec![0.0; n],
             exchange: vec![SurfaceExchange::default(); n],
             wear_rate: vec![0.0; n],
-            mode: vec![0.0; 3 * rail.basis.len()],
+            mode: vec![0.0; HeatMarch::scratch_len(&rail.basis)],
             moments: vec![0.0; rail.thermal_map.scratch_len()],
             mapped_flux: vec![0.0; n],
             iterate: vec![0.0; gathered(n)],

@@ -23,6 +23,9 @@ pub fn vectorised<R>(kernel: impl FnOnce(Arithmetic) -> R) -> R {
     )
 }
 
+/// Interleaved partial results of a loop, which the compiler keeps in two vector registers of AVX2.
+pub const LANES: usize = 8;
+
 /// How a machine computes a · b + c: in one instruction where it has one. A constant after inlining.
 #[derive(Debug, Clone, Copy)]
 pub struct Arithmetic {
@@ -60,10 +63,9 @@ impl Arithmetic {
         }
     }
 
-    /// Σ x y, in eight interleaved partial sums that the compiler keeps in vector registers.
+    /// Σ x y, in [`LANES`] interleaved partial sums.
     #[inline(always)]
     pub fn dot(self, x: &[f64], y: &[f64]) -> f64 {
-        const LANES: usize = 8;
         let mut sums = [0.0; LANES];
         let (x_blocks, y_blocks) = (x.chunks_exact(LANES), y.chunks_exact(LANES));
         let tail: f64 = x_blocks
@@ -248,7 +250,6 @@ fn lu_kernel(arithmetic: Arithmetic, a: &mut [f64], n: usize, pivots: &mut [usiz
 /// The first of the largest magnitudes; 0 where the first value is not a number.
 #[inline(always)]
 fn position_of_largest(values: &[f64]) -> usize {
-    const LANES: usize = 8;
     let mut sizes = [0.0; LANES];
     let (blocks, rest) = values.as_chunks::<LANES>();
     for block in blocks {

@@ -93,11 +93,11 @@ impl Elasticity {
     /// [`Error::StiffnessNotPositiveDefinite`]: above the Rayleigh speed the form is not coercive.
     pub fn new(mesh: &Mesh, lambda: f64, shear: f64, rho_v2: f64) -> Result<Elasticity> {
         let nodes = mesh.nodes();
-        let mut unknown = vec![usize::MAX; 2 * nodes];
+        let mut unknown = vec![None; 2 * nodes];
         let mut unknowns = 0;
         for node in (0..nodes).filter(|&n| !mesh.is_clamped(n)) {
             for direction in 0..2 {
-                unknown[2 * node + direction] = unknowns;
+                unknown[2 * node + direction] = Some(unknowns);
                 unknowns += 1;
             }
         }
@@ -114,9 +114,11 @@ impl Elasticity {
                     thermal_load.add(node_i, node_j, Vector2::from(grad[i]) * (measure / 3.0));
                     for a in 0..2 {
                         for b in 0..2 {
-                            let (row, column) = (unknown[2 * node_i + a], unknown[2 * node_j + b]);
+                            let (Some(row), Some(column)) = (unknown[2 * node_i + a], unknown[2 * node_j + b]) else {
+                                continue;
+                            };
                             // The upper triangle by rows is the lower one by columns.
-                            if row == usize::MAX || column == usize::MAX || column < row {
+                            if column < row {
                                 continue;
                             }
                             // σ(u):ε(v) = λ div u div v + 2γ ε(u):ε(v)
@@ -142,7 +144,7 @@ impl Elasticity {
         let factor = SparseCholesky::new(&matrix).ok_or(failed)?;
         let rows = unknown
             .into_iter()
-            .map(|unknown| (unknown != usize::MAX).then(|| factor.row_of(unknown)))
+            .map(|unknown| unknown.map(|unknown| factor.row_of(unknown)))
             .collect();
         Ok(Elasticity {
             inertia: inertia.compressed(),

@@ -6,7 +6,7 @@
 //! a = (aⁿ/Δt + |V|/Δx a_upstream + φ(0) q/(ρ c_p)) / (1/Δt + |V|/Δx + κ λ), so its surface temperature is linear in
 //! the surface flux q, and the surface condition (23) is one scalar equation a column.
 
-use crate::dense::{self, Arithmetic};
+use crate::dense::{self, Arithmetic, LANES};
 use crate::error::{Error, Result};
 use crate::friction;
 use crate::injection::{self, Solver};
@@ -195,8 +195,13 @@ pub struct Heated<'a> {
 }
 
 impl HeatMarch<'_> {
+    /// Values that [`HeatMarch::advance`] needs: three factors a mode.
+    pub fn scratch_len(basis: &DepthBasis) -> usize {
+        3 * basis.len()
+    }
+
     /// From the modal amplitudes `before` to the field `after` under the exchange at the contact nodes. The inflow column
-    /// of `after` holds what enters. `scratch` holds three values a mode.
+    /// of `after` holds what enters. `scratch` holds [`HeatMarch::scratch_len`] values.
     ///
     /// # Errors
     /// [`Error::SurfaceHeatNotConverged`].
@@ -327,7 +332,6 @@ fn carry_over(
     (carry, upstream): (&[f64], &[f64]),
     surface: &[f64],
 ) -> f64 {
-    const LANES: usize = 8;
     let mut sums = [0.0; LANES];
     let (blocks, rest) = own.as_chunks_mut::<LANES>();
     let whole = LANES * blocks.len();

@@ -10,7 +10,7 @@
 //!    the block what these leave is added from the moments themselves.
 
 use crate::compliance::ThermalDisplacement;
-use crate::dense::{self, Arithmetic};
+use crate::dense::{self, Arithmetic, LANES};
 use crate::heat::DepthBasis;
 use crate::mesh::Mesh;
 use nalgebra::{Cholesky, DMatrix, DVector, SymmetricEigen};
@@ -19,8 +19,6 @@ use std::ops::Range;
 /// Error of the compressed map relative to the largest displacement of a heated profile.
 pub const TOLERANCE: f64 = 1e-4;
 
-/// Moments of a column, and all effects, come in multiples of this: the partial sums of a product.
-const LANES: usize = 8;
 /// Nodes within so many node spacings of a block are next to it.
 const NEAR: f64 = 4.0;
 
@@ -28,7 +26,7 @@ const NEAR: f64 = 4.0;
 #[derive(Debug, Clone)]
 pub struct ThermalMap {
     modes: usize,
-    /// Number of moments of a column, a multiple of [`LANES`].
+    /// Number of moments of a column, a multiple of [`LANES`]: the partial sums of a product.
     moments: usize,
     /// Number of effects of all blocks, padded to [`LANES`].
     effects: usize,

@@ -176,6 +176,51 @@ fn callbacks_and_strings_are_copied() {
     assert_eq!(journal.take()[0].instance_name, "wheel");
 }
 
+/// With right arguments, so that the null instance alone is the error; `fmi2_probes` has wrong ones beside it.
+#[test]
+fn a_null_instance_is_an_error_and_nothing_to_free() {
+    let api = Api::load();
+    let (mut real, mut integer, mut string, mut handle, mut size) = (0.0, 0, null(), null_mut(), 0);
+    let c = null_mut();
+    // SAFETY: valid places for results.
+    unsafe {
+        (api.free_instance)(c);
+        let statuses = [
+            (api.set_debug_logging)(c, 1, 0, null()),
+            (api.setup_experiment)(c, 0, 0.0, 0.0, 0, 0.0),
+            (api.enter_initialization)(c),
+            (api.exit_initialization)(c),
+            (api.terminate)(c),
+            (api.reset)(c),
+            (api.get_real)(c, null(), 0, null_mut()),
+            (api.get_integer)(c, null(), 0, null_mut()),
+            (api.get_boolean)(c, null(), 0, null_mut()),
+            (api.get_string)(c, null(), 0, null_mut()),
+            (api.set_real)(c, null(), 0, null()),
+            (api.set_integer)(c, null(), 0, null()),
+            (api.set_boolean)(c, null(), 0, null()),
+            (api.set_string)(c, null(), 0, null()),
+            (api.get_state)(c, &mut handle),
+            (api.set_state)(c, handle),
+            (api.free_state)(c, &mut handle),
+            (api.serialized_size)(c, handle, &mut size),
+            (api.serialize)(c, handle, null_mut(), 0),
+            (api.deserialize)(c, null(), 0, &mut handle),
+            (api.directional_derivative)(c, null(), 0, null(), 0, null(), null_mut()),
+            (api.set_input_derivatives)(c, null(), 0, null(), null()),
+            (api.get_output_derivatives)(c, null(), 0, null(), null_mut()),
+            (api.do_step)(c, 0.0, 1.0, 1),
+            (api.cancel_step)(c),
+            (api.get_status)(c, 0, &mut integer),
+            (api.get_real_status)(c, 2, &mut real),
+            (api.get_integer_status)(c, 0, &mut integer),
+            (api.get_boolean_status)(c, 3, &mut integer),
+            (api.get_string_status)(c, 1, &mut string),
+        ];
+        assert_eq!(statuses, [ERROR; 30]);
+    }
+}
+
 /// Runs one call on a fresh instance in *stepComplete* and expects fmi2Error with a message that names the argument.
 #[track_caller]
 fn expect_error(api: &Api, reason: &str, call: impl FnOnce(&Client) -> c_int) {

@@ -15,13 +15,17 @@ fn model() -> Model {
     .unwrap()
 }
 
-/// Twenty steps of a wheel under the given load.
-fn run(model: &Model, normal_load: f64) -> State {
-    let inputs = Inputs {
+fn inputs(normal_load: f64) -> Inputs {
+    Inputs {
         creepage: 0.01,
         normal_load,
         ..Inputs::default()
-    };
+    }
+}
+
+/// Twenty steps of a wheel under the given load.
+fn run(model: &Model, normal_load: f64) -> State {
+    let inputs = inputs(normal_load);
     let mut workspace = model.workspace();
     let mut state = model.initial_state(&mut workspace, &inputs).unwrap();
     for _ in 0..20 {
@@ -52,11 +56,7 @@ fn wheels_in_turn_share_model_and_workspace() {
     let shared = model();
     let mut workspace = shared.workspace();
     let loads = [30e3, 60e3];
-    let inputs = loads.map(|normal_load| Inputs {
-        creepage: 0.01,
-        normal_load,
-        ..Inputs::default()
-    });
+    let inputs = loads.map(inputs);
     let mut states = inputs.map(|inputs| shared.initial_state(&mut workspace, &inputs).unwrap());
     for _ in 0..20 {
         for (state, inputs) in states.iter_mut().zip(&inputs) {

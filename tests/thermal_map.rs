@@ -74,7 +74,7 @@ proptest! {
                     surface: &mut vec![0.0; rail.mesh.columns()],
                     flux: &mut vec![0.0; 61],
                 },
-                &mut vec![0.0; 3 * rail.basis.len()],
+                &mut vec![0.0; HeatMarch::scratch_len(&rail.basis)],
             ).unwrap();
             std::mem::swap(&mut before, &mut after);
         }

@@ -283,7 +283,7 @@ fn temperature_error(contact_nodes: usize, cells: usize, speed: f64) -> Result<f
             surface: &mut vec![0.0; mesh.columns()],
             flux: &mut vec![0.0; contact_nodes],
         },
-        &mut vec![0.0; 3 * basis.len()],
+        &mut vec![0.0; HeatMarch::scratch_len(&basis)],
     )?;
 
     let (mut square, mut total) = (0.0, 0.0);

@@ -109,7 +109,7 @@ fn march(parameters: &Parameters) -> Result<Vec<(f64, f64)>> {
             surface: &mut surface,
             flux: &mut vec![0.0; mesh.contact_nodes],
         },
-        &mut vec![0.0; 3 * basis.len()],
+        &mut vec![0.0; HeatMarch::scratch_len(&basis)],
     )?;
     Ok((0..mesh.contact_nodes)
         .map(|node| (mesh.contact_position(node), surface[mesh.contact_column(node)]))
