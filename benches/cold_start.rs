@@ -5,7 +5,7 @@
 
 mod braking;
 
-use criterion::{criterion_group, criterion_main, BenchmarkId, Criterion};
+use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use wheelrail::wheel_rail::Model;
 
 fn cold_start(c: &mut Criterion) {

@@ -5,9 +5,9 @@
 
 mod interface;
 
-use criterion::{criterion_group, criterion_main, Criterion};
-use interface::common::{reference, Api, OK};
-use interface::{inputs, instance, native, STEP};
+use criterion::{Criterion, criterion_group, criterion_main};
+use interface::common::{Api, OK, reference};
+use interface::{STEP, inputs, instance, native};
 use std::hint::black_box;
 use std::ptr::null_mut;
 use wheelrail::wheel_rail::State;

@@ -6,7 +6,7 @@
 mod braking;
 
 use braking::Run;
-use criterion::{criterion_group, criterion_main, Criterion};
+use criterion::{Criterion, criterion_group, criterion_main};
 
 fn step(c: &mut Criterion) {
     let mut group = c.benchmark_group("step");

@@ -4,7 +4,7 @@
 //! a hash of everything else in the description.
 
 use crate::fmi2::logging::Category;
-use crate::fmi2::variables::{variables, Causality, Kind, Variability, Variable};
+use crate::fmi2::variables::{Causality, Kind, Variability, Variable, variables};
 use quick_xml::se::{SeError, Serializer};
 use serde::Serialize;
 
@@ -255,7 +255,9 @@ impl ModelDescription {
                 step_size: number(1e-3),
             },
             model_structure: ModelStructure::of(&table),
-            model_variables: ModelVariables { variables: table.into_iter().map(ScalarVariable::from).collect() },
+            model_variables: ModelVariables {
+                variables: table.into_iter().map(ScalarVariable::from).collect(),
+            },
         }
     }
 }

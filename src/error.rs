@@ -62,7 +62,9 @@ pub enum Error {
         unknowns: usize,
     },
     /// The normal contact problem did not reach its tolerance.
-    #[error("the normal contact solver ({solver}) stopped after {iterations} iterations at a residual of {residual:e} (relative; {tolerance:e} is required)")]
+    #[error(
+        "the normal contact solver ({solver}) stopped after {iterations} iterations at a residual of {residual:e} (relative; {tolerance:e} is required)"
+    )]
     NormalNotConverged {
         /// Name of the method.
         solver: &'static str,
@@ -74,7 +76,9 @@ pub enum Error {
         tolerance: f64,
     },
     /// The friction problem did not reach its tolerance.
-    #[error("the tangential Newton solver stopped after {iterations} iterations at a residual of {residual:e} (relative; {tolerance:e} is required)")]
+    #[error(
+        "the tangential Newton solver stopped after {iterations} iterations at a residual of {residual:e} (relative; {tolerance:e} is required)"
+    )]
     TangentialNotConverged {
         /// Iterations done.
         iterations: usize,
@@ -84,7 +88,9 @@ pub enum Error {
         tolerance: f64,
     },
     /// Normal and tangential problem did not come to rest.
-    #[error("the coupling of normal and tangential contact stopped after {iterations} sweeps at a change of {residual:e} (relative; {tolerance:e} is required)")]
+    #[error(
+        "the coupling of normal and tangential contact stopped after {iterations} sweeps at a change of {residual:e} (relative; {tolerance:e} is required)"
+    )]
     MechanicsNotConverged {
         /// Sweeps done.
         iterations: usize,
@@ -94,7 +100,9 @@ pub enum Error {
         tolerance: f64,
     },
     /// The operator split between mechanics and heat did not come to rest.
-    #[error("the thermo-mechanical operator split stopped after {iterations} iterations at a change of {residual:e} (relative; {tolerance:e} is required)")]
+    #[error(
+        "the thermo-mechanical operator split stopped after {iterations} iterations at a change of {residual:e} (relative; {tolerance:e} is required)"
+    )]
     SplitNotConverged {
         /// Iterations done.
         iterations: usize,
@@ -104,7 +112,9 @@ pub enum Error {
         tolerance: f64,
     },
     /// The scalar surface condition of one column has no bracketed root.
-    #[error("the surface heat condition at x = {position} m stopped after {iterations} Newton iterations at a residual of {residual:e} K")]
+    #[error(
+        "the surface heat condition at x = {position} m stopped after {iterations} Newton iterations at a residual of {residual:e} K"
+    )]
     SurfaceHeatNotConverged {
         /// Position of the column, `m`.
         position: f64,
@@ -122,7 +132,9 @@ pub enum Error {
         residual: f64,
     },
     /// The contact reaches the end of the window that was sized for `largest_load`.
-    #[error("the contact reaches the end of the contact window (half-width {half_width} m): largest_load = {largest_load} N is too small for this penetration, wear or thermal bulge")]
+    #[error(
+        "the contact reaches the end of the contact window (half-width {half_width} m): largest_load = {largest_load} N is too small for this penetration, wear or thermal bulge"
+    )]
     ContactLeavesWindow {
         /// Half-width of the window, `m`.
         half_width: f64,

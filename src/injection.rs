@@ -6,19 +6,19 @@ use crate::error::{Error, Result};
 /// The solvers of a step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Solver {
-    /// [`crate::normal`], active set.
+    /// [`crate::mechanics::normal`], active set.
     ActiveSet,
-    /// [`crate::normal`], linearisation.
+    /// [`crate::mechanics::normal`], linearisation.
     Pschenichnyj,
-    /// [`crate::tangential`].
+    /// [`crate::mechanics::tangential`].
     Tangential,
     /// [`crate::mechanics`].
     Mechanics,
-    /// [`crate::contact`].
+    /// [`crate::contact::line::split`].
     Split,
     /// [`crate::heat`].
     SurfaceHeat,
-    /// [`crate::rim`].
+    /// [`crate::contact::rim`].
     WheelHeat,
 }
 

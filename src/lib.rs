@@ -31,16 +31,16 @@
 //!
 //! | | equation | what | unit | where |
 //! |---|---|---|---|---|
-//! | (12), (13) | μ = μ₀ up to θ₀, linear to μ_F at θ_F, μ_F beyond | friction coefficient (the default law) | 1 | [`friction`] |
-//! | (16) | s = −V ∂u₁/∂x₁ + (ω r₀ − V) | slip velocity of the rail relative to the wheel, quasistatic | m/s | [`tangential`] |
-//! | (18), (27) | div σ(u) − ρV² u,₁₁ − α(3λ+2γ) ∇θ = 0 in Ω, u = 0 on Γ₀ | displacement of the rail | N/m³ | [`elasticity`], [`compliance`], [`thermal_map`] |
-//! | (9), (22) | u₂ + g − W ≤ 0, p ≥ 0, p (u₂ + g − W) = 0, g = δ − r₀ + √(r₀² − x₁²) | contact | m, Pa | [`contact`] |
-//! | (37) | min ½ pᵀC p − (b + δ)ᵀp, p ≥ 0 | the discrete contact problem | scaled | [`normal`] |
-//! | (10), (30) | τ = −μ(θ) p (2/π) arctan(s/ε) | friction | Pa | [`friction`], [`tangential`] |
-//! | (31) | (37) for given τ ↔ (30) for given p | mechanics for given temperature and wear | | [`mechanics`] |
-//! | (19) | ∂θ/∂t − V ∂θ/∂x₁ = κ ∂²θ/∂x₂² in Ω | temperature rise of the rail | K/s | [`heat`] |
-//! | (23) | κ ρ c_p ∂θ/∂n = ᾱ (\|τ s\| − k ρ c_p θ \|s\| p − (θ − θ_w) p / r) on Γ_C | friction power, heat carried off by debris, conduction into the wheel at θ_w | W/m² | [`heat`] |
-//! | (11), (24) | ∂W/∂t − V ∂W/∂x₁ = k \|s\| p | Archard wear | m/s | [`wear`] |
+//! | (12), (13) | μ = μ₀ up to θ₀, linear to μ_F at θ_F, μ_F beyond | friction coefficient (the default law) | 1 | `friction` |
+//! | (16) | s = −V ∂u₁/∂x₁ + (ω r₀ − V) | slip velocity of the rail relative to the wheel, quasistatic | m/s | `mechanics::tangential` |
+//! | (18), (27) | div σ(u) − ρV² u,₁₁ − α(3λ+2γ) ∇θ = 0 in Ω, u = 0 on Γ₀ | displacement of the rail | N/m³ | `body`, `heat::thermal_map` |
+//! | (9), (22) | u₂ + g − W ≤ 0, p ≥ 0, p (u₂ + g − W) = 0, g = δ − r₀ + √(r₀² − x₁²) | contact | m, Pa | `contact::line` |
+//! | (37) | min ½ pᵀC p − (b + δ)ᵀp, p ≥ 0 | the discrete contact problem | scaled | `mechanics::normal` |
+//! | (10), (30) | τ = −μ(θ) p (2/π) arctan(s/ε) | friction | Pa | `friction::coulomb`, `mechanics::tangential` |
+//! | (31) | (37) for given τ ↔ (30) for given p | mechanics for given temperature and wear | | `mechanics` |
+//! | (19) | ∂θ/∂t − V ∂θ/∂x₁ = κ ∂²θ/∂x₂² in Ω | temperature rise of the rail | K/s | `heat::march` |
+//! | (23) | κ ρ c_p ∂θ/∂n = ᾱ (\|τ s\| − k ρ c_p θ \|s\| p − (θ − θ_w) p / r) on Γ_C | friction power, heat carried off by debris, conduction into the wheel at θ_w | W/m² | `heat::march` |
+//! | (11), (24) | ∂W/∂t − V ∂W/∂x₁ = k \|s\| p | Archard wear | m/s | `wear` |
 //!
 //! Where the paper is silent or wrong as printed, the code differs from it: wear W ≥ 0 is positive; the bracket of (23) is
 //! closed such that conduction cools a hot rail; the local slip speed \|s\| stands where (23) and (24) print V; (30) has the
@@ -66,47 +66,31 @@
 //!
 //! # Reading order
 //!
-//! 1. [`parameters`] and [`signals`]: every quantity that goes in and out, with unit, default, range and source.
-//! 2. [`mesh`], [`elasticity`], [`sparse_cholesky`], [`compliance`], [`elastic_wheel`], [`thermal_map`], together [`rail`]: what
-//!    is computed once; after it, no sparse system is solved.
-//! 3. [`friction`], [`normal`], [`tangential`], [`mechanics`]: tractions for given temperature and wear.
-//! 4. [`transport`], [`heat`], [`wear`], [`rim`]: temperature and wear of rail and wheel for given tractions; [`incoming`]:
-//!    the rail that the wheel ahead has left.
-//! 5. [`contact`]: the operator split over both, one implicit step over the [`fields`]; [`acceleration`] for where it does
-//!    not contract.
-//! 6. [`wheel_rail`]: the stepped model, [`outputs`] and [`profiles`] from its fields, [`sensitivity`] for its derivatives.
-//! 7. [`verification`]: the closed forms and published numbers that all this is held against.
-//! 8. [`description`] and [`fmi2`]: the same model as a co-simulation unit. Nothing above knows of FMI.
+//! 1. `parameters` and `signals`: every quantity that goes in and out, with unit, default, range and source.
+//! 2. `body`: mesh, elasticity and compliance of rail and wheel. What is computed once; after it, no sparse system is solved.
+//! 3. `friction`: the laws of μ(θ), and Coulomb's law. `mechanics`: tractions for given temperature and wear.
+//! 4. `transport`, `heat`, `wear`: temperature and wear of the rail for given tractions; `heat::incoming`: the rail that the
+//!    wheel ahead has left.
+//! 5. `contact`: one implicit step. `contact::line` is the operator split over mechanics, heat and wear and its
+//!    derivatives; `contact::rim` is the wheel's temperature and wear, `contact::outputs` what all this sums up to.
+//! 6. `wheel_rail`: the stepped model.
+//! 7. `verification`: the closed forms and published numbers that all this is held against.
+//! 8. `fmi2`: the same model as a co-simulation unit. Nothing above knows of FMI.
 //!
-//! [`dense`] holds the small kernels of a step, [`error`] what can go wrong, [`injection`] faults for tests.
+//! `numerics` holds methods that know nothing of contact, `error` what can go wrong.
 
-pub mod acceleration;
-pub mod compliance;
+pub mod body;
 pub mod contact;
-pub mod dense;
 pub mod description;
-pub mod elastic_wheel;
-pub mod elasticity;
 pub mod error;
-pub mod fields;
 pub mod fmi2;
 pub mod friction;
 pub mod heat;
-pub mod incoming;
 pub mod injection;
 pub mod mechanics;
-pub mod mesh;
-pub mod normal;
-pub mod outputs;
+pub mod numerics;
 pub mod parameters;
-pub mod profiles;
-pub mod rail;
-pub mod rim;
-pub mod sensitivity;
 pub mod signals;
-pub mod sparse_cholesky;
-pub mod tangential;
-pub mod thermal_map;
 pub mod transport;
 pub mod verification;
 pub mod wear;

@@ -1,7 +1,7 @@
 //! What goes into a step and what comes out of it: names, units, ranges and descriptions.
 
 use crate::error::Result;
-use crate::parameters::{check_range, Parameters, SlipSource};
+use crate::parameters::{Parameters, SlipSource, check_range};
 use serde::{Deserialize, Serialize};
 
 /// The continuous inputs at one instant.
@@ -19,7 +19,7 @@ pub struct Inputs {
     pub friction_scale: f64,
     /// Ambient temperature, `K`; the rail's and the wheel's far away from the contact.
     pub ambient_temperature: f64,
-    /// Temperature of the rail's skin where it enters, `K` ([`crate::incoming`]).
+    /// Temperature of the rail's skin where it enters, `K` ([`crate::heat::incoming`]).
     pub incoming_temperature: f64,
     /// Wear depth of the rail where it enters, `m`.
     pub incoming_wear_depth: f64,
@@ -66,13 +66,13 @@ pub struct Outputs {
     pub friction_energy: f64,
     /// Distance ∫|V| dt rolled since the start, `m`.
     pub distance: f64,
-    /// Temperature T_w of the wheel's rim, `K` ([`crate::rim`]).
+    /// Temperature T_w of the wheel's rim, `K` ([`crate::contact::rim`]).
     pub wheel_temperature: f64,
     /// Heat flowing into the wheel through the contact, `W`.
     pub wheel_heat_flow: f64,
     /// Radius that the wheel has lost by wear since the start, `m`.
     pub wheel_wear_depth: f64,
-    /// Temperature of the rail's skin where it leaves, `K` ([`crate::incoming`]).
+    /// Temperature of the rail's skin where it leaves, `K` ([`crate::heat::incoming`]).
     pub leaving_temperature: f64,
     /// Wear depth of the rail where it leaves, `m`.
     pub leaving_wear_depth: f64,

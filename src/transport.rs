@@ -41,11 +41,7 @@ impl<'a> Upwind<'a> {
 
     /// The column where material enters: essential conditions, not part of the march.
     pub fn inflow(&self) -> usize {
-        if self.speed >= 0.0 {
-            self.x.len() - 1
-        } else {
-            0
-        }
+        if self.speed >= 0.0 { self.x.len() - 1 } else { 0 }
     }
 
     /// The column where material leaves.

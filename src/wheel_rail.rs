@@ -1,19 +1,19 @@
 //! The stepped model: inputs in, state advanced, outputs out. It knows nothing of FMI.
 
-use crate::contact::{Conditions, Contact, Scratch};
+use crate::contact::line::fields::{Fields, Trend};
+use crate::contact::line::rail::Rail;
+use crate::contact::line::sensitivity::Linearisation;
+use crate::contact::line::split::{Conditions, Contact, Scratch};
+use crate::contact::outputs;
+use crate::contact::rim;
 use crate::error::{Error, Result};
-use crate::fields::{Fields, Trend};
 use crate::friction;
-use crate::outputs;
 use crate::parameters::Parameters;
-use crate::rail::Rail;
-use crate::rim;
-use crate::sensitivity::Linearisation;
-use crate::signals::{Inputs, Outputs, OUTPUTS};
+use crate::signals::{Inputs, OUTPUTS, Outputs};
 use serde::{Deserialize, Serialize};
 
-pub use crate::contact::Convergence;
-pub use crate::profiles::{Profiles, DEPTH_POINTS, PROFILE_POINTS};
+pub use crate::contact::line::profiles::{DEPTH_POINTS, PROFILE_POINTS, Profiles};
+pub use crate::contact::line::split::Convergence;
 
 /// A change of the inputs by more than this share of their scale is a jump: the step that follows it is divided.
 const JUMP: f64 = 0.2;
@@ -314,7 +314,7 @@ impl Model {
     }
 
     /// Derivatives of the outputs with respect to inputs at the communication point, from the linearised discrete equations
-    /// of the last sub-step ([`crate::sensitivity`]): one entry for each of the given rows of [`crate::signals::INPUTS`].
+    /// of the last sub-step ([`crate::contact::line::sensitivity`]): one entry for each of the given rows of [`crate::signals::INPUTS`].
     ///
     /// Held fixed are temperature, wear and totals at the beginning of that sub-step and its length; after
     /// initialisation, where no time has passed yet, temperature and wear themselves.

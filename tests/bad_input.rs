@@ -1,8 +1,8 @@
 //! Values that cannot be: the error names the variable, the value and what is allowed, and nothing else changes.
 
 use wheelrail::error::Error;
-use wheelrail::parameters::{FrictionLaw, Parameters, SlipSource, INTEGER_PARAMETERS, REAL_PARAMETERS};
-use wheelrail::signals::{Inputs, INPUTS};
+use wheelrail::parameters::{FrictionLaw, INTEGER_PARAMETERS, Parameters, REAL_PARAMETERS, SlipSource};
+use wheelrail::signals::{INPUTS, Inputs};
 use wheelrail::verification::Run;
 use wheelrail::wheel_rail::Model;
 

@@ -1,9 +1,9 @@
 //! The compliance at speed V is carried to first order in V², C(V) ≈ C(0) + ρV² Zᵀ K₁ Z. The next term of the series is
 //! (ρV²)² Zᵀ K₁ S⁻¹ K₁ Z, so that the relative error is of order (V/c_R)⁴: 1e-6 at 100 m/s.
 
-use wheelrail::compliance::{self, Scales};
-use wheelrail::elasticity::Elasticity;
-use wheelrail::mesh::Mesh;
+use wheelrail::body::compliance::{self, Scales};
+use wheelrail::body::elasticity::Elasticity;
+use wheelrail::body::mesh::Mesh;
 use wheelrail::parameters::{Parameters, Wheel};
 
 /// Largest error of a block relative to its largest entry at speed V [m/s], against the refactorised form.

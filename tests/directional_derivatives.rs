@@ -6,7 +6,7 @@
 mod common;
 mod random;
 
-use common::{reference, Api, Client, Handle, OK};
+use common::{Api, Client, Handle, OK, reference};
 use random::Random;
 use wheelrail::parameters::Parameters;
 use wheelrail::signals::{INPUTS, OUTPUTS};
@@ -178,7 +178,9 @@ fn directional_derivatives_are_the_differences_of_a_rolled_back_step() {
             }
         }
     }
-    println!("{compared} derivatives compared, {corners} at corners left out; largest relative error {worst:.1e} over the {large} that are not small");
+    println!(
+        "{compared} derivatives compared, {corners} at corners left out; largest relative error {worst:.1e} over the {large} that are not small"
+    );
     println!("points in stick (more than 0.8 of the contact), partial slip, sliding: {regimes:?}");
     assert!(regimes.iter().all(|count| *count >= 3), "{regimes:?}");
     assert!(compared > 2 * corners, "{compared} {corners}");

@@ -5,9 +5,9 @@
 
 mod common;
 
-use common::{library_path, Api, Client, DISCARD, ERROR, OK};
+use common::{Api, Client, DISCARD, ERROR, OK, library_path};
 use libloading::Library;
-use wheelrail::injection::{diverge, Solver};
+use wheelrail::injection::{Solver, diverge};
 use wheelrail::parameters::{NormalSolver, Parameters};
 use wheelrail::signals::Inputs;
 use wheelrail::wheel_rail::Model;

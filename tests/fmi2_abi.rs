@@ -4,8 +4,8 @@
 
 mod common;
 
-use common::{callbacks, guid, reference, Api, Client, Journal, DISCARD, ERROR, FUNCTIONS, OK};
-use std::ffi::{c_int, CStr, CString};
+use common::{Api, Client, DISCARD, ERROR, FUNCTIONS, Journal, OK, callbacks, guid, reference};
+use std::ffi::{CStr, CString, c_int};
 use std::ptr::{null, null_mut};
 use wheelrail::fmi2::types::CallbackFunctions;
 

@@ -1,10 +1,10 @@
 //! The model description: it is the one that is checked in, and it keeps the rules that no validator looks at.
 
-use quick_xml::events::{BytesStart, Event};
 use quick_xml::Reader;
+use quick_xml::events::{BytesStart, Event};
 use std::collections::{BTreeMap, HashMap, HashSet};
 use wheelrail::description::model_description;
-use wheelrail::fmi2::{guid_of, GUID};
+use wheelrail::fmi2::{GUID, guid_of};
 use wheelrail::parameters::Parameters;
 
 type Attributes = BTreeMap<String, String>;
@@ -140,9 +140,11 @@ fn header_and_capability_flags_are_as_specified() {
     ] {
         assert_eq!(flags[name], "false", "{name}");
     }
-    assert!(elements
-        .iter()
-        .all(|element| !element.attributes.contains_key("canHandleMultipleSetPerTimeInstant")));
+    assert!(
+        elements
+            .iter()
+            .all(|element| !element.attributes.contains_key("canHandleMultipleSetPerTimeInstant"))
+    );
     assert!(elements.iter().all(|element| element.path != "ModelExchange"));
 }
 

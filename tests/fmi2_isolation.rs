@@ -6,10 +6,10 @@
 
 mod common;
 
-use common::{reference, Api, Client, Component, ERROR, OK};
+use common::{Api, Client, Component, ERROR, OK, reference};
 use std::collections::BTreeMap;
-use std::ffi::{c_int, CStr, CString, OsString};
-use std::fs::{read_dir, File};
+use std::ffi::{CStr, CString, OsString, c_int};
+use std::fs::{File, read_dir};
 use std::io::Read;
 use std::path::PathBuf;
 
@@ -123,9 +123,11 @@ fn the_host_is_left_as_it_was() {
     unsafe { std::arch::asm!("ldmxcsr [{}]", in(reg) &flushing, options(nostack, readonly)) };
     let client = Client::running(&api, &[("creepage", 0.01)]);
     client.expect(OK, client.step(0.0, 0.01));
-    assert!(client
-        .outputs()
-        .into_iter()
-        .all(|bits| f64::from_bits(bits).is_finite()));
+    assert!(
+        client
+            .outputs()
+            .into_iter()
+            .all(|bits| f64::from_bits(bits).is_finite())
+    );
     assert_eq!(Surroundings::now().vector_control, flushing);
 }

@@ -4,8 +4,8 @@
 
 mod common;
 
-use common::{Api, Client, Message, DISCARD, ERROR, OK};
-use std::ffi::{c_char, c_int, CStr};
+use common::{Api, Client, DISCARD, ERROR, Message, OK};
+use std::ffi::{CStr, c_char, c_int};
 
 /// A short life with nothing wrong in it.
 fn good_life(client: &Client) {
@@ -113,9 +113,11 @@ fn a_message_is_never_a_format_and_has_no_trailing_newline() {
         client.expect(ERROR, set_debug_logging(&client, true, &[name]));
     }
     let messages = client.journal.take();
-    assert!(messages
-        .iter()
-        .all(|message| message.format == "%s" && message.instance_name == "wheel"));
+    assert!(
+        messages
+            .iter()
+            .all(|message| message.format == "%s" && message.instance_name == "wheel")
+    );
     assert!(messages.iter().all(|message| !message.text.ends_with('\n')));
     assert!(messages[0].text.contains("%s%n%d"), "{messages:?}");
     assert!(

@@ -7,8 +7,8 @@
 
 mod common;
 
-use common::{callbacks, guid, reference, Api, Client, Handle, Journal, DISCARD, ERROR, OK, WARNING};
-use std::ffi::{c_char, c_int, CStr, CString};
+use common::{Api, Client, DISCARD, ERROR, Handle, Journal, OK, WARNING, callbacks, guid, reference};
+use std::ffi::{CStr, CString, c_char, c_int};
 use std::process::{Command, Stdio};
 use std::ptr::{dangling_mut, null, null_mut};
 use std::time::{Duration, Instant};
@@ -44,10 +44,12 @@ fn discard(client: &Client, status: c_int) {
 #[track_caller]
 fn advance(client: &Client, time: f64) {
     client.expect(OK, client.step(time, 0.01));
-    assert!(client
-        .outputs()
-        .into_iter()
-        .all(|bits| f64::from_bits(bits).is_finite()));
+    assert!(
+        client
+            .outputs()
+            .into_iter()
+            .all(|bits| f64::from_bits(bits).is_finite())
+    );
 }
 
 /// *stepComplete*, with a wheel that slips.

@@ -7,13 +7,13 @@
 mod calls;
 mod common;
 
-use calls::{any_call, Call, Odd};
-use common::{callbacks, guid, Api, Client, Handle, Journal, DISCARD, ERROR, FUNCTIONS, OK, WARNING};
+use calls::{Call, Odd, any_call};
+use common::{Api, Client, DISCARD, ERROR, FUNCTIONS, Handle, Journal, OK, WARNING, callbacks, guid};
 use proptest::collection::vec;
 use proptest::prelude::*;
 use proptest::test_runner::TestRunner;
 use std::cell::RefCell;
-use std::ffi::{c_char, c_int, CString};
+use std::ffi::{CString, c_char, c_int};
 use std::num::FpCategory;
 use std::ptr::{null, null_mut};
 use std::time::Instant;
@@ -273,11 +273,7 @@ impl Master<'_> {
     /// A call with null pointers and absurd counts; its status, where it has one.
     fn odd(&mut self, odd: &Odd) -> Option<c_int> {
         fn or_null<T>(odd: &Odd, bit: u8, pointer: *const T) -> *const T {
-            if odd.nulls >> bit & 1 == 1 {
-                null()
-            } else {
-                pointer
-            }
+            if odd.nulls >> bit & 1 == 1 { null() } else { pointer }
         }
         fn or_null_mut<T>(odd: &Odd, bit: u8, place: &mut T) -> *mut T {
             or_null(odd, bit, place).cast_mut()

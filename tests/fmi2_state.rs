@@ -4,7 +4,7 @@
 
 mod common;
 
-use common::{reference, Api, Client, Handle, ERROR, OK};
+use common::{Api, Client, ERROR, Handle, OK, reference};
 use std::ffi::c_int;
 use std::ptr::{dangling_mut, null_mut};
 use std::time::Instant;

@@ -4,7 +4,7 @@
 
 mod common;
 
-use common::{reference, Api, Client, ERROR, OK};
+use common::{Api, Client, ERROR, OK, reference};
 use std::ffi::c_int;
 use std::ptr::{null, null_mut};
 
@@ -210,11 +210,7 @@ fn table() -> Vec<(&'static str, Call, Vec<State>)> {
 }
 
 fn discarded(status: c_int) -> c_int {
-    if status == common::DISCARD {
-        OK
-    } else {
-        status
-    }
+    if status == common::DISCARD { OK } else { status }
 }
 
 #[test]

@@ -4,7 +4,7 @@
 
 mod common;
 
-use common::{reference, Api, Client, DISCARD, ERROR, OK, WARNING};
+use common::{Api, Client, DISCARD, ERROR, OK, WARNING, reference};
 use std::ffi::c_int;
 
 #[test]

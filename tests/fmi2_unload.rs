@@ -5,7 +5,7 @@
 
 mod common;
 
-use common::{is_mapped, reference, Api, Client, DISCARD, ERROR, OK};
+use common::{Api, Client, DISCARD, ERROR, OK, is_mapped, reference};
 use std::fs::read_to_string;
 use std::ptr::null;
 use std::sync::mpsc::channel;

@@ -4,8 +4,8 @@
 
 mod common;
 
-use common::{find, reference, Api, Client, DISCARD, ERROR, OK};
-use wheelrail::fmi2::variables::{variables, Causality, Kind, Variability};
+use common::{Api, Client, DISCARD, ERROR, OK, find, reference};
+use wheelrail::fmi2::variables::{Causality, Kind, Variability, variables};
 use wheelrail::parameters::Parameters;
 
 const NOT_FINITE: [f64; 3] = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY];

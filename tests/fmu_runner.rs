@@ -5,12 +5,12 @@
 
 mod common;
 
-use fmu_runner::{fmi2Type, Fmu, FmuInstance, FmuLibrary};
+use fmu_runner::{Fmu, FmuInstance, FmuLibrary, fmi2Type};
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use wheelrail::parameters::Parameters;
-use wheelrail::signals::{Inputs, INPUTS, OUTPUTS};
+use wheelrail::signals::{INPUTS, Inputs, OUTPUTS};
 use wheelrail::verification::Run;
 
 /// Exact in binary, so that no rounding of the time comes in.

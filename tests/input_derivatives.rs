@@ -5,10 +5,10 @@
 
 mod common;
 
-use common::{reference, Api, Client, OK};
+use common::{Api, Client, OK, reference};
 use std::f64::consts::TAU;
 use wheelrail::parameters::Parameters;
-use wheelrail::signals::{Inputs, Outputs, OUTPUTS};
+use wheelrail::signals::{Inputs, OUTPUTS, Outputs};
 use wheelrail::wheel_rail::Model;
 
 /// Where the comparison begins: the rail has warmed up, several passages of the contact after the start.

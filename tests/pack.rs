@@ -1,6 +1,6 @@
 //! `wheelrail pack`: the archive's content, several platforms in one archive, and the same bytes from the same sources.
 
-use std::fs::{read, write, File};
+use std::fs::{File, read, write};
 use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};

@@ -3,7 +3,7 @@
 
 use proptest::prelude::*;
 use wheelrail::parameters::{FrictionLaw, Parameters, SlipSource, Wheel, WheelHeating};
-use wheelrail::signals::{Inputs, INPUTS, OUTPUTS};
+use wheelrail::signals::{INPUTS, Inputs, OUTPUTS};
 use wheelrail::wheel_rail::{Model, State, Workspace};
 
 /// Relative change of the inputs in the step that is differentiated. Without it the operator split would rest after two

@@ -8,7 +8,7 @@
 mod common;
 mod random;
 
-use common::{reference, Api, Client, Handle, OK};
+use common::{Api, Client, Handle, OK, reference};
 use random::Random;
 use std::fs::read_to_string;
 use std::ptr::null_mut;

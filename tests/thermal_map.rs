@@ -6,12 +6,13 @@ mod checks;
 use checks::largest_difference;
 use proptest::prelude::*;
 use std::sync::OnceLock;
-use wheelrail::compliance::{self, Scales, ThermalDisplacement};
-use wheelrail::heat::{FrictionState, HeatMarch, Heated, SurfaceExchange};
-use wheelrail::incoming::Incoming;
+use wheelrail::body::compliance::{self, Scales, ThermalDisplacement};
+use wheelrail::contact::line::rail::Rail;
+use wheelrail::friction::FrictionState;
+use wheelrail::heat::incoming::Incoming;
+use wheelrail::heat::march::{HeatMarch, Heated, SurfaceExchange};
+use wheelrail::heat::thermal_map::{TOLERANCE, exact_displacement};
 use wheelrail::parameters::{FrictionLaw, Parameters};
-use wheelrail::rail::Rail;
-use wheelrail::thermal_map::{exact_displacement, TOLERANCE};
 use wheelrail::transport::Upwind;
 
 fn parameters() -> Parameters {

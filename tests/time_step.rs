@@ -5,7 +5,7 @@ mod checks;
 
 use wheelrail::error::Error;
 use wheelrail::parameters::{Control, Parameters, SlipSource};
-use wheelrail::signals::{Inputs, Outputs, OUTPUTS};
+use wheelrail::signals::{Inputs, OUTPUTS, Outputs};
 use wheelrail::verification::Run;
 
 /// Outputs but for the totals, which grow, and the slip, which is an input.

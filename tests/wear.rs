@@ -2,7 +2,7 @@
 //! field of the contact has the sign that it must have.
 
 use proptest::prelude::*;
-use wheelrail::fields::Fields;
+use wheelrail::contact::line::fields::Fields;
 use wheelrail::parameters::{Parameters, SlipSource};
 use wheelrail::signals::Inputs;
 use wheelrail::transport::Upwind;

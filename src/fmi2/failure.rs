@@ -29,13 +29,17 @@ pub enum Failure {
         order: i32,
     },
     /// A status that this component does not have.
-    #[error("status kind {kind} cannot be retrieved: there are fmi2LastSuccessfulTime (2, Real) and fmi2Terminated (3, Boolean); steps are not asynchronous")]
+    #[error(
+        "status kind {kind} cannot be retrieved: there are fmi2LastSuccessfulTime (2, Real) and fmi2Terminated (3, Boolean); steps are not asynchronous"
+    )]
     StatusKind {
         /// The status kind.
         kind: i32,
     },
     /// A step that came only part of its way.
-    #[error("the step stopped at t = {reached} s, {committed} s after its start, and the last committed state stands: {error}")]
+    #[error(
+        "the step stopped at t = {reached} s, {committed} s after its start, and the last committed state stands: {error}"
+    )]
     Interrupted {
         /// Time reached in s.
         reached: f64,

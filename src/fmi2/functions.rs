@@ -7,8 +7,8 @@ use super::logging::Logger;
 use super::modes::Function;
 use super::pointers::{input, output, place, string, variable};
 use super::types::{
-    Boolean, Byte, CallbackFunctions, Component, FmiString, FmuState, FmuType, Integer, Real, Status, StatusKind,
-    ValueReference, FALSE, TERMINATED,
+    Boolean, Byte, CallbackFunctions, Component, FALSE, FmiString, FmuState, FmuType, Integer, Real, Status,
+    StatusKind, TERMINATED, ValueReference,
 };
 use std::ffi::c_char;
 use std::mem::MaybeUninit;
@@ -39,13 +39,13 @@ unsafe fn call(
 }
 
 /// The string "default".
-#[no_mangle]
+#[unsafe(no_mangle)]
 pub extern "C" fn fmi2GetTypesPlatform() -> *const c_char {
     c"default".as_ptr()
 }
 
 /// The string "2.0".
-#[no_mangle]
+#[unsafe(no_mangle)]
 pub extern "C" fn fmi2GetVersion() -> *const c_char {
     c"2.0".as_ptr()
 }
@@ -55,7 +55,7 @@ pub extern "C" fn fmi2GetVersion() -> *const c_char {
 /// # Safety
 /// Strings and the callbacks must be null or valid during the call, as the standard says; the callback functions until
 /// fmi2FreeInstance.
-#[no_mangle]
+#[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2Instantiate(
     instance_name: FmiString,
     fmu_type: FmuType,
@@ -92,7 +92,7 @@ pub unsafe extern "C" fn fmi2Instantiate(
 ///
 /// # Safety
 /// `component` must be null or a live instance; it is none afterwards.
-#[no_mangle]
+#[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2FreeInstance(component: Component) {
     if component.is_null() {
         return;
@@ -108,7 +108,7 @@ pub unsafe extern "C" fn fmi2FreeInstance(component: Component) {
 ///
 /// # Safety
 /// As the standard says: a live instance, valid strings.
-#[no_mangle]
+#[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2SetDebugLogging(
     component: Component,
     logging_on: Boolean,
@@ -137,7 +137,7 @@ pub unsafe extern "C" fn fmi2SetDebugLogging(
 ///
 /// # Safety
 /// `component` must be null or a live instance.
-#[no_mangle]
+#[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2SetupExperiment(
     component: Component,
     _tolerance_defined: Boolean,
@@ -159,7 +159,7 @@ pub unsafe extern "C" fn fmi2SetupExperiment(
 ///
 /// # Safety
 /// `component` must be null or a live instance.
-#[no_mangle]
+#[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2EnterInitializationMode(component: Component) -> Status {
     // SAFETY: a live instance (the caller's promise).
     unsafe {
@@ -175,7 +175,7 @@ pub unsafe extern "C" fn fmi2EnterInitializationMode(component: Component) -> St
 ///
 /// # Safety
 /// `component` must be null or a live instance.
-#[no_mangle]
+#[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2ExitInitializationMode(component: Component) -> Status {
     // SAFETY: a live instance (the caller's promise).
     unsafe {
@@ -191,7 +191,7 @@ pub unsafe extern "C" fn fmi2ExitInitializationMode(component: Component) -> Sta
 ///
 /// # Safety
 /// `component` must be null or a live instance.
-#[no_mangle]
+#[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2Terminate(component: Component) -> Status {
     // SAFETY: a live instance (the caller's promise).
     unsafe { call(component, Function::Terminate, Instance::terminate) }
@@ -200,7 +200,7 @@ pub unsafe extern "C" fn fmi2Terminate(component: Component) -> Status {
 /// Not of the standard: lets a solver (its place in [`crate::injection::Solver::ALL`]) diverge `times` times in this thread
 /// after it has converged `after` more times.
 #[cfg(feature = "divergence-injection")]
-#[no_mangle]
+#[unsafe(no_mangle)]
 pub extern "C" fn wheelrail_diverge(solver: u32, after: u32, times: u32) {
     if let Some(solver) = crate::injection::Solver::ALL.get(solver as usize) {
         crate::injection::diverge(*solver, after as usize, times as usize);
@@ -211,7 +211,7 @@ pub extern "C" fn wheelrail_diverge(solver: u32, after: u32, times: u32) {
 ///
 /// # Safety
 /// `component` must be null or a live instance.
-#[no_mangle]
+#[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2Reset(component: Component) -> Status {
     let body = |instance: &mut Instance| {
         instance.reset();
@@ -225,7 +225,7 @@ pub unsafe extern "C" fn fmi2Reset(component: Component) -> Status {
 ///
 /// # Safety
 /// A live instance and `n` elements behind each pointer.
-#[no_mangle]
+#[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2GetReal(
     component: Component,
     references: *const ValueReference,
@@ -244,7 +244,7 @@ pub unsafe extern "C" fn fmi2GetReal(
 ///
 /// # Safety
 /// As [`fmi2GetReal`].
-#[no_mangle]
+#[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2GetInteger(
     component: Component,
     references: *const ValueReference,
@@ -263,7 +263,7 @@ pub unsafe extern "C" fn fmi2GetInteger(
 ///
 /// # Safety
 /// As [`fmi2GetReal`].
-#[no_mangle]
+#[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2SetReal(
     component: Component,
     references: *const ValueReference,
@@ -281,7 +281,7 @@ pub unsafe extern "C" fn fmi2SetReal(
 ///
 /// # Safety
 /// As [`fmi2GetReal`].
-#[no_mangle]
+#[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2SetInteger(
     component: Component,
     references: *const ValueReference,
@@ -329,7 +329,7 @@ unsafe fn no_variables<T>(
 ///
 /// # Safety
 /// As [`fmi2GetReal`].
-#[no_mangle]
+#[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2GetBoolean(
     component: Component,
     references: *const ValueReference,
@@ -353,7 +353,7 @@ pub unsafe extern "C" fn fmi2GetBoolean(
 ///
 /// # Safety
 /// As [`fmi2GetReal`].
-#[no_mangle]
+#[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2GetString(
     component: Component,
     references: *const ValueReference,
@@ -377,7 +377,7 @@ pub unsafe extern "C" fn fmi2GetString(
 ///
 /// # Safety
 /// As [`fmi2GetReal`].
-#[no_mangle]
+#[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2SetBoolean(
     component: Component,
     references: *const ValueReference,
@@ -401,7 +401,7 @@ pub unsafe extern "C" fn fmi2SetBoolean(
 ///
 /// # Safety
 /// As [`fmi2GetReal`].
-#[no_mangle]
+#[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2SetString(
     component: Component,
     references: *const ValueReference,
@@ -425,7 +425,7 @@ pub unsafe extern "C" fn fmi2SetString(
 ///
 /// # Safety
 /// A live instance and a pointer to a variable.
-#[no_mangle]
+#[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2GetFMUstate(component: Component, state: *mut FmuState) -> Status {
     // SAFETY: a variable of the importer (the caller's promise).
     let body = |instance: &mut Instance| unsafe { instance.get_state(variable(state, "FMUstate")?) };
@@ -437,7 +437,7 @@ pub unsafe extern "C" fn fmi2GetFMUstate(component: Component, state: *mut FmuSt
 ///
 /// # Safety
 /// `component` must be null or a live instance; `state` is never followed.
-#[no_mangle]
+#[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2SetFMUstate(component: Component, state: FmuState) -> Status {
     // SAFETY: a live instance (the caller's promise).
     unsafe { call(component, Function::SetFmuState, |instance| instance.set_state(state)) }
@@ -447,7 +447,7 @@ pub unsafe extern "C" fn fmi2SetFMUstate(component: Component, state: FmuState) 
 ///
 /// # Safety
 /// A live instance and a pointer to a variable.
-#[no_mangle]
+#[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2FreeFMUstate(component: Component, state: *mut FmuState) -> Status {
     // SAFETY: a variable of the importer (the caller's promise).
     let body = |instance: &mut Instance| unsafe { instance.free_state(variable(state, "FMUstate")?) };
@@ -459,7 +459,7 @@ pub unsafe extern "C" fn fmi2FreeFMUstate(component: Component, state: *mut FmuS
 ///
 /// # Safety
 /// A live instance and a place for the size.
-#[no_mangle]
+#[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2SerializedFMUstateSize(component: Component, state: FmuState, size: *mut usize) -> Status {
     let body = |instance: &mut Instance| {
         // SAFETY: a place for one value (the caller's promise).
@@ -475,7 +475,7 @@ pub unsafe extern "C" fn fmi2SerializedFMUstateSize(component: Component, state:
 ///
 /// # Safety
 /// A live instance and room for `size` bytes.
-#[no_mangle]
+#[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2SerializeFMUstate(
     component: Component,
     state: FmuState,
@@ -505,7 +505,7 @@ pub unsafe extern "C" fn fmi2SerializeFMUstate(
 ///
 /// # Safety
 /// A live instance, `size` bytes and a pointer to a variable.
-#[no_mangle]
+#[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2DeSerializeFMUstate(
     component: Component,
     bytes: *const Byte,
@@ -526,7 +526,7 @@ pub unsafe extern "C" fn fmi2DeSerializeFMUstate(
 ///
 /// # Safety
 /// A live instance and as many elements as given behind each pointer.
-#[no_mangle]
+#[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2GetDirectionalDerivative(
     component: Component,
     unknowns: *const ValueReference,
@@ -553,7 +553,7 @@ pub unsafe extern "C" fn fmi2GetDirectionalDerivative(
 ///
 /// # Safety
 /// A live instance and `n` elements behind each pointer.
-#[no_mangle]
+#[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2SetRealInputDerivatives(
     component: Component,
     references: *const ValueReference,
@@ -577,7 +577,7 @@ pub unsafe extern "C" fn fmi2SetRealInputDerivatives(
 ///
 /// # Safety
 /// A live instance and `n` elements behind each pointer.
-#[no_mangle]
+#[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2GetRealOutputDerivatives(
     component: Component,
     references: *const ValueReference,
@@ -601,7 +601,7 @@ pub unsafe extern "C" fn fmi2GetRealOutputDerivatives(
 ///
 /// # Safety
 /// `component` must be null or a live instance.
-#[no_mangle]
+#[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2DoStep(
     component: Component,
     current_communication_point: Real,
@@ -617,7 +617,7 @@ pub unsafe extern "C" fn fmi2DoStep(
 ///
 /// # Safety
 /// `component` must be null or a live instance.
-#[no_mangle]
+#[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2CancelStep(component: Component) -> Status {
     // SAFETY: a live instance (the caller's promise).
     unsafe { call(component, Function::CancelStep, |_| Ok(())) }
@@ -647,7 +647,7 @@ unsafe fn status_query<T>(
 ///
 /// # Safety
 /// A live instance and a place for one value.
-#[no_mangle]
+#[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2GetStatus(component: Component, kind: StatusKind, value: *mut Status) -> Status {
     let answer = |_: &Instance| Err(Failure::StatusKind { kind });
     // SAFETY: the caller's promise.
@@ -658,7 +658,7 @@ pub unsafe extern "C" fn fmi2GetStatus(component: Component, kind: StatusKind, v
 ///
 /// # Safety
 /// A live instance and a place for one value.
-#[no_mangle]
+#[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2GetRealStatus(component: Component, kind: StatusKind, value: *mut Real) -> Status {
     let answer = |instance: &Instance| instance.last_successful_time(kind);
     // SAFETY: the caller's promise.
@@ -669,7 +669,7 @@ pub unsafe extern "C" fn fmi2GetRealStatus(component: Component, kind: StatusKin
 ///
 /// # Safety
 /// A live instance and a place for one value.
-#[no_mangle]
+#[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2GetIntegerStatus(component: Component, kind: StatusKind, value: *mut Integer) -> Status {
     let answer = |_: &Instance| Err(Failure::StatusKind { kind });
     // SAFETY: the caller's promise.
@@ -680,7 +680,7 @@ pub unsafe extern "C" fn fmi2GetIntegerStatus(component: Component, kind: Status
 ///
 /// # Safety
 /// A live instance and a place for one value.
-#[no_mangle]
+#[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2GetBooleanStatus(component: Component, kind: StatusKind, value: *mut Boolean) -> Status {
     let answer = |_: &Instance| {
         if kind == TERMINATED {
@@ -697,7 +697,7 @@ pub unsafe extern "C" fn fmi2GetBooleanStatus(component: Component, kind: Status
 ///
 /// # Safety
 /// A live instance and a place for one value.
-#[no_mangle]
+#[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2GetStringStatus(component: Component, kind: StatusKind, value: *mut FmiString) -> Status {
     let answer = |_: &Instance| Err(Failure::StatusKind { kind });
     // SAFETY: the caller's promise.

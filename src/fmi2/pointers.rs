@@ -1,7 +1,7 @@
 //! Arguments from C: null and size checks, once for all functions.
 
 use super::failure::Failure;
-use std::ffi::{c_char, CStr};
+use std::ffi::{CStr, c_char};
 use std::mem::MaybeUninit;
 
 fn check<T>(pointer: *const T, count: usize, argument: &'static str) -> Result<(), Failure> {

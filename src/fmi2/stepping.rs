@@ -1,12 +1,12 @@
 //! The step, and derivatives of inputs and outputs.
 
 use super::failure::Failure;
-use super::instance::{real, Built, Instance};
+use super::instance::{Built, Instance, real};
 use super::logging::Category;
 use super::modes::Mode;
-use super::types::{Integer, Real, StatusKind, ValueReference, LAST_SUCCESSFUL_TIME};
+use super::types::{Integer, LAST_SUCCESSFUL_TIME, Real, StatusKind, ValueReference};
 use super::variables::RealVariable;
-use crate::signals::{Inputs, INPUTS, OUTPUTS};
+use crate::signals::{INPUTS, Inputs, OUTPUTS};
 use std::collections::BTreeMap;
 use std::mem::MaybeUninit;
 

@@ -6,7 +6,7 @@
 use super::types::ValueReference;
 use crate::parameters::{INTEGER_PARAMETERS, REAL_PARAMETERS};
 use crate::signals::{INPUTS, OUTPUTS};
-use crate::wheel_rail::{Profiles, DEPTH_POINTS, PROFILE_POINTS};
+use crate::wheel_rail::{DEPTH_POINTS, PROFILE_POINTS, Profiles};
 
 const BLOCK: u32 = 1000;
 const INPUT_BLOCK: u32 = 0;

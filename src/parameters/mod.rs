@@ -9,7 +9,7 @@ mod validation;
 use crate::error::{Error, Result};
 use serde::{Deserialize, Serialize};
 
-pub use table::{IntegerParameter, RealParameter, INTEGER_PARAMETERS, REAL_PARAMETERS};
+pub use table::{INTEGER_PARAMETERS, IntegerParameter, REAL_PARAMETERS, RealParameter};
 pub use validation::check_range;
 
 /// Number of (temperature, coefficient) points that a friction table can hold.
@@ -56,7 +56,7 @@ pub enum MeshKind {
 pub enum Wheel {
     /// Rigid: the paper's.
     Rigid,
-    /// Elastic: its compliance adds to the rail's ([`crate::elastic_wheel`]).
+    /// Elastic: its compliance adds to the rail's ([`crate::body::elastic_wheel`]).
     Elastic,
 }
 
@@ -65,7 +65,7 @@ pub enum Wheel {
 pub enum WheelHeating {
     /// The wheel stays at the ambient temperature: the paper's.
     Off,
-    /// The contact warms the wheel's rim ([`crate::rim`]).
+    /// The contact warms the wheel's rim ([`crate::contact::rim`]).
     On,
 }
 
@@ -165,7 +165,7 @@ pub struct Parameters {
     pub wheel_heat_transfer: f64,
     /// Archard's coefficient of the wheel, `1/Pa`; 0 switches its wear off.
     pub wheel_wear_coefficient: f64,
-    /// Depth over which incoming and leaving temperature spread the rail's heat, `m` ([`crate::incoming`]).
+    /// Depth over which incoming and leaving temperature spread the rail's heat, `m` ([`crate::heat::incoming`]).
     pub skin_depth: f64,
     /// Couple normal and tangential displacement (Dundurs). A rigid wheel on an elastic rail is coupled; the
     /// switch exists for the comparison with Carter's theory, which has identical bodies. Not an FMI parameter.

@@ -1,7 +1,7 @@
 //! The one table of parameters: name, default, range, whether tunable, description. One row a line.
 
 use super::validation::check_range;
-use super::{Control, FrictionLaw, MeshKind, NormalSolver, Parameters, SlipSource, Wheel, WheelHeating, TABLE_POINTS};
+use super::{Control, FrictionLaw, MeshKind, NormalSolver, Parameters, SlipSource, TABLE_POINTS, Wheel, WheelHeating};
 use crate::error::Result;
 
 /// One row of the table of real parameters.
@@ -145,11 +145,7 @@ const fn table_temperature(point: usize) -> f64 {
 }
 
 const fn table_coefficient(point: usize) -> f64 {
-    if point == 0 {
-        0.45
-    } else {
-        0.25
-    }
+    if point == 0 { 0.45 } else { 0.25 }
 }
 
 macro_rules! table_point {

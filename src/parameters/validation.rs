@@ -1,6 +1,6 @@
 //! Checks of the parameters, once, before a model is built.
 
-use super::{FrictionLaw, Parameters, INTEGER_PARAMETERS, REAL_PARAMETERS};
+use super::{FrictionLaw, INTEGER_PARAMETERS, Parameters, REAL_PARAMETERS};
 use crate::error::{Error, Result};
 
 /// Refuses a value that is not finite or outside `minimum..=maximum`.

@@ -7,7 +7,7 @@
 
 use super::{Row, Run};
 use crate::error::Result;
-use crate::friction;
+use crate::friction::coulomb;
 use crate::parameters::{FrictionLaw, Parameters};
 use crate::signals::Inputs;
 
@@ -102,9 +102,7 @@ fn stick_zone(run: &mut Run, inputs: &Inputs) -> Result<Vec<Row>> {
     let sticks: Vec<f64> = nodes
         .iter()
         .filter(|node| node.pressure > 0.0)
-        .filter(|node| {
-            friction::saturation(node.slip, parameters.slip_regularisation).abs() < friction::STICK_SATURATION
-        })
+        .filter(|node| coulomb::saturation(node.slip, parameters.slip_regularisation).abs() < coulomb::STICK_SATURATION)
         .map(|node| node.position)
         .collect();
     let rear = sticks.first().copied().unwrap_or(f64::NAN) - 0.5 * spacing;

@@ -4,10 +4,12 @@
 //! Displacement: P1, order 2 in L². Temperature: order 1 along x₁ (upwind), order 2 in depth (P1), in L². Wear: order 1.
 
 use super::Row;
-use crate::elasticity::{Elasticity, Fields};
+use crate::body::elasticity::{Elasticity, Fields};
+use crate::body::mesh::Mesh;
 use crate::error::Result;
-use crate::heat::{DepthBasis, FrictionState, HeatMarch, Heated, SurfaceExchange};
-use crate::mesh::Mesh;
+use crate::friction::FrictionState;
+use crate::heat::basis::DepthBasis;
+use crate::heat::march::{HeatMarch, Heated, SurfaceExchange};
 use crate::parameters::Parameters;
 use crate::transport::Upwind;
 use crate::wear;

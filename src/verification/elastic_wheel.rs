@@ -2,7 +2,7 @@
 //! curve for like materials, whose normal and tangential problems are not coupled, without any switch; and free
 //! rolling at creepage 0 where the rigid wheel's is −0.0016 (6e6 N/m).
 
-use super::{carter, hertz, Row, Run};
+use super::{Row, Run, carter, hertz};
 use crate::error::Result;
 use crate::parameters::{FrictionLaw, Parameters, Wheel};
 use crate::signals::Inputs;

@@ -7,11 +7,11 @@
 //! friction power, not ᾱ of it.
 
 use super::{Row, Run};
+use crate::contact::line::fields::Fields;
+use crate::contact::line::rail::Rail;
+use crate::contact::rim;
 use crate::error::Result;
-use crate::fields::Fields;
 use crate::parameters::{FrictionLaw, Parameters, SlipSource, Wheel, WheelHeating};
-use crate::rail::Rail;
-use crate::rim;
 use crate::signals::Inputs;
 use crate::transport::Upwind;
 

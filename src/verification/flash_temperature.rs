@@ -2,9 +2,11 @@
 //! θ(t) = 1/(ρc √(πκ)) ∫₀ᵗ q(t′)/√(t − t′) dt′ with q = ᾱ μ p s (Carslaw and Jaeger, Conduction of Heat in Solids, 2.9).
 
 use super::Row;
+use crate::body::mesh::Mesh;
 use crate::error::Result;
-use crate::heat::{DepthBasis, FrictionState, HeatMarch, Heated, SurfaceExchange};
-use crate::mesh::Mesh;
+use crate::friction::FrictionState;
+use crate::heat::basis::DepthBasis;
+use crate::heat::march::{HeatMarch, Heated, SurfaceExchange};
 use crate::parameters::{FrictionLaw, Parameters};
 use crate::transport::Upwind;
 use std::f64::consts::{FRAC_PI_2, PI};

@@ -2,7 +2,7 @@
 //! those that the paper prints. It finds wear "slightly smaller" where μ falls with temperature, and a contact zone moved
 //! by thermal expansion.
 
-use super::paper_cases::{parameters, settled, CASES};
+use super::paper_cases::{CASES, parameters, settled};
 use super::{Row, Run};
 use crate::error::Result;
 use crate::parameters::Parameters;

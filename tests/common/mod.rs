@@ -4,10 +4,10 @@
 
 use libloading::Library;
 use std::cell::RefCell;
-use std::ffi::{c_char, c_int, c_void, CStr, CString};
+use std::ffi::{CStr, CString, c_char, c_int, c_void};
 use std::path::PathBuf;
 use wheelrail::fmi2::types::{CallbackFunctions, LoggerCallback, Status};
-use wheelrail::fmi2::variables::{variables, Variable};
+use wheelrail::fmi2::variables::{Variable, variables};
 
 pub const OK: c_int = 0;
 pub const WARNING: c_int = 1;

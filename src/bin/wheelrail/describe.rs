@@ -3,7 +3,7 @@
 use clap::Args;
 use std::io::{self, Write};
 use wheelrail::description::model_description;
-use wheelrail::fmi2::variables::{variables, Causality, Kind, Variability, Variable};
+use wheelrail::fmi2::variables::{Causality, Kind, Variability, Variable, variables};
 
 /// Options of `describe`.
 #[derive(Args)]

@@ -59,7 +59,9 @@ pub enum Error {
         path: PathBuf,
     },
     /// The library was built with another description.
-    #[error("{path} was not built with this model description (GUID {guid}): build it again with `cargo build --release --lib --no-default-features`")]
+    #[error(
+        "{path} was not built with this model description (GUID {guid}): build it again with `cargo build --release --lib --no-default-features`"
+    )]
     StaleLibrary {
         /// The library.
         path: PathBuf,

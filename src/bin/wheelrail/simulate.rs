@@ -7,7 +7,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 use wheelrail::error::Error as ModelError;
 use wheelrail::parameters::Parameters;
-use wheelrail::signals::{InputSignal, Inputs, INPUTS, OUTPUTS};
+use wheelrail::signals::{INPUTS, InputSignal, Inputs, OUTPUTS};
 use wheelrail::wheel_rail::{Model, State};
 
 /// Options of `simulate`.
@@ -346,7 +346,7 @@ fn columns(path: &Path, headings: &csv::StringRecord) -> Result<Vec<Column>, Err
                     path: path.to_owned(),
                     column: heading.to_owned(),
                     allowed: INPUTS.iter().map(|signal| signal.name).collect::<Vec<_>>().join(", "),
-                })
+                });
             }
         });
     }

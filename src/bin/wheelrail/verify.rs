@@ -5,7 +5,7 @@ use std::fs;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use wheelrail::error::Error as ModelError;
-use wheelrail::verification::{Row, CHECKS, CURVES};
+use wheelrail::verification::{CHECKS, CURVES, Row};
 
 /// Options of `verify`.
 #[derive(Args)]

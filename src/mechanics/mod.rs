@@ -5,14 +5,20 @@
 //! friction problem sees that `Response`, and two sweeps do where alternating blindly takes ten; with the paper's
 //! linearisation method the two problems alternate as printed.
 
-use crate::compliance::Compliance;
-use crate::dense;
+pub mod normal;
+pub mod softening;
+pub mod tangential;
+
+use crate::body::compliance::Compliance;
 use crate::error::{Error, Result};
-use crate::friction::{saturation, saturation_slope};
+use crate::friction::coulomb::{saturation, saturation_slope};
 use crate::injection::{self, Solver};
-use crate::normal::{ActiveSet, Constraint, NormalProblem, Pschenichnyj};
+use crate::mechanics::normal::active_set::ActiveSet;
+use crate::mechanics::normal::pschenichnyj::Pschenichnyj;
+use crate::mechanics::normal::{Constraint, NormalProblem};
+use crate::mechanics::tangential::{Tangential, TangentialProblem};
+use crate::numerics::dense;
 use crate::parameters::NormalSolver;
-use crate::tangential::{Tangential, TangentialProblem};
 use nalgebra::DMatrix;
 
 /// Sweeps between normal and tangential problem.
@@ -462,9 +468,5 @@ fn under_pressure(pressure: &[f64]) -> impl Iterator<Item = usize> + '_ {
 
 /// The next node on the leading side: towards +x₁ where V ≥ 0.
 fn node_ahead(node: usize, forward: bool) -> usize {
-    if forward {
-        node + 1
-    } else {
-        node - 1
-    }
+    if forward { node + 1 } else { node - 1 }
 }

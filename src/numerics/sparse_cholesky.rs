@@ -4,15 +4,15 @@
 //! faer's own is slow without faer's feature `std`, and that feature's matrix product keeps a thread-local buffer with a
 //! destructor, which a library that is unloaded at run time must not have.
 
-use crate::dense::{self, Arithmetic};
+use crate::numerics::dense::{self, Arithmetic};
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::llt::factor::LltRegularization;
+use faer::sparse::SparseColMat;
+use faer::sparse::linalg::SupernodalThreshold;
 use faer::sparse::linalg::cholesky::supernodal::SupernodalLltRef;
 use faer::sparse::linalg::cholesky::{
-    factorize_symbolic_cholesky, CholeskySymbolicParams, SymbolicCholesky, SymbolicCholeskyRaw, SymmetricOrdering,
+    CholeskySymbolicParams, SymbolicCholesky, SymbolicCholeskyRaw, SymmetricOrdering, factorize_symbolic_cholesky,
 };
-use faer::sparse::linalg::SupernodalThreshold;
-use faer::sparse::SparseColMat;
 use faer::{Par, Side};
 
 /// Right-hand sides that are solved together: eight vector registers of AVX2.

@@ -6,19 +6,19 @@
 //! tractions, repeated until they rest. Every part is linear and exact; the active set does not change under an
 //! infinitesimal change. Held fixed are the fields at the beginning of the sub-step and its length.
 
-use crate::acceleration::Anderson;
-use crate::contact::{gathered, Contact, Scratch, TEMPERATURE_SCALE};
-use crate::dense::{largest, largest_change};
+use crate::contact::line::fields::Fields;
+use crate::contact::line::split::{Contact, Scratch, TEMPERATURE_SCALE, gathered};
+use crate::contact::outputs;
+use crate::contact::rim::{self, ContactHeat};
 use crate::error::{Error, Result};
-use crate::fields::Fields;
-use crate::friction;
-use crate::heat::SurfaceExchange;
+use crate::friction::{self, coulomb};
+use crate::heat::march::SurfaceExchange;
+use crate::mechanics::normal::Constraint;
 use crate::mechanics::{ProblemTangent, Tractions};
-use crate::normal::Constraint;
-use crate::outputs;
+use crate::numerics::anderson::Anderson;
+use crate::numerics::dense::{largest, largest_change};
 use crate::parameters::{SlipSource, WheelHeating};
-use crate::rim::{self, ContactHeat};
-use crate::signals::{Inputs, Outputs, INPUTS, OUTPUTS};
+use crate::signals::{INPUTS, Inputs, OUTPUTS, Outputs};
 
 /// Iterations of the linear split.
 const SPLITS: usize = 400;
@@ -304,8 +304,8 @@ impl<'a> Linearisation<'a> {
             // d(p φ s) and d(k ρ c_p |s| p + p/r).
             let regularisation = parameters.slip_regularisation;
             let (phi, phi_slope) = (
-                friction::saturation(slip, regularisation),
-                friction::saturation_slope(slip, regularisation),
+                coulomb::saturation(slip, regularisation),
+                coulomb::saturation_slope(slip, regularisation),
             );
             let power_tangent = pressure_tangent * phi * slip + pressure * (phi_slope * slip + phi) * slip_tangent;
             let debris_factor = parameters.wear_coefficient * capacity;
@@ -397,9 +397,5 @@ impl<'a> Linearisation<'a> {
 
 fn relative_change(now: &[f64], last: &[f64]) -> f64 {
     let change = largest_change(now, last);
-    if change == 0.0 {
-        0.0
-    } else {
-        change / largest(now)
-    }
+    if change == 0.0 { 0.0 } else { change / largest(now) }
 }

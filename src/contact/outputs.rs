@@ -1,10 +1,10 @@
 //! The outputs that follow from the fields of the contact.
 
-use crate::fields::Fields;
-use crate::friction;
+use crate::contact::line::fields::Fields;
+use crate::contact::line::rail::Rail;
+use crate::contact::rim::ContactHeat;
+use crate::friction::{self, coulomb};
 use crate::parameters::Parameters;
-use crate::rail::Rail;
-use crate::rim::ContactHeat;
 use crate::signals::{Inputs, Outputs};
 use crate::transport::Upwind;
 
@@ -33,7 +33,7 @@ pub fn instantaneous(rail: &Rail, parameters: &Parameters, fields: &Fields, inpu
         peak_pressure = peak_pressure.max(p);
         peak_shear = peak_shear.max(tau.abs());
         contact_nodes += 1.0;
-        if friction::saturation(slip, parameters.slip_regularisation).abs() < friction::STICK_SATURATION {
+        if coulomb::saturation(slip, parameters.slip_regularisation).abs() < coulomb::STICK_SATURATION {
             sticking += 1.0;
         }
     }

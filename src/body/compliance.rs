@@ -8,11 +8,11 @@
 //! Everything is scaled: tractions by p₀, displacements by a²/r₀ of the largest load. Raw compliances of
 //! 1e-11 m/N beside a 1 would wreck the row of the load constraint.
 
-use crate::dense;
-use crate::elastic_wheel;
-use crate::elasticity::{Elasticity, Fields};
+use crate::body::elastic_wheel;
+use crate::body::elasticity::{Elasticity, Fields};
+use crate::body::mesh::Mesh;
 use crate::error::Result;
-use crate::mesh::Mesh;
+use crate::numerics::dense;
 use crate::parameters::{Parameters, Wheel};
 use nalgebra::DMatrix;
 

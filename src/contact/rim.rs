@@ -23,10 +23,10 @@
 //! k_w ∫ |s| p dx / (2π r₀) per time on the contact's width b. A wheel that does not turn wears a flat instead, which a
 //! uniform depth does not show. The loss, micrometres, is not fed back into r₀.
 
+use crate::contact::line::fields::Fields;
+use crate::contact::line::rail::Rail;
 use crate::error::{Error, Result};
-use crate::fields::Fields;
 use crate::parameters::{Parameters, WheelHeating};
-use crate::rail::Rail;
 use std::f64::consts::PI;
 
 /// Section of the ring times its circumference at the centroid, `m³`.

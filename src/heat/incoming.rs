@@ -25,7 +25,7 @@
 //!
 //! Wear. The depth at the trailing edge enters as it left; the march conserves the volume.
 
-use crate::heat::DepthBasis;
+use crate::heat::basis::DepthBasis;
 use std::f64::consts::FRAC_PI_4;
 
 /// The entering temperature profile in the eigenbasis of the depth operator.
@@ -46,11 +46,7 @@ impl Incoming {
         let profile = |row: usize| {
             let z = depth[row] / skin_depth;
             // θ = 0 at the bottom.
-            if row == last {
-                0.0
-            } else {
-                (-FRAC_PI_4 * z * z).exp()
-            }
+            if row == last { 0.0 } else { (-FRAC_PI_4 * z * z).exp() }
         };
         // φᵀ M g: the modes are orthonormal in the mass matrix.
         let mut amplitudes: Vec<f64> = (0..basis.len())
@@ -93,7 +89,7 @@ impl Incoming {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mesh::Mesh;
+    use crate::body::mesh::Mesh;
     use crate::parameters::Parameters;
 
     fn column(skin_depth: f64) -> (Mesh, DepthBasis, Incoming) {

@@ -4,7 +4,7 @@
 //! The next iterate is G(x) − Σ γ ΔG with γ = argmin ‖f − Σ γ ΔF‖, f = G(x) − x, over the last few differences. It brings
 //! iterations to rest that diverge in a few directions.
 
-use crate::dense;
+use crate::numerics::dense;
 
 /// Differences that are kept.
 const DEPTH: usize = 8;

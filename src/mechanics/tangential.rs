@@ -7,9 +7,9 @@
 //! The problem is posed around the tractions of the sweep before: pressure and strain there are given, and how both
 //! respond to a change of τ (see `Response` of [`crate::mechanics`]). Tractions and displacements are scaled, speeds in m/s.
 
-use crate::dense::{self, largest};
 use crate::error::{Error, Result};
-use crate::friction::{saturation_slope, saturations};
+use crate::friction::coulomb::{saturation_slope, saturations};
+use crate::numerics::dense::{self, largest};
 
 /// The data of one problem on the m nodes under pressure.
 #[derive(Debug, Clone, Copy)]

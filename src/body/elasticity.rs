@@ -3,11 +3,11 @@
 //! Weak form: ∫ σ(u):ε(v) − ρV² ∫ u,₁·v,₁ = α(3λ+2γ) ∫ θ div v + ∫_Γ F·v, u = 0 on Γ₀. The three bilinear forms are
 //! assembled apart, because a step changes V and θ but never factorises.
 
+use crate::body::mesh::Mesh;
 use crate::error::{Error, Result};
-use crate::mesh::Mesh;
-use crate::sparse_cholesky::{SparseCholesky, WIDTH};
-use faer::sparse::{SparseColMat, SymbolicSparseColMat};
+use crate::numerics::sparse_cholesky::{SparseCholesky, WIDTH};
 use faer::Mat;
+use faer::sparse::{SparseColMat, SymbolicSparseColMat};
 use nalgebra::Vector2;
 use std::ops::AddAssign;
 
@@ -87,7 +87,7 @@ fn gradients(points: [[f64; 2]; 3]) -> ([[f64; 2]; 3], f64) {
 
 impl Elasticity {
     /// Assembles and factorises. `rho_v2` = ρV² enters the factorised matrix itself; the model uses 0 and carries
-    /// V² to first order ([`crate::compliance`]), the tests use the whole form to bound that error.
+    /// V² to first order ([`crate::body::compliance`]), the tests use the whole form to bound that error.
     ///
     /// # Errors
     /// [`Error::StiffnessNotPositiveDefinite`]: above the Rayleigh speed the form is not coercive.
@@ -251,9 +251,12 @@ mod tests {
             let solved = body.solve(&loads);
             for field in 0..2 * contact_nodes {
                 let (mirrored, solved) = (fields.col_as_slice(field), solved.col_as_slice(field));
-                let size = crate::dense::largest(solved);
+                let size = crate::numerics::dense::largest(solved);
                 // Round-off times the condition of a strip of some thousand nodes.
-                assert!(crate::dense::largest_change(mirrored, solved) < 1e-10 * size, "{field}");
+                assert!(
+                    crate::numerics::dense::largest_change(mirrored, solved) < 1e-10 * size,
+                    "{field}"
+                );
             }
         }
     }

@@ -1,21 +1,22 @@
 //! The operator split of section 4 of the paper: mechanics for given temperature and wear, wear and heat for given
 //! tractions, repeated until the temperature rests.
 
-use crate::acceleration::Anderson;
-use crate::dense::{self, largest, largest_change};
+use crate::contact::line::fields::Fields;
+use crate::contact::line::rail::Rail;
+use crate::contact::rim::{self, ContactHeat};
 use crate::error::{Error, Result};
-use crate::fields::Fields;
-use crate::friction;
-use crate::heat::{FrictionState, HeatMarch, Heated, SurfaceExchange};
+use crate::friction::{FrictionState, coulomb};
+use crate::heat::march::{HeatMarch, Heated, SurfaceExchange};
 use crate::injection::{self, Solver};
+use crate::mechanics::normal::Constraint;
+use crate::mechanics::softening::Softening;
 use crate::mechanics::{Mechanics, MechanicsProblem, ProblemTangent, Sweep, Tractions};
-use crate::normal::Constraint;
+use crate::numerics::anderson::Anderson;
+use crate::numerics::dense::{self, largest, largest_change};
 use crate::parameters::{Control, Parameters, WheelHeating};
-use crate::rail::Rail;
-use crate::rim::{self, ContactHeat};
 use crate::signals::{Inputs, Motion};
 use crate::transport::Upwind;
-use crate::wear::{self, Softening};
+use crate::wear;
 use serde::{Deserialize, Serialize};
 
 /// Iterations of the operator split.
@@ -524,7 +525,7 @@ impl Contact<'_> {
             let mu = law.coefficient(fields.surface_temperature[first + node]).0;
             fields.friction[node] = mu;
             if fields.pressure[node] > 0.0 {
-                let saturation = friction::saturation(fields.slip[node], self.parameters.slip_regularisation);
+                let saturation = coulomb::saturation(fields.slip[node], self.parameters.slip_regularisation);
                 fields.shear[node] = -mu * fields.pressure[node] * saturation;
             }
         }

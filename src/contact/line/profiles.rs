@@ -1,7 +1,7 @@
 //! Profiles for plotting, sampled at fixed numbers of points whatever the mesh is.
 
-use crate::fields::Fields;
-use crate::rail::Rail;
+use crate::contact::line::fields::Fields;
+use crate::contact::line::rail::Rail;
 
 /// Points across the contact window.
 pub const PROFILE_POINTS: usize = 61;

@@ -9,10 +9,10 @@
 //!    taken in blocks of √n; far from a block, a few combinations of its moments carry their effect ("effects"). Next to
 //!    the block what these leave is added from the moments themselves.
 
-use crate::compliance::ThermalDisplacement;
-use crate::dense::{self, Arithmetic, LANES};
-use crate::heat::DepthBasis;
-use crate::mesh::Mesh;
+use crate::body::compliance::ThermalDisplacement;
+use crate::body::mesh::Mesh;
+use crate::heat::basis::DepthBasis;
+use crate::numerics::dense::{self, Arithmetic, LANES};
 use nalgebra::{Cholesky, DMatrix, DVector, SymmetricEigen};
 use std::ops::Range;
 

@@ -4,7 +4,7 @@
 //! finite elements. Near a contact that is small against r₀ both are half-planes (Johnson, Contact Mechanics, 4.1); the
 //! size of the body enters the penetration alone, by a logarithm. On the wheel act −τ along x₁ and p upward. In
 //! its mirrored frame, x₂ reversed, it is a rail under the shear −τ and the pressure p, so that with the compliances C of
-//! [`crate::compliance`] (displacement of the rail u₁ = C_tt τ − C_tn p, u₂ = C_nt τ − C_nn p)
+//! [`crate::body::compliance`] (displacement of the rail u₁ = C_tt τ − C_tn p, u₂ = C_nt τ − C_nn p)
 //!
 //! u₁ʷ = −C_ttʷ τ − C_tnʷ p,  u₂ʷ = −(−C_ntʷ τ − C_nnʷ p) = C_ntʷ τ + C_nnʷ p.
 //!
@@ -25,10 +25,10 @@
 //! Neglected: the curvature of the wheel's body, centrifugal and thermal expansion of the wheel. The latter's bulge is
 //! of the size of the rail's; the rail's is kept, because its temperature field is what the model resolves.
 
-use crate::compliance::{rolling_compliance, Compliance, RollingCompliance, Scales};
-use crate::elasticity::Elasticity;
+use crate::body::compliance::{Compliance, RollingCompliance, Scales, rolling_compliance};
+use crate::body::elasticity::Elasticity;
+use crate::body::mesh::Mesh;
 use crate::error::Result;
-use crate::mesh::Mesh;
 use crate::parameters::Parameters;
 
 /// Adds the wheel's compliance to the rail's.

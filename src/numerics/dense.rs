@@ -38,11 +38,7 @@ impl Arithmetic {
     /// a · b + c.
     #[inline(always)]
     pub fn multiply_add(self, a: f64, b: f64, c: f64) -> f64 {
-        if self.fused {
-            a.mul_add(b, c)
-        } else {
-            a * b + c
-        }
+        if self.fused { a.mul_add(b, c) } else { a * b + c }
     }
 
     /// `out += factor · x`.

@@ -1,12 +1,12 @@
 //! The rail: everything that is computed once, at initialisation.
 
-use crate::compliance::{self, RollingCompliance, Scales};
+use crate::body::compliance::{self, RollingCompliance, Scales};
+use crate::body::mesh::Mesh;
 use crate::error::Result;
-use crate::heat::DepthBasis;
-use crate::incoming::Incoming;
-use crate::mesh::Mesh;
+use crate::heat::basis::DepthBasis;
+use crate::heat::incoming::Incoming;
+use crate::heat::thermal_map::{self, ThermalMap};
 use crate::parameters::Parameters;
-use crate::thermal_map::{self, ThermalMap};
 
 /// The rail and the wheel's profile, built at initialisation.
 pub struct Rail {

@@ -1,7 +1,7 @@
 //! The fields of the contact, all that a step changes, and their trend from step to step.
 
-use crate::dense;
-use crate::rail::Rail;
+use crate::contact::line::rail::Rail;
+use crate::numerics::dense;
 use serde::{Deserialize, Serialize};
 
 /// The fields of the contact at one instant; n contact nodes.

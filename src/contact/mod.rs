@@ -1,0 +1,5 @@
+//! The contact of wheel and rail.
+
+pub mod line;
+pub mod outputs;
+pub mod rim;

@@ -1,0 +1,226 @@
+//! The active-set methods for the normal problem.
+
+use super::{Constraint, NormalProblem, NormalSolution};
+use crate::error::{Error, Result};
+use crate::numerics::dense;
+use nalgebra::DMatrix;
+
+/// Separations above −1e-13 count as closed: round-off of w, whose terms are of order 1.
+const ROUND_OFF: f64 = 1e-13;
+/// Exchanges of all violated nodes at once; two ends of a contact that wait for each other can cycle, and from then on
+/// only the worst node is exchanged.
+const SET_EXCHANGES: usize = 4;
+/// Exchanges altogether before the method that descends takes over.
+const EXCHANGES: usize = 40;
+
+/// Primal–dual active set (Hintermüller, Ito and Kunisch, SIAM J. Optim. 13, 2003) with the load as one more row.
+///
+/// It exchanges all violated nodes at once and nearly always ends in a few exchanges, but may cycle on a general
+/// matrix; then the primal active-set method, which moves a node at a time and descends, finishes.
+///
+/// One solver serves one compliance matrix: the inverse on the active nodes is kept from one call to the next as long
+/// as the active set stays, which makes a warm solve two matrix–vector products.
+#[derive(Debug, Clone)]
+pub struct ActiveSet {
+    active: Vec<usize>,
+    /// The active nodes that `inverse` belongs to.
+    inverted: Vec<usize>,
+    /// C_AA⁻¹, m × m for m active nodes.
+    inverse: Vec<f64>,
+    factor: Vec<f64>,
+    pivots: Vec<usize>,
+    /// C_AA⁻¹ 1.
+    unit: Vec<f64>,
+    gathered: Vec<f64>,
+    particular: Vec<f64>,
+    separation: Vec<f64>,
+    target: Vec<f64>,
+}
+
+impl ActiveSet {
+    /// Scratch for problems with up to `nodes` nodes.
+    pub fn new(nodes: usize) -> ActiveSet {
+        ActiveSet {
+            active: Vec::with_capacity(nodes),
+            inverted: Vec::with_capacity(nodes),
+            inverse: vec![0.0; nodes * nodes],
+            factor: vec![0.0; nodes * nodes],
+            pivots: vec![0; nodes],
+            unit: vec![0.0; nodes],
+            gathered: vec![0.0; nodes],
+            particular: vec![0.0; nodes],
+            separation: vec![0.0; nodes],
+            target: vec![0.0; nodes],
+        }
+    }
+
+    /// Forgets the inverse: the compliance is another one from now on.
+    pub fn forget(&mut self) {
+        self.inverted.clear();
+    }
+
+    /// The active nodes of the last solve, ascending.
+    pub fn active(&self) -> &[usize] {
+        &self.active
+    }
+
+    /// C_AA⁻¹ of the last solve, m × m, and C_AA⁻¹ 1.
+    pub fn inverse(&self) -> (&[f64], &[f64]) {
+        let m = self.active.len();
+        (&self.inverse[..m * m], &self.unit[..m])
+    }
+
+    /// Solves from the active set of `pressure` (its positive entries; all nodes where there is none).
+    ///
+    /// # Errors
+    /// [`Error::NormalNotConverged`].
+    pub fn solve(&mut self, problem: &NormalProblem, pressure: &mut [f64]) -> Result<NormalSolution> {
+        self.active.clear();
+        self.active.extend((0..pressure.len()).filter(|&i| pressure[i] > 0.0));
+        if self.active.is_empty() {
+            self.active.extend(0..pressure.len());
+        }
+        for iterations in 1..=EXCHANGES {
+            let penetration = self.close_active_nodes(problem)?;
+            pressure.copy_from_slice(&self.target);
+            self.update_separation(problem, pressure, penetration);
+            let Some(worst) = self.worst_violation(pressure) else {
+                return Ok(NormalSolution {
+                    penetration,
+                    iterations,
+                });
+            };
+            if iterations <= SET_EXCHANGES {
+                self.active.clear();
+                self.active.extend((0..pressure.len()).filter(|&i| match pressure[i] {
+                    0.0 => self.separation[i] < -ROUND_OFF,
+                    p => p > 0.0,
+                }));
+            } else {
+                match self.active.binary_search(&worst) {
+                    Ok(place) => _ = self.active.remove(place),
+                    Err(place) => self.active.insert(place, worst),
+                }
+            }
+        }
+        self.descend(problem, pressure)
+    }
+
+    /// The node whose condition is violated most, by negative pressure or negative separation (both scaled).
+    fn worst_violation(&self, pressure: &[f64]) -> Option<usize> {
+        let violation = |i: usize| match pressure[i] {
+            0.0 if self.separation[i] < -ROUND_OFF => -self.separation[i],
+            p => -p,
+        };
+        (0..pressure.len())
+            .filter(|&i| violation(i) > 0.0)
+            .max_by(|&a, &b| violation(a).total_cmp(&violation(b)))
+    }
+
+    /// Primal active-set method: stays feasible, adds or drops one node at a time, decreases the energy (37).
+    pub(super) fn descend(&mut self, problem: &NormalProblem, pressure: &mut [f64]) -> Result<NormalSolution> {
+        let n = pressure.len();
+        let start = match problem.constraint {
+            Constraint::Total(total) => total / n as f64,
+            Constraint::Penetration(_) => 0.0,
+        };
+        pressure.fill(start);
+        self.active.clear();
+        self.active.extend((0..n).filter(|_| start > 0.0));
+        let limit = EXCHANGES + 20 * n;
+        for iterations in EXCHANGES + 1..=limit {
+            let penetration = self.close_active_nodes(problem)?;
+            let blocking = (0..n)
+                .filter(|&i| self.target[i] < 0.0)
+                .map(|i| (pressure[i] / (pressure[i] - self.target[i]), i))
+                .min_by(|a, b| a.0.total_cmp(&b.0));
+            if let Some((step, node)) = blocking {
+                for (p, t) in pressure.iter_mut().zip(&self.target) {
+                    *p += step * (t - *p);
+                }
+                pressure[node] = 0.0;
+                self.active.retain(|&i| i != node);
+                continue;
+            }
+            pressure.copy_from_slice(&self.target);
+            self.update_separation(problem, pressure, penetration);
+            let worst = (0..n)
+                .filter(|i| !self.active.contains(i))
+                .min_by(|&a, &b| self.separation[a].total_cmp(&self.separation[b]));
+            match worst {
+                Some(node) if self.separation[node] < -ROUND_OFF => {
+                    self.active.push(node);
+                    self.active.sort_unstable();
+                }
+                _ => {
+                    return Ok(NormalSolution {
+                        penetration,
+                        iterations,
+                    });
+                }
+            }
+        }
+        Err(Error::NormalNotConverged {
+            solver: "active set",
+            iterations: limit,
+            residual: self.separation.iter().fold(0.0, |m, w| m.max(-w)),
+            tolerance: ROUND_OFF,
+        })
+    }
+
+    /// Closes the gap on the active nodes, zero pressure elsewhere: `self.target`. Returns δ.
+    fn close_active_nodes(&mut self, problem: &NormalProblem) -> Result<f64> {
+        if self.inverted != self.active {
+            self.invert(problem.compliance)?;
+        }
+        let m = self.active.len();
+        for (row, &i) in self.active.iter().enumerate() {
+            self.gathered[row] = problem.profile[i];
+        }
+        dense::multiply(&self.inverse, m, &self.gathered, &mut self.particular);
+        let penetration = match problem.constraint {
+            Constraint::Penetration(penetration) => penetration,
+            Constraint::Total(total) => {
+                let sum = |values: &[f64]| values.iter().sum::<f64>();
+                (total - sum(&self.particular[..m])) / sum(&self.unit[..m])
+            }
+        };
+        self.target.fill(0.0);
+        for (row, &i) in self.active.iter().enumerate() {
+            self.target[i] = self.particular[row] + penetration * self.unit[row];
+        }
+        Ok(penetration)
+    }
+
+    /// C_AA⁻¹ and C_AA⁻¹ 1. An inverse, because a contact compliance has a condition number of about n, and a product has
+    /// none of the latency of two triangular solves. By LU: wear makes the matrix unsymmetric.
+    fn invert(&mut self, compliance: &DMatrix<f64>) -> Result<()> {
+        let m = self.active.len();
+        self.inverted.clear();
+        for (column, &j) in self.active.iter().enumerate() {
+            for (row, &i) in self.active.iter().enumerate() {
+                self.factor[column * m + row] = compliance[(i, j)];
+            }
+        }
+        if !dense::lu(&mut self.factor[..m * m], m, &mut self.pivots) {
+            return Err(Error::StiffnessNotPositiveDefinite { unknowns: m });
+        }
+        for (column, unit) in self.inverse[..m * m].chunks_exact_mut(m.max(1)).enumerate() {
+            unit.fill(0.0);
+            unit[column] = 1.0;
+            dense::lu_solve(&self.factor, m, &self.pivots, unit);
+        }
+        self.unit[..m].fill(1.0);
+        dense::lu_solve(&self.factor, m, &self.pivots, &mut self.unit[..m]);
+        self.inverted.extend_from_slice(&self.active);
+        Ok(())
+    }
+
+    /// w = C p − b − δ.
+    fn update_separation(&mut self, problem: &NormalProblem, pressure: &[f64], penetration: f64) {
+        for (w, b) in self.separation.iter_mut().zip(problem.profile) {
+            *w = -b - penetration;
+        }
+        dense::multiply_add(problem.compliance, pressure, 1.0, &mut self.separation);
+    }
+}

@@ -1,0 +1,6 @@
+//! Numerical methods that know nothing of contact.
+
+pub mod anderson;
+pub mod arctangent;
+pub mod dense;
+pub mod sparse_cholesky;
