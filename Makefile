@@ -123,7 +123,6 @@ rust-test:
 	$(call say,Rust tests)
 	cargo test --no-fail-fast
 	cargo test --features panic-injection --test fmi2_panic
-	cargo test --features divergence-injection --test divergence
 
 verify: command
 	$(call say,Verification against closed forms and the paper)

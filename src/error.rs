@@ -55,6 +55,14 @@ pub enum Error {
         /// Number of unknowns.
         unknowns: usize,
     },
+    /// A matrix between the nodes in contact has no inverse.
+    #[error("the {matrix} matrix of the contact ({unknowns} nodes) is singular")]
+    SingularContactMatrix {
+        /// Which matrix.
+        matrix: &'static str,
+        /// Number of nodes in contact.
+        unknowns: usize,
+    },
     /// The eigenvalue iteration of the depth operator failed.
     #[error("the depth operator with {unknowns} unknowns could not be diagonalised")]
     DepthBasis {
@@ -104,6 +112,18 @@ pub enum Error {
         "the thermo-mechanical operator split stopped after {iterations} iterations at a change of {residual:e} (relative; {tolerance:e} is required)"
     )]
     SplitNotConverged {
+        /// Iterations done.
+        iterations: usize,
+        /// Last relative change.
+        residual: f64,
+        /// Change required.
+        tolerance: f64,
+    },
+    /// The linear split behind the derivatives did not come to rest.
+    #[error(
+        "the derivatives of the step stopped after {iterations} iterations at a change of {residual:e} (relative; {tolerance:e} is required)"
+    )]
+    SensitivityNotConverged {
         /// Iterations done.
         iterations: usize,
         /// Last relative change.

@@ -194,6 +194,16 @@ pub const OUTPUTS: &[OutputSignal] = &[
     output!(leaving_wear_depth, "m", Some(0.0), None, 1e-7, "Depth of wear of the rail leaving at the trailing edge of the strip"),
 ];
 
+/// Rows of [`OUTPUTS`] that are sums over the steps: they begin at 0 and grow at a rate.
+const TOTALS: [&str; 4] = ["worn_volume", "friction_energy", "distance", "wheel_wear_depth"];
+
+impl Outputs {
+    /// The rows of the outputs that are sums over the steps.
+    pub fn totals() -> impl Iterator<Item = &'static OutputSignal> {
+        OUTPUTS.iter().filter(|signal| TOTALS.contains(&signal.name))
+    }
+}
+
 impl Default for Inputs {
     fn default() -> Self {
         let mut inputs = Inputs {
@@ -288,6 +298,22 @@ impl Inputs {
         Motion {
             rolling_speed,
             rigid_slip,
+        }
+    }
+
+    /// The change of [`Inputs::motion`] with that of the inputs: dV and d(ω r₀ − V).
+    pub fn motion_tangent(&self, change: &Inputs, parameters: &Parameters) -> Motion {
+        let circumferential = change.wheel_speed * parameters.wheel_radius;
+        let rolling_speed = match parameters.slip_source {
+            SlipSource::VehicleSpeed => change.vehicle_speed,
+            SlipSource::Creepage => {
+                let speed = self.motion(parameters).rolling_speed;
+                (circumferential - speed * change.creepage) / (1.0 + self.creepage)
+            }
+        };
+        Motion {
+            rolling_speed,
+            rigid_slip: circumferential - rolling_speed,
         }
     }
 

@@ -1,41 +1,30 @@
 //! The stepped model: inputs in, state advanced, outputs out. It knows nothing of FMI.
 
-use crate::contact::line::fields::{Fields, Trend};
+use crate::contact::line::fields::Fields;
 use crate::contact::line::rail::Rail;
-use crate::contact::line::sensitivity::Linearisation;
-use crate::contact::line::split::{Conditions, Contact, Scratch};
-use crate::contact::outputs;
-use crate::contact::rim;
+use crate::contact::task::{Conditions, Task};
+use crate::contact::{ContactState, ContactWorkspace, Engine};
 use crate::error::{Error, Result};
 use crate::friction;
 use crate::parameters::Parameters;
+use crate::settings::Settings;
 use crate::signals::{Inputs, OUTPUTS, Outputs};
 use serde::{Deserialize, Serialize};
 
 pub use crate::contact::line::profiles::{DEPTH_POINTS, PROFILE_POINTS, Profiles};
-pub use crate::contact::line::split::Convergence;
+pub use crate::contact::task::Convergence;
 
-/// A change of the inputs by more than this share of their scale is a jump: the step that follows it is divided.
-const JUMP: f64 = 0.2;
-/// Length of the first sub-step after a jump, in passages of the contact window; each further one doubles.
-const FIRST_SUBSTEP: f64 = 0.25;
-/// Largest number of sub-steps of equal length while the inputs change at given rates.
-const RAMP_SUBSTEPS: f64 = 50.0;
-/// Shortest time that a step takes, `s`: rates of change over less would overflow, and no quantity can tell the difference.
-const SHORTEST_STEP: f64 = 1e-100;
-/// Times that a sub-step which does not converge is quartered, in one step.
-const RETRIES: usize = 4;
-
-/// Everything that does not change after initialisation: the rail, and the parameters (but for the tunable ones).
+/// Everything that does not change after initialisation: the contact engine, the parameters (but for the tunable ones), the
+/// limits of the methods.
 pub struct Model {
     parameters: Parameters,
-    rail: Rail,
+    settings: Settings,
+    engine: Engine,
 }
 
-/// Scratch of a step: no content survives from one call to the next that would change a result.
+/// Scratch of a step. What a step leaves in it changes no result of another one.
 pub struct Workspace {
-    scratch: Scratch,
-    trial: Fields,
+    contact: ContactWorkspace,
 }
 
 /// Everything that changes in time.
@@ -48,15 +37,25 @@ pub struct State {
     /// Length of the last committed sub-step, `s`; 0 before the first.
     pub duration: f64,
     /// Temperature, wear, tractions.
-    pub fields: Fields,
-    /// How they changed over the last sub-step.
-    pub trend: Trend,
+    pub contact: ContactState,
     /// Outputs at the last committed instant, totals included.
     pub outputs: Outputs,
     /// Rates of change of the outputs over the last committed sub-step, per second.
     pub output_rates: Outputs,
     /// How the last step converged.
     pub convergence: Convergence,
+}
+
+impl State {
+    /// The fields of the line engine.
+    pub fn fields(&self) -> &Fields {
+        &self.contact.line().fields
+    }
+
+    /// The fields of the line engine.
+    pub fn fields_mut(&mut self) -> &mut Fields {
+        &mut self.contact.line_mut().fields
+    }
 }
 
 /// A step that did not reach its end: the state stands at the last committed sub-step.
@@ -76,9 +75,21 @@ impl Model {
     /// # Errors
     /// Everything [`Parameters::validate`] refuses, and a stiffness matrix that cannot be factorised.
     pub fn new(parameters: Parameters) -> Result<Model> {
+        Model::with_settings(parameters, Settings::default())
+    }
+
+    /// As [`Model::new`], with other limits and tolerances than the default ones.
+    ///
+    /// # Errors
+    /// As [`Model::new`].
+    pub fn with_settings(parameters: Parameters, settings: Settings) -> Result<Model> {
         parameters.validate()?;
-        let rail = Rail::new(&parameters)?;
-        Ok(Model { parameters, rail })
+        let engine = Engine::new(&parameters)?;
+        Ok(Model {
+            parameters,
+            settings,
+            engine,
+        })
     }
 
     /// The parameters.
@@ -86,9 +97,9 @@ impl Model {
         &self.parameters
     }
 
-    /// The rail: mesh, compliance, thermal maps.
+    /// What the line engine has computed once: mesh, compliance, thermal maps.
     pub fn rail(&self) -> &Rail {
-        &self.rail
+        self.engine.line().rail()
     }
 
     /// Takes the tunable parameters (slip regularisation and friction coefficients) from `parameters`; the others stay.
@@ -110,8 +121,7 @@ impl Model {
     /// Scratch for [`Model::step`].
     pub fn workspace(&self) -> Workspace {
         Workspace {
-            scratch: Scratch::new(&self.rail),
-            trial: Fields::new(&self.rail),
+            contact: self.engine.workspace(&self.settings),
         }
     }
 
@@ -122,37 +132,24 @@ impl Model {
     /// Inputs out of range, or a solver that did not converge.
     pub fn initial_state(&self, workspace: &mut Workspace, inputs: &Inputs) -> Result<State> {
         inputs.check(&self.parameters)?;
-        let mut fields = Fields::new(&self.rail);
-        fields.wheel_temperature = inputs.ambient_temperature;
-        let contact = self.contact(inputs, f64::INFINITY);
-        contact.solve_mechanics(&mut fields, &mut workspace.scratch)?;
-        let mut state = State {
+        let task = self.task(inputs, f64::INFINITY);
+        let contact = self.engine.initial_state(&task, &mut workspace.contact)?;
+        let outputs = self.engine.readings(&task, &contact).outputs(&self.parameters, inputs);
+        Ok(State {
             time: 0.0,
             inputs: *inputs,
             duration: 0.0,
-            fields,
-            trend: Trend::new(&self.rail),
-            outputs: Outputs::default(),
+            contact,
+            outputs,
             output_rates: Outputs::default(),
             convergence: Convergence::default(),
-        };
-        state.outputs = outputs::instantaneous(&self.rail, &self.parameters, &state.fields, inputs);
-        Ok(state)
+        })
     }
 
     /// Whether a state (of another source) has the sizes of this model and finite content.
     pub fn accepts(&self, state: &State) -> bool {
-        let expected = Fields::new(&self.rail);
-        let fields = &state.fields;
-        let expected_trend = Trend::new(&self.rail);
-        let pairs = fields.vectors().into_iter().zip(expected.vectors());
-        let trends = state.trend.vectors().into_iter().zip(expected_trend.vectors());
-        pairs
-            .chain(trends)
-            .all(|(own, expected)| own.len() == expected.len() && own.iter().all(|v| v.is_finite()))
+        self.engine.accepts(&state.contact)
             && OUTPUTS.iter().all(|signal| (signal.get)(&state.outputs).is_finite())
-            && fields.penetration.is_finite()
-            && fields.wheel_temperature.is_finite()
             && state.time.is_finite()
             && state.duration >= 0.0
             && state.inputs.check(&self.parameters).is_ok()
@@ -174,8 +171,9 @@ impl Model {
         rates: &Inputs,
         duration: f64,
     ) -> std::result::Result<(), Interrupted> {
+        let settings = &self.settings.step;
         let duration = if duration > 0.0 {
-            duration.max(SHORTEST_STEP)
+            duration.max(settings.shortest)
         } else {
             duration
         };
@@ -189,10 +187,10 @@ impl Model {
 
         let jump = self.change(&state.inputs, inputs);
         let ramp = self.change(inputs, &self.inputs_at(inputs, rates, duration));
-        let mut substep = duration / (ramp / JUMP).ceil().clamp(1.0, RAMP_SUBSTEPS);
+        let mut substep = duration / (ramp / settings.jump).ceil().clamp(1.0, settings.ramp_substeps);
         let largest_substep = substep;
-        if jump > JUMP {
-            substep = substep.min(FIRST_SUBSTEP * self.passage_time(inputs));
+        if jump > settings.jump {
+            substep = substep.min(settings.first_substep * self.passage_time(inputs));
         }
         let mut convergence = Convergence::default();
         let mut retries = 0;
@@ -209,7 +207,7 @@ impl Model {
             let solved = match self.advance(workspace, state, &at_end, length) {
                 Ok(solved) => solved,
                 // A shorter sub-step starts closer to its solution; what the window cannot hold no step can.
-                Err(error) if !matches!(error, Error::ContactLeavesWindow { .. }) && retries < RETRIES => {
+                Err(error) if !matches!(error, Error::ContactLeavesWindow { .. }) && retries < settings.retries => {
                     retries += 1;
                     substep = 0.25 * length;
                     continue;
@@ -234,29 +232,16 @@ impl Model {
         inputs: &Inputs,
         duration: f64,
     ) -> Result<Convergence> {
-        let Workspace { scratch, trial } = workspace;
-        // The march makes the temperature anew.
-        trial.copy_surface_from(&state.fields);
-        // Not further than it was observed.
-        state.trend.extrapolate(trial, duration.min(state.duration));
-        let contact = self.contact(inputs, duration);
-        let convergence = contact.operator_split(&state.fields, trial, scratch)?;
-
-        let mut outputs = outputs::instantaneous(&self.rail, &self.parameters, trial, inputs);
-        outputs.worn_volume = state.outputs.worn_volume + outputs.wear_rate * duration;
-        outputs.friction_energy = state.outputs.friction_energy + outputs.friction_power * duration;
-        outputs.distance = state.outputs.distance + contact.conditions.motion.rolling_speed.abs() * duration;
-        outputs.wheel_wear_depth = state.outputs.wheel_wear_depth
-            + rim::wear_rate(
-                &self.parameters,
-                outputs::sliding_power(&self.rail, &self.parameters, trial),
-            ) * duration;
+        let task = self.task(inputs, duration);
+        let (convergence, readings) =
+            self.engine
+                .solve(&task, &mut workspace.contact, &state.contact, state.duration)?;
+        let outputs = readings.outputs_after(&self.parameters, &task.conditions, &state.outputs);
         for signal in OUTPUTS {
             let rate = ((signal.get)(&outputs) - (signal.get)(&state.outputs)) / duration;
             (signal.set)(&mut state.output_rates, rate);
         }
-        state.trend.update(&state.fields, trial, duration);
-        std::mem::swap(&mut state.fields, trial);
+        self.engine.commit(&mut workspace.contact, &mut state.contact, duration);
         state.inputs = *inputs;
         state.duration = duration;
         state.outputs = outputs;
@@ -268,10 +253,10 @@ impl Model {
         inputs.advanced(rates, time).snapped(&self.parameters)
     }
 
-    fn contact(&self, inputs: &Inputs, duration: f64) -> Contact<'_> {
-        Contact {
-            rail: &self.rail,
+    fn task(&self, inputs: &Inputs, duration: f64) -> Task<'_> {
+        Task {
             parameters: &self.parameters,
+            settings: &self.settings,
             conditions: Conditions {
                 inputs: *inputs,
                 motion: inputs.motion(&self.parameters),
@@ -305,7 +290,7 @@ impl Model {
 
     /// Time in which rail material crosses the contact window, `s`; infinite at rest.
     fn passage_time(&self, inputs: &Inputs) -> f64 {
-        2.0 * self.rail.mesh.window_half_width() / inputs.motion(&self.parameters).rolling_speed.abs()
+        self.engine.window_length() / inputs.motion(&self.parameters).rolling_speed.abs()
     }
 
     /// Rates of change of the outputs at the communication point, per second: over the last sub-step.
@@ -327,10 +312,9 @@ impl Model {
         state: &State,
         inputs: impl IntoIterator<Item = usize>,
     ) -> Result<Vec<Outputs>> {
-        let Workspace { scratch, trial } = workspace;
-        trial.copy_from(&state.fields);
-        let mut step = Linearisation::new(self.contact(&state.inputs, state.duration), trial, scratch)?;
-        inputs.into_iter().map(|input| step.output_sensitivity(input)).collect()
+        let task = self.task(&state.inputs, state.duration);
+        self.engine
+            .sensitivities(&task, &mut workspace.contact, &state.contact, inputs)
     }
 
     /// How the last step converged.
@@ -340,6 +324,165 @@ impl Model {
 
     /// Profiles for plotting.
     pub fn profiles(&self, state: &State) -> Profiles {
-        Profiles::new(&self.rail, &state.fields, state.inputs.ambient_temperature)
+        self.engine.profiles(&state.contact, state.inputs.ambient_temperature)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::parameters::{NormalSolver, WheelHeating};
+
+    /// A solver by what its error says, and how its limit is set.
+    type Limit = (&'static str, fn(&mut Settings, usize));
+
+    const LIMITS: [Limit; 7] = [
+        ("normal contact solver (active set)", |settings, limit| {
+            settings.normal.exchanges = limit;
+            settings.normal.descents_per_node = 0;
+        }),
+        ("normal contact solver (Pschenichnyj)", |settings, limit| {
+            settings.normal.linearisations = limit;
+        }),
+        ("tangential Newton solver", |settings, limit| {
+            settings.tangential.newton_steps = limit;
+            settings.tangential.continuation = 0;
+        }),
+        ("coupling of normal and tangential contact", |settings, limit| {
+            settings.split.iterations = limit;
+        }),
+        ("thermo-mechanical operator split", |settings, limit| {
+            settings.split.iterations = limit;
+        }),
+        ("surface heat condition", |settings, limit| {
+            settings.heat.surface_newton_steps = limit;
+        }),
+        ("temperature of the wheel", |settings, limit| {
+            settings.heat.rim_iterations = limit;
+        }),
+    ];
+
+    /// A small model that heats its wheel, and a state from which a jump of the creepage divides the next step.
+    fn model(normal_solver: NormalSolver, settings: Settings) -> Model {
+        let parameters = Parameters {
+            normal_solver,
+            wheel_heating: WheelHeating::On,
+            contact_nodes: 25,
+            depth_nodes: 17,
+            ..Parameters::default()
+        };
+        Model::with_settings(parameters, settings).unwrap()
+    }
+
+    const JUMPED: fn() -> Inputs = || Inputs {
+        creepage: 0.01,
+        ..Inputs::default()
+    };
+
+    fn step(model: &Model, state: &mut State, duration: f64) -> std::result::Result<(), Interrupted> {
+        model.step(&mut model.workspace(), state, &JUMPED(), &Inputs::ZERO, duration)
+    }
+
+    /// Whatever solver fails, wherever in the step: the state is that of the last committed sub-step, bit for bit.
+    #[test]
+    fn a_step_that_fails_leaves_the_last_committed_state() {
+        let mut later = 0;
+        for (words, set_limit) in LIMITS {
+            let normal_solver = if words.contains("Pschenichnyj") {
+                NormalSolver::Pschenichnyj
+            } else {
+                NormalSolver::ActiveSet
+            };
+            let sound = model(normal_solver, Settings::default());
+            let inputs = Inputs::default();
+            let mut before = sound.initial_state(&mut sound.workspace(), &inputs).unwrap();
+            sound
+                .step(&mut sound.workspace(), &mut before, &inputs, &Inputs::ZERO, 1e-3)
+                .unwrap();
+            let mut undisturbed = before.clone();
+            step(&sound, &mut undisturbed, 2e-3).unwrap();
+            let mut failures = 0;
+            for limit in 0.. {
+                let mut settings = Settings::default();
+                settings.step.retries = 0;
+                set_limit(&mut settings, limit);
+                let limited = model(normal_solver, settings);
+                if words.starts_with("coupling") {
+                    // The mechanics alone are solved for the initial state only.
+                    let failed = limited.initial_state(&mut limited.workspace(), &inputs);
+                    let Err(error) = failed else { break };
+                    assert!(error.to_string().contains(words), "{error}");
+                    failures += 1;
+                    continue;
+                }
+                let mut state = before.clone();
+                let Err(interrupted) = step(&limited, &mut state, 2e-3) else {
+                    assert!(state == undisturbed, "{words}, limit {limit}");
+                    break;
+                };
+                failures += 1;
+                assert!(interrupted.to_string().contains(words), "{interrupted}");
+                if interrupted.committed == 0.0 {
+                    assert!(state == before, "{words}, limit {limit}");
+                } else {
+                    later += 1;
+                    assert_eq!(state.time, before.time + interrupted.committed);
+                    // The sub-steps that were committed are those of a sound step, so that going on from them leads where the
+                    // sound step leads, to the order of its sub-steps.
+                    assert!(state.fields() != before.fields());
+                    step(&sound, &mut state, 2e-3 - interrupted.committed).unwrap();
+                    let (resumed, whole) = (state.outputs.traction_force, undisturbed.outputs.traction_force);
+                    assert!((resumed / whole - 1.0).abs() < 1e-2, "{words}: {resumed} {whole}");
+                }
+            }
+            assert!(failures > 0, "{words}: never failed");
+        }
+        assert!(later > 0, "no solver failed after a committed sub-step");
+    }
+
+    /// A workspace in which a step has failed gives the bits of a fresh one.
+    #[test]
+    fn a_failed_step_leaves_nothing_in_the_workspace() {
+        let mut settings = Settings::default();
+        settings.split.iterations = 6;
+        let limited = model(NormalSolver::ActiveSet, settings);
+        let mut workspace = limited.workspace();
+        let start = limited.initial_state(&mut workspace, &Inputs::default()).unwrap();
+        let step = |workspace: &mut Workspace, inputs: &Inputs, duration| {
+            let mut state = start.clone();
+            let result = limited.step(workspace, &mut state, inputs, &Inputs::ZERO, duration);
+            (result, state)
+        };
+        let easy = Inputs::default();
+        let expected = step(&mut limited.workspace(), &easy, 1e-4);
+        assert!(expected.0.is_ok());
+        // Sliding on the spot with a thousandfold wear needs more iterations than there are.
+        let hard = Inputs {
+            creepage: 0.9,
+            wheel_speed: 400.0,
+            ..easy
+        };
+        let failed = step(&mut workspace, &hard, 1.0);
+        assert!(failed.0.is_err());
+        assert!(step(&mut workspace, &easy, 1e-4) == expected);
+    }
+
+    /// A sub-step that fails is tried again in quarters, which start closer to their solution.
+    #[test]
+    fn a_shorter_sub_step_helps() {
+        let mut without = Settings::default();
+        without.split.iterations = 4;
+        without.step.retries = 0;
+        let mut with = without;
+        with.step.retries = 4;
+        let [with, without] = [with, without].map(|settings| model(NormalSolver::ActiveSet, settings));
+        let sound = model(NormalSolver::ActiveSet, Settings::default());
+        let state = sound.initial_state(&mut sound.workspace(), &Inputs::default()).unwrap();
+        let helped = (1..200).any(|k| {
+            let duration = 1e-4 * f64::from(k);
+            let mut state_with = state.clone();
+            step(&without, &mut state.clone(), duration).is_err() && step(&with, &mut state_with, duration).is_ok()
+        });
+        assert!(helped);
     }
 }

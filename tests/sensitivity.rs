@@ -52,10 +52,10 @@ fn difference(
     let (here, ahead, behind) = (run(0.0), run(h), run(-h));
     let (further_ahead, further_behind) = (run(2.0 * h), run(-2.0 * h));
     let same_set = |a: &State, b: &State| {
-        a.fields
+        a.fields()
             .pressure
             .iter()
-            .zip(&b.fields.pressure)
+            .zip(&b.fields().pressure)
             .all(|(a, b)| (*a > 0.0) == (*b > 0.0))
     };
     let smooth_set = [&ahead, &behind, &further_ahead, &further_behind]

@@ -11,15 +11,16 @@ use wheelrail::verification::Run;
 
 /// Leaves temperature and wear, the state proper, and nothing that a step only starts its iteration from.
 fn forget_the_start(run: &mut Run) {
-    let fields = &mut run.state.fields;
+    let fields = run.state.fields_mut();
     for start in [&mut fields.pressure, &mut fields.shear, &mut fields.slip] {
         start.fill(0.0);
     }
+    let trend = &mut run.state.contact.line_mut().trend;
     for trend in [
-        &mut run.state.trend.shear,
-        &mut run.state.trend.surface_temperature,
-        &mut run.state.trend.thermal_displacement,
-        &mut run.state.trend.wear,
+        &mut trend.shear,
+        &mut trend.surface_temperature,
+        &mut trend.thermal_displacement,
+        &mut trend.wear,
     ] {
         trend.fill(0.0);
     }
@@ -59,7 +60,7 @@ fn active_set_and_linearisation_give_the_same_fields() {
             run(NormalSolver::ActiveSet, control),
             run(NormalSolver::Pschenichnyj, control),
         );
-        let (a, b) = (&active.state.fields, &linearised.state.fields);
+        let (a, b) = (active.state.fields(), linearised.state.fields());
         for (name, a, b) in [
             ("pressure", &a.pressure, &b.pressure),
             ("shear", &a.shear, &b.shear),

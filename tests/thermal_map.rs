@@ -10,9 +10,11 @@ use wheelrail::body::compliance::{self, Scales, ThermalDisplacement};
 use wheelrail::contact::line::rail::Rail;
 use wheelrail::friction::FrictionState;
 use wheelrail::heat::incoming::Incoming;
-use wheelrail::heat::march::{HeatMarch, Heated, SurfaceExchange};
+use wheelrail::heat::march::{HeatMarch, Heated};
+use wheelrail::heat::surface::{SurfaceCondition, SurfaceExchange};
 use wheelrail::heat::thermal_map::{TOLERANCE, exact_displacement};
 use wheelrail::parameters::{FrictionLaw, Parameters};
+use wheelrail::settings::HeatSettings;
 use wheelrail::transport::Upwind;
 
 fn parameters() -> Parameters {
@@ -58,13 +60,16 @@ proptest! {
             })
             .collect();
         let march = HeatMarch {
-            basis: &rail.basis,
+            basis: &rail.heat.basis,
             transport: Upwind::new(&rail.mesh.x, speed),
             first_contact: rail.mesh.first_contact,
             duration: 10.0_f64.powf(log_step),
-            friction: FrictionState { parameters: &parameters, ambient: 293.15, scale: 1.0 },
+            surface: SurfaceCondition {
+                friction: FrictionState { parameters: &parameters, ambient: 293.15, scale: 1.0 },
+                settings: HeatSettings::default(),
+            },
         };
-        let size = rail.mesh.columns() * rail.basis.len();
+        let size = rail.mesh.columns() * rail.heat.basis.len();
         let (mut before, mut after) = (vec![0.0; size], vec![0.0; size]);
         for _ in 0..steps {
             march.advance(
@@ -75,13 +80,13 @@ proptest! {
                     surface: &mut vec![0.0; rail.mesh.columns()],
                     flux: &mut vec![0.0; 61],
                 },
-                &mut vec![0.0; HeatMarch::scratch_len(&rail.basis)],
+                &mut vec![0.0; HeatMarch::scratch_len(&rail.heat.basis)],
             ).unwrap();
             std::mem::swap(&mut before, &mut after);
         }
-        let expected = exact_displacement(&rail.mesh, &rail.basis, exact, &before);
+        let expected = exact_displacement(&rail.mesh, &rail.heat.basis, exact, &before);
         let mut computed = vec![0.0; expected.len()];
-        rail.thermal_map.apply(&before, &mut vec![0.0; rail.thermal_map.scratch_len()], &mut computed);
+        rail.heat.displacement.apply(&before, &mut vec![0.0; rail.heat.displacement.scratch_len()], &mut computed);
         // Each moment of each column keeps its gains down to TOLERANCE of the largest displacement that a unit of it
         // makes in the middle of the window; what the columns drop adds up with random signs.
         let error = largest_difference(&expected, &computed);
@@ -93,9 +98,9 @@ proptest! {
 #[test]
 fn the_compressed_map_holds_for_rail_that_comes_in_hot() {
     let (rail, exact) = rail();
-    let m = rail.basis.len();
+    let m = rail.heat.basis.len();
     for skin_depth in [1e-3, 5e-3, 2e-2] {
-        let incoming = Incoming::new(&rail.mesh.depth, &rail.basis, skin_depth);
+        let incoming = Incoming::new(&rail.mesh.depth, &rail.heat.basis, skin_depth);
         let mut amplitudes = vec![0.0; rail.mesh.columns() * m];
         // All of the strip, and a front in the middle of it.
         for from in [0, rail.mesh.columns() / 2] {
@@ -103,11 +108,11 @@ fn the_compressed_map_holds_for_rail_that_comes_in_hot() {
             for column in amplitudes.chunks_exact_mut(m).skip(from) {
                 incoming.enter(50.0, column, &mut 0.0);
             }
-            let expected = exact_displacement(&rail.mesh, &rail.basis, exact, &amplitudes);
+            let expected = exact_displacement(&rail.mesh, &rail.heat.basis, exact, &amplitudes);
             let mut computed = vec![0.0; expected.len()];
-            rail.thermal_map.apply(
+            rail.heat.displacement.apply(
                 &amplitudes,
-                &mut vec![0.0; rail.thermal_map.scratch_len()],
+                &mut vec![0.0; rail.heat.displacement.scratch_len()],
                 &mut computed,
             );
             let error = largest_difference(&expected, &computed);

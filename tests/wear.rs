@@ -40,10 +40,10 @@ fn worn_volume_is_the_depth_on_the_rail_and_what_left_it() {
             assert_eq!(run.state.duration, 5e-3);
             let speed = inputs(step).vehicle_speed;
             let outflow = Upwind::new(&run.model.rail().mesh.x, speed).outflow();
-            left += speed.abs() * 5e-3 * run.state.fields.wear[outflow];
+            left += speed.abs() * 5e-3 * run.state.fields().wear[outflow];
         }
         let x = &run.model.rail().mesh.x;
-        let on_the_rail = worn_area(x, direction, &run.state.fields.wear);
+        let on_the_rail = worn_area(x, direction, &run.state.fields().wear);
         let volume = parameters.contact_width * (on_the_rail + left);
         let expected = run.state.outputs.worn_volume;
         assert!(
@@ -149,7 +149,7 @@ proptest! {
         let mut run = Run::new(&parameters, &inputs(steps[0])).unwrap();
         for &step in &steps {
             run.hold(&inputs(step), 2e-3, 5).unwrap();
-            assert_signs(&run.state.fields);
+            assert_signs(run.state.fields());
         }
     }
 

@@ -107,6 +107,6 @@ impl Run {
 
     /// Nodes under pressure.
     pub fn nodes_in_contact(&self) -> usize {
-        self.state.fields.pressure.iter().filter(|&&p| p > 0.0).count()
+        self.state.fields().pressure.iter().filter(|&&p| p > 0.0).count()
     }
 }

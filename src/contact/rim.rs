@@ -23,10 +23,9 @@
 //! k_w ∫ |s| p dx / (2π r₀) per time on the contact's width b. A wheel that does not turn wears a flat instead, which a
 //! uniform depth does not show. The loss, micrometres, is not fed back into r₀.
 
-use crate::contact::line::fields::Fields;
-use crate::contact::line::rail::Rail;
 use crate::error::{Error, Result};
 use crate::parameters::{Parameters, WheelHeating};
+use crate::settings::HeatSettings;
 use std::f64::consts::PI;
 
 /// Section of the ring times its circumference at the centroid, `m³`.
@@ -61,36 +60,45 @@ pub struct ContactHeat {
     pub conductance: f64,
 }
 
+/// What heats the wheel at one surface node, or a change of it. Tractions are scaled.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct HeatedNode {
+    /// Pressure.
+    pub pressure: f64,
+    /// Shear traction.
+    pub shear: f64,
+    /// Slip velocity, `m/s`.
+    pub slip: f64,
+    /// Temperature rise of the rail's surface, `K`.
+    pub rise: f64,
+}
+
 impl ContactHeat {
-    /// Of the given fields.
-    pub fn new(rail: &Rail, parameters: &Parameters, fields: &Fields) -> ContactHeat {
-        let weights = Weights::new(rail, parameters);
+    /// Of nodes of which a scaled traction of 1 has the given force, `N`.
+    pub fn new(parameters: &Parameters, unit_force: f64, nodes: impl Iterator<Item = HeatedNode>) -> ContactHeat {
+        let weights = Weights::new(parameters, unit_force);
         let mut heat = ContactHeat::default();
-        for node in 0..rail.mesh.contact_nodes {
-            let (p, rise) = (
-                fields.pressure[node],
-                fields.surface_temperature[rail.mesh.contact_column(node)],
-            );
-            heat.friction += weights.friction * (fields.shear[node] * fields.slip[node]).abs();
-            heat.conducted += weights.conduction * p * rise;
-            heat.conductance += weights.conduction * p;
+        for node in nodes {
+            heat.friction += weights.friction * (node.shear * node.slip).abs();
+            heat.conducted += weights.conduction * node.pressure * node.rise;
+            heat.conductance += weights.conduction * node.pressure;
         }
         heat
     }
 
-    /// Its change with that of the fields.
-    pub fn tangent(rail: &Rail, parameters: &Parameters, fields: &Fields, tangent: &Fields) -> ContactHeat {
-        let weights = Weights::new(rail, parameters);
+    /// Its change: nodes, each with its change.
+    pub fn tangent(
+        parameters: &Parameters,
+        unit_force: f64,
+        nodes: impl Iterator<Item = (HeatedNode, HeatedNode)>,
+    ) -> ContactHeat {
+        let weights = Weights::new(parameters, unit_force);
         let mut heat = ContactHeat::default();
-        for node in 0..rail.mesh.contact_nodes {
-            let column = rail.mesh.contact_column(node);
-            let (shear, slip) = (fields.shear[node], fields.slip[node]);
-            heat.friction +=
-                weights.friction * (shear * slip).signum() * (tangent.shear[node] * slip + shear * tangent.slip[node]);
-            heat.conducted += weights.conduction
-                * (tangent.pressure[node] * fields.surface_temperature[column]
-                    + fields.pressure[node] * tangent.surface_temperature[column]);
-            heat.conductance += weights.conduction * tangent.pressure[node];
+        for (node, change) in nodes {
+            let sign = (node.shear * node.slip).signum();
+            heat.friction += weights.friction * sign * (change.shear * node.slip + node.shear * change.slip);
+            heat.conducted += weights.conduction * (change.pressure * node.rise + node.pressure * change.rise);
+            heat.conductance += weights.conduction * change.pressure;
         }
         heat
     }
@@ -101,18 +109,17 @@ impl ContactHeat {
     }
 }
 
-/// Factors on the scaled sums over the contact nodes.
+/// Factors on the scaled sums over the nodes.
 struct Weights {
     friction: f64,
     conduction: f64,
 }
 
 impl Weights {
-    fn new(rail: &Rail, parameters: &Parameters) -> Weights {
-        let force = parameters.contact_width * rail.mesh.contact_spacing() * rail.scales.pressure;
+    fn new(parameters: &Parameters, unit_force: f64) -> Weights {
         Weights {
-            friction: (1.0 - parameters.heat_partition) * force,
-            conduction: parameters.heat_partition * force / parameters.contact_thermal_resistance,
+            friction: (1.0 - parameters.heat_partition) * unit_force,
+            conduction: parameters.heat_partition * unit_force / parameters.contact_thermal_resistance,
         }
     }
 }
@@ -148,19 +155,10 @@ pub fn temperature_tangent(
     }
 }
 
-/// Limit of the iteration between rail and rim.
-const ITERATIONS: usize = 50;
-/// Change of T_w at which it rests, relative to the absolute temperature: some ten times what the surface condition of a
-/// column is solved to.
-const TOLERANCE: f64 = 1e-13;
-
-/// Iterations in which it gets there but for extreme conductances, where round-off is larger.
-const FAST: usize = 10;
-const ROUND_OFF: f64 = 1e-12;
-
 /// Secant method for T_w = rim(rail(T_w)); its first step is that of the plain iteration.
 #[derive(Debug, Clone, Copy)]
 pub struct FixedPoint {
+    settings: HeatSettings,
     temperature: f64,
     /// Iterate and image before.
     last: Option<(f64, f64)>,
@@ -169,8 +167,9 @@ pub struct FixedPoint {
 
 impl FixedPoint {
     /// From a first guess, `K`.
-    pub fn new(guess: f64) -> FixedPoint {
+    pub fn new(guess: f64, settings: HeatSettings) -> FixedPoint {
         FixedPoint {
+            settings,
             temperature: guess,
             last: None,
             iterations: 0,
@@ -189,13 +188,18 @@ impl FixedPoint {
     pub fn rests(&mut self, image: f64) -> Result<bool> {
         let residual = image - self.temperature;
         self.iterations += 1;
-        let tolerance = if self.iterations <= FAST { TOLERANCE } else { ROUND_OFF };
+        let settings = &self.settings;
+        let tolerance = if self.iterations <= settings.rim_fast_iterations {
+            settings.rim_tolerance
+        } else {
+            settings.rim_round_off
+        };
+        if self.iterations > settings.rim_iterations {
+            let iterations = settings.rim_iterations;
+            return Err(Error::WheelHeatNotConverged { iterations, residual });
+        }
         if residual.abs() <= tolerance * image.abs() {
             return Ok(true);
-        }
-        if self.iterations == ITERATIONS {
-            let iterations = ITERATIONS;
-            return Err(Error::WheelHeatNotConverged { iterations, residual });
         }
         let slope = match self.last {
             Some((temperature, last)) if temperature != self.temperature => {

@@ -197,16 +197,6 @@ pub unsafe extern "C" fn fmi2Terminate(component: Component) -> Status {
     unsafe { call(component, Function::Terminate, Instance::terminate) }
 }
 
-/// Not of the standard: lets a solver (its place in [`crate::injection::Solver::ALL`]) diverge `times` times in this thread
-/// after it has converged `after` more times.
-#[cfg(feature = "divergence-injection")]
-#[unsafe(no_mangle)]
-pub extern "C" fn wheelrail_diverge(solver: u32, after: u32, times: u32) {
-    if let Some(solver) = crate::injection::Solver::ALL.get(solver as usize) {
-        crate::injection::diverge(*solver, after as usize, times as usize);
-    }
-}
-
 /// Back to the start values.
 ///
 /// # Safety

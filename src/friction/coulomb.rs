@@ -28,7 +28,12 @@ pub fn saturation_slope(slip: f64, regularisation: f64) -> f64 {
 }
 
 /// A node sticks below this value of |φ|: |s| < 6.3 ε.
-pub const STICK_SATURATION: f64 = 0.9;
+const STICK_SATURATION: f64 = 0.9;
+
+/// Whether a node with this slip counts as sticking.
+pub fn sticks(slip: f64, regularisation: f64) -> bool {
+    saturation(slip, regularisation).abs() < STICK_SATURATION
+}
 
 #[cfg(test)]
 mod tests {

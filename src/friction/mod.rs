@@ -91,6 +91,12 @@ impl FrictionState<'_> {
         let (mu, slope) = coefficient(self.parameters, self.ambient + rise);
         (self.scale * mu, self.scale * slope)
     }
+
+    /// Change of μ at a temperature rise with that of the rise `K`, the ambient `K` and the factor.
+    pub fn coefficient_tangent(&self, rise: f64, [rise_change, ambient_change, scale_change]: [f64; 3]) -> f64 {
+        let slope = self.coefficient(rise).1;
+        slope * (rise_change + ambient_change) + scale_change * coefficient(self.parameters, self.ambient + rise).0
+    }
 }
 
 #[cfg(test)]

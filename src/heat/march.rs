@@ -7,52 +7,10 @@
 //! the surface flux q, and the surface condition (23) is one scalar equation a column.
 
 use super::basis::DepthBasis;
-use crate::error::{Error, Result};
-use crate::friction::{self, FrictionState, coulomb};
-use crate::injection::{self, Solver};
+use super::surface::{CommonChange, ExchangeTangent, SurfaceCondition, SurfaceExchange};
+use crate::error::Result;
 use crate::numerics::dense::{self, Arithmetic, LANES};
-use crate::parameters::Parameters;
 use crate::transport::Upwind;
-
-/// What heats and cools one column's surface, at the rail temperature θ (rise):
-/// q = ᾱ [ μ(θ) P + S − H θ ], the condition (23) with P = p |φ(s) s|, S = θ_w p / r and H = k ρ c_p |s| p + p / r.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct SurfaceExchange {
-    /// P: friction power per area and friction coefficient, `W/m²`.
-    pub friction: f64,
-    /// k ρ c_p |s| p: heat carried off by debris per kelvin, `W/(m² K)`.
-    pub debris: f64,
-    /// p / r: heat conducted into the wheel per kelvin, `W/(m² K)`.
-    pub conduction: f64,
-    /// S: heat conducted from a wheel at θ_w into rail at ambient, `W/m²`.
-    pub wheel: f64,
-}
-
-impl SurfaceExchange {
-    /// The exchange under pressure `pressure` `Pa` and slip velocity `slip` `m/s` with a wheel at `wheel_rise` `K` over the
-    /// ambient.
-    pub fn new(parameters: &Parameters, pressure: f64, slip: f64, wheel_rise: f64) -> SurfaceExchange {
-        if pressure == 0.0 {
-            return SurfaceExchange::default();
-        }
-        let saturation = coulomb::saturation(slip, parameters.slip_regularisation);
-        let conduction = pressure / parameters.contact_thermal_resistance;
-        SurfaceExchange {
-            friction: pressure * (saturation * slip).abs(),
-            debris: parameters.wear_coefficient * parameters.volumetric_heat_capacity() * slip.abs() * pressure,
-            conduction,
-            wheel: conduction * wheel_rise,
-        }
-    }
-
-    /// Whether the surface is free, so that no heat crosses it.
-    fn is_open(&self) -> bool {
-        self.conduction == 0.0 && self.friction == 0.0
-    }
-}
-
-/// Limit of the Newton steps of one column's surface condition.
-const NEWTON_STEPS: usize = 60;
 
 /// One implicit time step of the march.
 pub struct HeatMarch<'a> {
@@ -64,11 +22,23 @@ pub struct HeatMarch<'a> {
     pub first_contact: usize,
     /// Step Δt, `s`; infinite for the steady field.
     pub duration: f64,
-    /// Friction law.
-    pub friction: FrictionState<'a>,
+    /// The surface condition.
+    pub surface: SurfaceCondition<'a>,
 }
 
-/// What the march computes.
+/// Change of the data of one step, and the exchange of the step itself.
+pub struct MarchChange<'a> {
+    /// Of |V|, `m/s`.
+    pub speed: f64,
+    /// What all columns have in common.
+    pub common: CommonChange,
+    /// The exchange at the contact nodes, not changed.
+    pub exchange: &'a [SurfaceExchange],
+    /// Its change.
+    pub exchange_tangent: &'a [ExchangeTangent],
+}
+
+/// A temperature field, or a change of one, and the flux that goes with it.
 pub struct Heated<'a> {
     /// Modal amplitudes, columns × modes, column by column.
     pub temperature: &'a mut [f64],
@@ -111,7 +81,7 @@ impl HeatMarch<'_> {
         after: &mut Heated,
         scratch: &mut [f64],
     ) -> Result<()> {
-        let parameters = self.friction.parameters;
+        let parameters = self.surface.friction.parameters;
         let (m, capacity) = (self.basis.len(), parameters.volumetric_heat_capacity());
         let storage = 1.0 / self.duration;
         let (surface, eigenvalues) = (&self.basis.surface[..m], &self.basis.eigenvalues[..m]);
@@ -156,7 +126,9 @@ impl HeatMarch<'_> {
                 }
                 continue;
             };
-            let q = self.surface_flux(exchange, unheated, response, column.index)?;
+            let q = self
+                .surface
+                .flux(exchange, unheated, response, self.transport.position(column.index))?;
             after.flux[contact] = q;
             after.surface[column.index] += response * q;
             for mode in 0..m {
@@ -166,44 +138,48 @@ impl HeatMarch<'_> {
         Ok(())
     }
 
-    /// The flux q that satisfies (23) where θ = `unheated` + `response` q: Newton with a bracket.
-    fn surface_flux(&self, exchange: &SurfaceExchange, unheated: f64, response: f64, column: usize) -> Result<f64> {
-        let parameters = self.friction.parameters;
-        let gain = response * parameters.heat_partition;
-        let loss = exchange.debris + exchange.conduction;
-        let damping = 1.0 + gain * loss;
-        let unheated = unheated + gain * exchange.wheel;
-        // Without friction θ is unheated / damping, with the largest μ it is the upper end.
-        let largest = self.friction.scale * friction::largest_coefficient(parameters);
-        let mut low = unheated / damping;
-        let mut high = low + gain * largest * exchange.friction / damping;
-        let tolerance = 1e-14 * (low.abs() + high.abs() + 1.0);
-        let mut theta = high;
-        let mut residual = 0.0;
-        for _ in 0..NEWTON_STEPS {
-            let (mu, slope) = self.friction.coefficient(theta);
-            residual = damping * theta - unheated - gain * mu * exchange.friction;
-            if residual.abs() <= tolerance * damping || high - low <= tolerance {
-                injection::passes(Solver::SurfaceHeat)?;
-                return Ok(parameters.heat_partition * (mu * exchange.friction + exchange.wheel - loss * theta));
+    /// The change of [`HeatMarch::advance`]'s result `solution` with its data. The inflow column of `tangent` holds the
+    /// change of what enters.
+    pub fn advance_tangent(&self, solution: &Heated, change: &MarchChange, tangent: &mut Heated) {
+        let (parameters, basis) = (self.surface.friction.parameters, self.basis);
+        let (m, capacity) = (basis.len(), parameters.volumetric_heat_capacity());
+        let storage = 1.0 / self.duration;
+        for column in self.transport.columns() {
+            let advection = self.transport.speed() / column.spacing;
+            let advection_change = change.speed / column.spacing;
+            let inverse =
+                |mode: usize| 1.0 / (storage + advection + parameters.thermal_diffusivity * basis.eigenvalues[mode]);
+            let (mut response, mut unheated) = (0.0, 0.0);
+            for mode in 0..m {
+                let inverse = inverse(mode);
+                let (own, upstream) = (column.index * m + mode, column.upstream * m + mode);
+                let carried = advection_change * (solution.temperature[upstream] - solution.temperature[own]);
+                tangent.temperature[own] = (advection * tangent.temperature[upstream] + carried) * inverse;
+                unheated += basis.surface[mode] * tangent.temperature[own];
+                response += basis.surface[mode] * basis.surface[mode] * inverse / capacity;
             }
-            if residual > 0.0 {
-                high = theta;
-            } else {
-                low = theta;
-            }
-            let newton = theta - residual / (damping - gain * slope * exchange.friction);
-            theta = if newton > low && newton < high {
-                newton
-            } else {
-                0.5 * (low + high)
+            let node = column.index.wrapping_sub(self.first_contact);
+            tangent.surface[column.index] = unheated;
+            let Some(exchange) = change.exchange.get(node) else {
+                continue;
             };
+            if exchange.is_open() {
+                tangent.flux[node] = 0.0;
+                continue;
+            }
+            let rise = solution.surface[column.index];
+            let flux = self.surface.flux_tangent(
+                exchange,
+                &change.exchange_tangent[node],
+                &change.common,
+                (rise, unheated, response),
+            );
+            tangent.flux[node] = flux;
+            tangent.surface[column.index] += response * flux;
+            for mode in 0..m {
+                tangent.temperature[column.index * m + mode] += flux / capacity * basis.surface[mode] * inverse(mode);
+            }
         }
-        Err(Error::SurfaceHeatNotConverged {
-            position: self.transport.position(column),
-            iterations: NEWTON_STEPS,
-            residual,
-        })
     }
 }
 
@@ -224,7 +200,8 @@ fn carry_over(
     for ((own, ((keep, old), (carry, upstream))), surface) in
         blocks.iter_mut().zip(inputs).zip(surface.as_chunks::<LANES>().0)
     {
-        // All are loaded before one is stored, or the compiler would fear that they overlap.
+        // All values are loaded before one is stored: otherwise the compiler must assume that the slices overlap, and does
+        // not vectorise.
         let mut values = [0.0; LANES];
         for lane in 0..LANES {
             values[lane] = arithmetic.multiply_add(keep[lane], old[lane], carry[lane] * upstream[lane]);

@@ -1,18 +1,17 @@
-//! The normal compliance with the wear of the step.
+//! The wear of a step inside the normal problem.
+//!
+//! Wear within a step opens the gap in proportion to the pressure: W = (what does not depend on the pressure of this step)
+//! + Σ ∂W/∂p p. Where ∂W/∂p is not small against the compliance (a wheel that spins on the spot, a soft rail), a split that
+//! takes the wear from the iteration before diverges. There the normal problem takes ∂W/∂p into its compliance, as if the
+//! rail were softer, and the split iterates only on the rest of the wear.
 
+use crate::settings::SofteningSettings;
 use nalgebra::DMatrix;
 
-/// Wear per pressure, relative to the smallest compliance, up to which the operator split converges fast with wear taken
-/// from the iteration before.
-const EXPLICIT: f64 = 0.05;
-/// Relative change of the softening from which on it is renewed.
-const RENEWAL: f64 = 0.1;
-
-/// Wear within a step opens the gap in proportion to the pressure: W = (fixed part) + Σ ∂W/∂p p. Where that is not small
-/// against the compliance (a wheel that spins on the spot, a soft rail), the split would diverge, and the normal problem
-/// takes the proportional part into its compliance. Everything is scaled; n contact nodes.
+/// The normal compliance with the wear of the step, n contact nodes, scaled.
 #[derive(Debug, Clone)]
 pub struct Softening {
+    settings: SofteningSettings,
     /// ∂W/∂p of a node's own pressure, n; all zero where wear is explicit.
     own: Vec<f64>,
     /// Share of a node's wear that the march hands to the next node downstream.
@@ -27,7 +26,7 @@ pub struct Softening {
 
 impl Softening {
     /// No softening of the given normal compliance, n × n.
-    pub fn new(compliance: &DMatrix<f64>) -> Softening {
+    pub fn new(compliance: &DMatrix<f64>, settings: SofteningSettings) -> Softening {
         let n = compliance.nrows();
         // The least compliant pressure alternates from node to node.
         let sign = |i: usize| if i.is_multiple_of(2) { 1.0 } else { -1.0 };
@@ -38,6 +37,7 @@ impl Softening {
             }
         }
         Softening {
+            settings,
             own: vec![0.0; n],
             handed_on: 0.0,
             forward: true,
@@ -52,7 +52,8 @@ impl Softening {
         &self.compliance
     }
 
-    /// Makes the next [`Softening::update`] renew the softening: a step does not follow from the steps before.
+    /// Makes the next [`Softening::update`] compute the softening anew: a step follows from its state alone, not from what an
+    /// earlier step has left here.
     pub fn start_step(&mut self) {
         self.stale = true;
     }
@@ -72,7 +73,7 @@ impl Softening {
         let factor = if rate > 0.0 { per_slip / rate } else { 0.0 };
         let largest = factor * slip.iter().fold(0.0, |m: f64, s| s.abs().max(m));
         let was_soft = self.is_soft();
-        if largest <= EXPLICIT * self.smallest_compliance {
+        if largest <= self.settings.explicit * self.smallest_compliance {
             if was_soft {
                 self.own.fill(0.0);
                 self.compliance.copy_from(stiff);
@@ -86,7 +87,8 @@ impl Softening {
             .zip(slip)
             .fold(0.0, |m: f64, (own, s)| (own - factor * s.abs()).abs().max(m));
         let stale = std::mem::take(&mut self.stale);
-        if !stale && change <= RENEWAL * largest && handed_on == self.handed_on && forward == self.forward {
+        if !stale && change <= self.settings.renewal * largest && handed_on == self.handed_on && forward == self.forward
+        {
             return false;
         }
         for (own, slip) in self.own.iter_mut().zip(slip) {

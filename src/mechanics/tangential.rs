@@ -5,11 +5,12 @@
 //! s = (ω r₀ − V) + |V|/Δx (u₁ − u₁ of the node ahead); the bracket is called strain here.
 //!
 //! The problem is posed around the tractions of the sweep before: pressure and strain there are given, and how both
-//! respond to a change of τ (see `Response` of [`crate::mechanics`]). Tractions and displacements are scaled, speeds in m/s.
+//! respond to a change of τ ([`super::response`]). Tractions and displacements are scaled, speeds in m/s.
 
 use crate::error::{Error, Result};
 use crate::friction::coulomb::{saturation_slope, saturations};
 use crate::numerics::dense::{self, largest};
+use crate::settings::TangentialSettings;
 
 /// The data of one problem on the m nodes under pressure.
 #[derive(Debug, Clone, Copy)]
@@ -43,24 +44,27 @@ pub struct Point<'a> {
     pub slip: &'a [f64],
 }
 
-/// Newton steps at one regularisation.
-const NEWTON_STEPS: usize = 60;
-/// Halvings of one step in the line search.
-const HALVINGS: usize = 12;
-/// Half-decades of continuation in ε.
-const CONTINUATION: i32 = 10;
-/// A factorisation is kept while each step is shorter than this share of the one before.
-const SLOW_CONTRACTION: f64 = 0.1;
+/// How Newton's method at one regularisation ended, with the number of steps it took.
+#[derive(Debug, Clone, Copy)]
+enum Newton {
+    /// The last step was below the tolerance.
+    Converged(usize),
+    /// The line search or the factorisation failed, or the limit of the steps was reached.
+    Stalled(usize),
+}
 
-/// What is expected of a fresh factorisation, as long as no second step has shown it. What it promises too much is left to
-/// the next sweep, which starts from the residual that there is.
-const FRESH_CONTRACTION: f64 = 0.01;
-/// Nor is less believed where the steps are round-off.
-const LEAST_CONTRACTION: f64 = 1e-3;
+impl Newton {
+    fn steps(self) -> usize {
+        match self {
+            Newton::Converged(steps) | Newton::Stalled(steps) => steps,
+        }
+    }
+}
 
 /// Scratch of the Newton method, and its last factorised matrix.
 #[derive(Debug, Clone)]
 pub struct Tangential {
+    settings: TangentialSettings,
     /// Change of the shear since the start of the solve.
     change: Vec<f64>,
     pressure: Vec<f64>,
@@ -69,8 +73,13 @@ pub struct Tangential {
     /// φ(s).
     saturation: Vec<f64>,
     residual: Vec<f64>,
+    /// Newton's step.
     step: Vec<f64>,
-    trial: Vec<f64>,
+    /// The change before the step.
+    before: Vec<f64>,
+    /// Change of μ p φ(s) with the strain, and with the pressure.
+    per_strain: Vec<f64>,
+    per_pressure: Vec<f64>,
     factor: Vec<f64>,
     pivots: Vec<usize>,
     /// Whether `factor` may still be used.
@@ -81,8 +90,9 @@ pub struct Tangential {
 
 impl Tangential {
     /// Scratch for problems with up to `nodes` nodes.
-    pub fn new(nodes: usize) -> Tangential {
+    pub fn new(nodes: usize, settings: TangentialSettings) -> Tangential {
         Tangential {
+            settings,
             change: vec![0.0; nodes],
             pressure: vec![0.0; nodes],
             strain: vec![0.0; nodes],
@@ -90,11 +100,13 @@ impl Tangential {
             saturation: vec![0.0; nodes],
             residual: vec![0.0; nodes],
             step: vec![0.0; nodes],
-            trial: vec![0.0; nodes],
+            before: vec![0.0; nodes],
+            per_strain: vec![0.0; nodes],
+            per_pressure: vec![0.0; nodes],
             factor: vec![0.0; nodes * nodes],
             pivots: vec![0; nodes],
             factored: false,
-            contraction: FRESH_CONTRACTION,
+            contraction: settings.fresh_contraction,
         }
     }
 
@@ -129,82 +141,74 @@ impl Tangential {
     pub fn solve(&mut self, problem: &TangentialProblem, shear: &mut [f64]) -> Result<f64> {
         let m = shear.len();
         self.change[..m].fill(0.0);
-        let mut last = self.newton(problem, problem.regularisation, shear);
-        if last.is_err() {
+        let mut end = self.newton(problem, problem.regularisation, shear);
+        let mut iterations = end.steps();
+        if let Newton::Stalled(_) = end {
             // From a large ε, where the law is nearly linear, down to the one asked for.
             self.change[..m].fill(0.0);
-            let mut iterations = last.unwrap_or_else(|steps| steps);
-            for half_decades in (0..=CONTINUATION).rev() {
+            for half_decades in (0..=self.settings.continuation).rev() {
                 self.forget();
-                let regularisation = problem.regularisation * 10.0_f64.powf(0.5 * f64::from(half_decades));
-                last = self.newton(problem, regularisation, shear);
-                iterations += last.unwrap_or_else(|steps| steps);
+                let regularisation = problem.regularisation * 10.0_f64.powf(0.5 * half_decades as f64);
+                end = self.newton(problem, regularisation, shear);
+                iterations += end.steps();
             }
             self.forget();
-            last = last.map_err(|_| iterations);
         }
-        match last {
-            Ok(_) => {
-                for (shear, change) in shear.iter_mut().zip(&self.change) {
-                    *shear += change;
-                }
-                Ok(largest(&self.change[..m]))
-            }
-            Err(iterations) => Err(Error::TangentialNotConverged {
+        if let Newton::Stalled(_) = end {
+            return Err(Error::TangentialNotConverged {
                 iterations,
                 residual: largest(&self.residual[..m]) / largest(&problem.pressure[..m]),
                 tolerance: problem.tolerance,
-            }),
+            });
         }
+        for (shear, change) in shear.iter_mut().zip(&self.change) {
+            *shear += change;
+        }
+        Ok(largest(&self.change[..m]))
     }
 
-    /// Damped Newton at one ε, with the factorised matrix as long as it contracts fast. `Ok` or `Err` with the
-    /// number of steps.
-    fn newton(
-        &mut self,
-        problem: &TangentialProblem,
-        regularisation: f64,
-        shear: &[f64],
-    ) -> std::result::Result<usize, usize> {
+    /// Damped Newton at one ε, with the factorised matrix as long as it contracts fast.
+    fn newton(&mut self, problem: &TangentialProblem, regularisation: f64, shear: &[f64]) -> Newton {
         let m = shear.len();
+        let settings = self.settings;
         let tolerance = problem.tolerance * largest(problem.pressure);
         let mut norm = self.update_residual(problem, regularisation, shear);
         let mut last_length = f64::INFINITY;
-        for steps in 1..=NEWTON_STEPS {
+        for steps in 1..=settings.newton_steps {
             let fresh = !self.factored;
             if fresh && !self.factorise(problem, regularisation, m) {
-                return Err(steps);
+                return Newton::Stalled(steps);
             }
             self.find_step(m);
             let length = largest(&self.step[..m]);
             if !fresh && last_length.is_finite() {
-                self.contraction = (length / last_length).max(LEAST_CONTRACTION);
+                self.contraction = (length / last_length).max(settings.least_contraction);
             }
             let round_off = length <= tolerance;
-            let contracts = length <= SLOW_CONTRACTION * last_length || round_off;
+            let contracts = length <= settings.slow_contraction * last_length || round_off;
             if !fresh && !contracts {
                 self.factored = false;
                 continue;
             }
             let last = round_off || length * self.contraction <= tolerance;
-            self.trial[..m].copy_from_slice(&self.change[..m]);
+            self.before[..m].copy_from_slice(&self.change[..m]);
             let mut damping = 1.0;
-            for halving in 0..=HALVINGS {
-                for ((change, trial), step) in self.change.iter_mut().zip(&self.trial).zip(&self.step[..m]) {
-                    *change = trial + damping * step;
+            for halving in 0..=settings.halvings {
+                for ((change, before), step) in self.change.iter_mut().zip(&self.before).zip(&self.step[..m]) {
+                    *change = before + damping * step;
                 }
                 let trial = self.update_residual(problem, regularisation, shear);
-                // So short a step is within round-off of the residual: it is not asked to fall.
+                // A step as short as round-off cannot be expected to lower the residual.
                 if round_off || trial <= (1.0 - 0.1 * damping) * norm {
                     norm = trial;
                     break;
                 }
-                if halving == HALVINGS || !fresh {
+                if halving == settings.halvings || !fresh {
                     if fresh {
-                        return Err(steps);
+                        return Newton::Stalled(steps);
                     }
-                    // An old matrix may point uphill: factorise at the point before.
-                    self.change[..m].copy_from_slice(&self.trial[..m]);
+                    // The step of an old matrix may point uphill: back, and factorise there.
+                    self.change[..m].copy_from_slice(&self.before[..m]);
                     norm = self.update_residual(problem, regularisation, shear);
                     self.factored = false;
                     break;
@@ -212,7 +216,7 @@ impl Tangential {
                 damping *= 0.5;
             }
             if last && self.factored && damping == 1.0 {
-                return Ok(steps);
+                return Newton::Converged(steps);
             }
             last_length = if damping < 1.0 {
                 self.factored = false;
@@ -221,7 +225,7 @@ impl Tangential {
                 length
             };
         }
-        Err(NEWTON_STEPS)
+        Newton::Stalled(settings.newton_steps)
     }
 
     /// Pressure, slip, φ(s) and residual τ + μ p φ(s) after `self.change`; returns the residual's 2-norm.
@@ -247,20 +251,20 @@ impl Tangential {
     fn factorise(&mut self, problem: &TangentialProblem, regularisation: f64, m: usize) -> bool {
         for i in 0..m {
             let slope = saturation_slope(self.slip[i], regularisation) * problem.strain_speed;
-            self.trial[i] = problem.friction[i] * self.pressure[i] * slope;
-            self.step[i] = problem.friction[i] * self.saturation[i];
+            self.per_strain[i] = problem.friction[i] * self.pressure[i] * slope;
+            self.per_pressure[i] = problem.friction[i] * self.saturation[i];
         }
         for column in 0..m {
             let range = column * m..(column + 1) * m;
             let strain = &problem.strain_response[range.clone()];
             let pressure = &problem.pressure_response[range.clone()];
             for (i, entry) in self.factor[range].iter_mut().enumerate() {
-                *entry = self.trial[i] * strain[i] + self.step[i] * pressure[i];
+                *entry = self.per_strain[i] * strain[i] + self.per_pressure[i] * pressure[i];
             }
             self.factor[column * m + column] += 1.0;
         }
         self.factored = dense::lu(&mut self.factor[..m * m], m, &mut self.pivots);
-        self.contraction = FRESH_CONTRACTION;
+        self.contraction = self.settings.fresh_contraction;
         self.factored
     }
 

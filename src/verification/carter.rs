@@ -102,7 +102,7 @@ fn stick_zone(run: &mut Run, inputs: &Inputs) -> Result<Vec<Row>> {
     let sticks: Vec<f64> = nodes
         .iter()
         .filter(|node| node.pressure > 0.0)
-        .filter(|node| coulomb::saturation(node.slip, parameters.slip_regularisation).abs() < coulomb::STICK_SATURATION)
+        .filter(|node| coulomb::sticks(node.slip, parameters.slip_regularisation))
         .map(|node| node.position)
         .collect();
     let rear = sticks.first().copied().unwrap_or(f64::NAN) - 0.5 * spacing;

@@ -150,7 +150,7 @@ pub fn rows() -> Result<Vec<Row>> {
         "rail under the second axle over ambient, 0.25 s after the first",
         "K",
         per_area / (aged.volumetric_heat_capacity() * diffused),
-        pair.rear.state.fields.surface_temperature[middle],
+        pair.rear.state.fields().surface_temperature[middle],
         // First order over the coarse columns before the window: some 0.05 s each.
         0.05,
         "Q/(rho c sqrt(pi kappa t)), Carslaw and Jaeger 10.3",
@@ -163,7 +163,7 @@ fn volume(pair: &Pair) -> Row {
     let on_the_rail = |run: &Run| -> f64 {
         let columns = Upwind::new(&run.model.rail().mesh.x, SPEED).columns();
         columns
-            .map(|column| column.spacing * run.state.fields.wear[column.index])
+            .map(|column| column.spacing * run.state.fields().wear[column.index])
             .sum()
     };
     let per_step = SPEED * STEP;

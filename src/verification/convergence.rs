@@ -9,8 +9,10 @@ use crate::body::mesh::Mesh;
 use crate::error::Result;
 use crate::friction::FrictionState;
 use crate::heat::basis::DepthBasis;
-use crate::heat::march::{HeatMarch, Heated, SurfaceExchange};
+use crate::heat::march::{HeatMarch, Heated};
+use crate::heat::surface::{SurfaceCondition, SurfaceExchange};
 use crate::parameters::Parameters;
+use crate::settings::HeatSettings;
 use crate::transport::Upwind;
 use crate::wear;
 use std::f64::consts::{FRAC_PI_2, PI};
@@ -275,7 +277,10 @@ fn temperature_error(contact_nodes: usize, cells: usize, speed: f64) -> Result<f
         transport: Upwind::new(&mesh.x, speed),
         first_contact: mesh.first_contact,
         duration: HEAT_STEP,
-        friction,
+        surface: SurfaceCondition {
+            friction,
+            settings: HeatSettings::default(),
+        },
     }
     .advance(
         &before,

@@ -200,7 +200,7 @@ fn largest_defect(
     // The balance holds of each implicit step: one that was divided does not count.
     let (mut defect, mut total_defect, mut shares) = (0.0_f64, 0.0_f64, Balance::default());
     for step in steps {
-        let before = run.state.fields.clone();
+        let before = run.state.fields().clone();
         let inputs = inputs(step);
         run.step(&inputs, duration)?;
         let balance = balance(&run, &before, step.0, duration);
@@ -220,7 +220,7 @@ fn largest_defect(
 
 fn balance(run: &Run, before: &Fields, speed: f64, duration: f64) -> Balance {
     let (rail, parameters) = (run.model.rail(), run.model.parameters());
-    let after = &run.state.fields;
+    let after = run.state.fields();
     let ambient = run.state.inputs.ambient_temperature;
     let capacity = parameters.volumetric_heat_capacity() * parameters.contact_width;
     let mut balance = Balance::default();
@@ -228,7 +228,7 @@ fn balance(run: &Run, before: &Fields, speed: f64, duration: f64) -> Balance {
     let transport = Upwind::new(&rail.mesh.x, speed);
     let bottom_cell = rail.mesh.depth[rail.mesh.rows() - 1] - rail.mesh.depth[rail.mesh.rows() - 2];
     for column in transport.columns() {
-        let content = |fields: &Fields, index| rail.basis.content(fields.column(rail, index));
+        let content = |fields: &Fields, index| rail.heat.basis.content(fields.column(rail, index));
         let lowest = |fields: &Fields, index| lowest_temperature(rail, fields, index);
         let storage = (content(after, column.index) - content(before, column.index)) / duration;
         balance.stored += capacity * column.spacing * storage;
@@ -238,9 +238,9 @@ fn balance(run: &Run, before: &Fields, speed: f64, duration: f64) -> Balance {
         let conducted = parameters.thermal_diffusivity * lowest(after, column.index) / bottom_cell;
         balance.bottom += capacity * column.spacing * (conducted - bottom_cell / 6.0 * rate);
     }
-    let outflow = rail.basis.content(after.column(rail, transport.outflow()));
+    let outflow = rail.heat.basis.content(after.column(rail, transport.outflow()));
     balance.carried_out = capacity * transport.speed() * outflow;
-    let inflow = rail.basis.content(after.column(rail, transport.inflow()));
+    let inflow = rail.heat.basis.content(after.column(rail, transport.inflow()));
     balance.carried_in = capacity * transport.speed() * inflow;
 
     let area = parameters.heat_partition * parameters.contact_width * rail.mesh.contact_spacing();
@@ -264,5 +264,5 @@ fn balance(run: &Run, before: &Fields, speed: f64, duration: f64) -> Balance {
 
 /// Temperature rise at the row above the bottom.
 fn lowest_temperature(rail: &Rail, fields: &Fields, column: usize) -> f64 {
-    rail.basis.value(fields.column(rail, column), rail.mesh.rows() - 2)
+    rail.heat.basis.value(fields.column(rail, column), rail.mesh.rows() - 2)
 }

@@ -6,8 +6,10 @@ use crate::body::mesh::Mesh;
 use crate::error::Result;
 use crate::friction::FrictionState;
 use crate::heat::basis::DepthBasis;
-use crate::heat::march::{HeatMarch, Heated, SurfaceExchange};
+use crate::heat::march::{HeatMarch, Heated};
+use crate::heat::surface::{SurfaceCondition, SurfaceExchange};
 use crate::parameters::{FrictionLaw, Parameters};
+use crate::settings::HeatSettings;
 use crate::transport::Upwind;
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -97,10 +99,13 @@ fn march(parameters: &Parameters) -> Result<Vec<(f64, f64)>> {
         transport: Upwind::new(&mesh.x, ROLLING_SPEED),
         first_contact: mesh.first_contact,
         duration: f64::INFINITY,
-        friction: FrictionState {
-            parameters,
-            ambient: 293.15,
-            scale: 1.0,
+        surface: SurfaceCondition {
+            friction: FrictionState {
+                parameters,
+                ambient: 293.15,
+                scale: 1.0,
+            },
+            settings: HeatSettings::default(),
         },
     }
     .advance(

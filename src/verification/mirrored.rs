@@ -61,7 +61,7 @@ fn pair(pair: &str, parameters: &Parameters) -> Result<Vec<Row>> {
     let outputs = (&forward.state.outputs, &backward.state.outputs);
     let rail = forward.model.rail();
     let columns = rail.mesh.columns();
-    let surface = |run: &Run, column: usize| run.state.fields.surface_temperature[column];
+    let surface = |run: &Run, column: usize| run.state.fields().surface_temperature[column];
     Ok(vec![
         row("pressure", &mut pairs().map(|(a, b)| (a.pressure, b.pressure))),
         row("shear traction", &mut pairs().map(|(a, b)| (a.shear, -b.shear))),
@@ -74,8 +74,8 @@ fn pair(pair: &str, parameters: &Parameters) -> Result<Vec<Row>> {
             "wear depth",
             &mut (0..columns).map(|c| {
                 (
-                    forward.state.fields.wear[c],
-                    backward.state.fields.wear[columns - 1 - c],
+                    forward.state.fields().wear[c],
+                    backward.state.fields().wear[columns - 1 - c],
                 )
             }),
         ),

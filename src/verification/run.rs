@@ -56,7 +56,7 @@ impl Run {
     /// `Pa`, slip velocity `m/s`.
     pub fn contact_nodes(&self) -> Vec<ContactNode> {
         let (mesh, scale) = (&self.model.rail().mesh, self.model.rail().scales.pressure);
-        let fields = &self.state.fields;
+        let fields = self.state.fields();
         (0..mesh.contact_nodes)
             .map(|i| ContactNode {
                 position: mesh.contact_position(i),

@@ -36,7 +36,7 @@ impl Fields {
     pub fn new(rail: &Rail) -> Fields {
         let (n, columns) = (rail.mesh.contact_nodes, rail.mesh.columns());
         Fields {
-            temperature: vec![0.0; columns * rail.basis.len()],
+            temperature: vec![0.0; columns * rail.heat.basis.len()],
             surface_temperature: vec![0.0; columns],
             thermal_displacement: vec![0.0; 2 * n],
             wear: vec![0.0; columns],
@@ -64,6 +64,10 @@ impl Fields {
             &self.heat_flux,
         ]
     }
+
+    /// Whether the outputs are linear functions of a vector or its largest value, in the order of [`Fields::vectors`]: so of
+    /// temperatures, displacement, wear and heat flux, not of tractions, slip and friction.
+    pub const OUTPUTS_ARE_LINEAR: [bool; 9] = [true, true, true, true, false, false, false, false, true];
 
     fn vectors_mut(&mut self) -> [&mut Vec<f64>; 9] {
         [
@@ -105,7 +109,7 @@ impl Fields {
 
     /// Modal amplitudes of one column.
     pub fn column(&self, rail: &Rail, column: usize) -> &[f64] {
-        let m = rail.basis.len();
+        let m = rail.heat.basis.len();
         &self.temperature[column * m..(column + 1) * m]
     }
 }

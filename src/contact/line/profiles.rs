@@ -65,8 +65,8 @@ impl Profiles {
                 let (upper, lower) = (mesh.depth[below - 1], mesh.depth[below]);
                 let weight = (z - upper) / (lower - upper);
                 ambient
-                    + rail.basis.value(column, below - 1) * (1.0 - weight)
-                    + rail.basis.value(column, below) * weight
+                    + rail.heat.basis.value(column, below - 1) * (1.0 - weight)
+                    + rail.heat.basis.value(column, below) * weight
             })
             .collect();
         Profiles {

@@ -3,9 +3,7 @@
 use crate::body::compliance::{self, RollingCompliance, Scales};
 use crate::body::mesh::Mesh;
 use crate::error::Result;
-use crate::heat::basis::DepthBasis;
-use crate::heat::incoming::Incoming;
-use crate::heat::thermal_map::{self, ThermalMap};
+use crate::heat::Heat;
 use crate::parameters::Parameters;
 
 /// The rail and the wheel's profile, built at initialisation.
@@ -16,12 +14,8 @@ pub struct Rail {
     pub scales: Scales,
     /// Compliance of the contact nodes.
     pub compliance: RollingCompliance,
-    /// Eigenbasis of the depth operator.
-    pub basis: DepthBasis,
-    /// Thermal displacement of the contact nodes.
-    pub thermal_map: ThermalMap,
-    /// Profile of the temperature that enters.
-    pub incoming: Incoming,
+    /// What the heat needs: depth basis, entering profile, thermal displacement.
+    pub heat: Heat,
     /// Profile of the wheel √(r₀² − x²) − r₀ at the contact nodes, scaled. The u₁ in (9) is dropped: it moves the contact
     /// by its own size, some µm, against a half-length of some mm.
     pub profile: Vec<f64>,
@@ -36,15 +30,7 @@ impl Rail {
         let mesh = Mesh::new(parameters);
         let scales = Scales::new(parameters);
         let (compliance, thermal) = compliance::build(&mesh, parameters, &scales)?;
-        let basis = DepthBasis::new(&mesh.depth)?;
-        let thermal_map = ThermalMap::new(
-            &mesh,
-            &basis,
-            &thermal,
-            parameters.thermal_diffusivity,
-            thermal_map::TOLERANCE,
-        );
-        let incoming = Incoming::new(&mesh.depth, &basis, parameters.skin_depth);
+        let heat = Heat::new(&mesh, &thermal, parameters)?;
         let r0 = parameters.wheel_radius;
         let profile = (0..mesh.contact_nodes)
             .map(|i| {
@@ -57,11 +43,14 @@ impl Rail {
             mesh,
             scales,
             compliance,
-            basis,
-            thermal_map,
-            incoming,
+            heat,
             profile,
         })
+    }
+
+    /// Area that a contact node stands for, `m²`.
+    pub fn node_area(&self, parameters: &Parameters) -> f64 {
+        parameters.contact_width * self.mesh.contact_spacing()
     }
 
     /// Scaled pressure sum Σp of a normal load `N`.

@@ -1,27 +1,22 @@
 //! The active-set methods for the normal problem.
 
-use super::{Constraint, NormalProblem, NormalSolution};
+use super::problem::{Constraint, NormalProblem, NormalSolution};
 use crate::error::{Error, Result};
 use crate::numerics::dense;
+use crate::settings::NormalSettings;
 use nalgebra::DMatrix;
-
-/// Separations above −1e-13 count as closed: round-off of w, whose terms are of order 1.
-const ROUND_OFF: f64 = 1e-13;
-/// Exchanges of all violated nodes at once; two ends of a contact that wait for each other can cycle, and from then on
-/// only the worst node is exchanged.
-const SET_EXCHANGES: usize = 4;
-/// Exchanges altogether before the method that descends takes over.
-const EXCHANGES: usize = 40;
 
 /// Primal–dual active set (Hintermüller, Ito and Kunisch, SIAM J. Optim. 13, 2003) with the load as one more row.
 ///
-/// It exchanges all violated nodes at once and nearly always ends in a few exchanges, but may cycle on a general
-/// matrix; then the primal active-set method, which moves a node at a time and descends, finishes.
+/// It exchanges all violated nodes at once and nearly always ends in a few exchanges. On a general matrix it may cycle;
+/// then the primal active-set method finishes, which moves one node at a time and cannot cycle, because the energy falls
+/// with every move.
 ///
-/// One solver serves one compliance matrix: the inverse on the active nodes is kept from one call to the next as long
-/// as the active set stays, which makes a warm solve two matrix–vector products.
+/// One solver serves one compliance matrix. The inverse on the active nodes is kept from one call to the next as long as
+/// the active set stays, so that a solve that changes no node costs two products of a matrix with a vector.
 #[derive(Debug, Clone)]
 pub struct ActiveSet {
+    settings: NormalSettings,
     active: Vec<usize>,
     /// The active nodes that `inverse` belongs to.
     inverted: Vec<usize>,
@@ -39,8 +34,9 @@ pub struct ActiveSet {
 
 impl ActiveSet {
     /// Scratch for problems with up to `nodes` nodes.
-    pub fn new(nodes: usize) -> ActiveSet {
+    pub fn new(nodes: usize, settings: NormalSettings) -> ActiveSet {
         ActiveSet {
+            settings,
             active: Vec::with_capacity(nodes),
             inverted: Vec::with_capacity(nodes),
             inverse: vec![0.0; nodes * nodes],
@@ -80,7 +76,7 @@ impl ActiveSet {
         if self.active.is_empty() {
             self.active.extend(0..pressure.len());
         }
-        for iterations in 1..=EXCHANGES {
+        for iterations in 1..=self.settings.exchanges {
             let penetration = self.close_active_nodes(problem)?;
             pressure.copy_from_slice(&self.target);
             self.update_separation(problem, pressure, penetration);
@@ -90,10 +86,10 @@ impl ActiveSet {
                     iterations,
                 });
             };
-            if iterations <= SET_EXCHANGES {
+            if iterations <= self.settings.set_exchanges {
                 self.active.clear();
                 self.active.extend((0..pressure.len()).filter(|&i| match pressure[i] {
-                    0.0 => self.separation[i] < -ROUND_OFF,
+                    0.0 => self.separation[i] < -self.settings.round_off,
                     p => p > 0.0,
                 }));
             } else {
@@ -109,7 +105,7 @@ impl ActiveSet {
     /// The node whose condition is violated most, by negative pressure or negative separation (both scaled).
     fn worst_violation(&self, pressure: &[f64]) -> Option<usize> {
         let violation = |i: usize| match pressure[i] {
-            0.0 if self.separation[i] < -ROUND_OFF => -self.separation[i],
+            0.0 if self.separation[i] < -self.settings.round_off => -self.separation[i],
             p => -p,
         };
         (0..pressure.len())
@@ -127,8 +123,9 @@ impl ActiveSet {
         pressure.fill(start);
         self.active.clear();
         self.active.extend((0..n).filter(|_| start > 0.0));
-        let limit = EXCHANGES + 20 * n;
-        for iterations in EXCHANGES + 1..=limit {
+        let first = self.settings.exchanges + 1;
+        let limit = self.settings.exchanges + self.settings.descents_per_node * n;
+        for iterations in first..=limit {
             let penetration = self.close_active_nodes(problem)?;
             let blocking = (0..n)
                 .filter(|&i| self.target[i] < 0.0)
@@ -148,7 +145,7 @@ impl ActiveSet {
                 .filter(|i| !self.active.contains(i))
                 .min_by(|&a, &b| self.separation[a].total_cmp(&self.separation[b]));
             match worst {
-                Some(node) if self.separation[node] < -ROUND_OFF => {
+                Some(node) if self.separation[node] < -self.settings.round_off => {
                     self.active.push(node);
                     self.active.sort_unstable();
                 }
@@ -164,7 +161,7 @@ impl ActiveSet {
             solver: "active set",
             iterations: limit,
             residual: self.separation.iter().fold(0.0, |m, w| m.max(-w)),
-            tolerance: ROUND_OFF,
+            tolerance: self.settings.round_off,
         })
     }
 
@@ -192,8 +189,10 @@ impl ActiveSet {
         Ok(penetration)
     }
 
-    /// C_AA⁻¹ and C_AA⁻¹ 1. An inverse, because a contact compliance has a condition number of about n, and a product has
-    /// none of the latency of two triangular solves. By LU: wear makes the matrix unsymmetric.
+    /// C_AA⁻¹ and C_AA⁻¹ 1.
+    ///
+    /// The inverse itself, not only its factors: it is applied several times for each change of the active set, and in a
+    /// product no row waits for another as in a triangular solve. With a condition number of about n no accuracy is lost. By LU, because the wear of the step makes the matrix unsymmetric.
     fn invert(&mut self, compliance: &DMatrix<f64>) -> Result<()> {
         let m = self.active.len();
         self.inverted.clear();
@@ -203,7 +202,10 @@ impl ActiveSet {
             }
         }
         if !dense::lu(&mut self.factor[..m * m], m, &mut self.pivots) {
-            return Err(Error::StiffnessNotPositiveDefinite { unknowns: m });
+            return Err(Error::SingularContactMatrix {
+                matrix: "normal compliance",
+                unknowns: m,
+            });
         }
         for (column, unit) in self.inverse[..m * m].chunks_exact_mut(m.max(1)).enumerate() {
             unit.fill(0.0);

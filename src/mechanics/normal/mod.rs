@@ -3,54 +3,32 @@
 //! Find p ≥ 0 with separation w = C p − b − δ ≥ 0 and p·w = 0, where C is the normal compliance and b the profile of
 //! the wheel, raised by thermal bulge and friction, lowered by wear. Either δ is given, or Σp is and δ is its Lagrange
 //! multiplier. Everything is scaled (see [`crate::body::compliance::Scales`]).
+//!
+//! Two methods solve it, which must agree to 1e-8: [`active_set`], the default, and [`pschenichnyj`], the paper's.
 
 pub mod active_set;
+pub mod problem;
 pub mod pschenichnyj;
-
-use nalgebra::DMatrix;
-
-/// What closes the problem.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Constraint {
-    /// Σp, positive.
-    Total(f64),
-    /// δ.
-    Penetration(f64),
-}
-
-/// The data of one problem with n nodes.
-#[derive(Debug, Clone, Copy)]
-pub struct NormalProblem<'a> {
-    /// C, n × n, symmetric positive definite.
-    pub compliance: &'a DMatrix<f64>,
-    /// b, n.
-    pub profile: &'a [f64],
-    /// Load or penetration.
-    pub constraint: Constraint,
-}
-
-/// What a solver found besides the pressure.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct NormalSolution {
-    /// δ.
-    pub penetration: f64,
-    /// Iterations done.
-    pub iterations: usize,
-}
 
 #[cfg(test)]
 mod tests {
     use super::active_set::ActiveSet;
+    use super::problem::{Constraint, NormalProblem, NormalSolution};
     use super::pschenichnyj::Pschenichnyj;
-    use super::*;
+    use crate::settings::NormalSettings;
+    use nalgebra::DMatrix;
     use proptest::prelude::*;
 
     fn both(problem: &NormalProblem) -> [(Vec<f64>, NormalSolution); 2] {
         let n = problem.profile.len();
         let mut active = vec![0.0; n];
-        let first = ActiveSet::new(n).solve(problem, &mut active).unwrap();
+        let first = ActiveSet::new(n, NormalSettings::default())
+            .solve(problem, &mut active)
+            .unwrap();
         let mut linearised = vec![0.0; n];
-        let second = Pschenichnyj::new(n).solve(problem, &mut linearised).unwrap();
+        let second = Pschenichnyj::new(n, NormalSettings::default())
+            .solve(problem, &mut linearised)
+            .unwrap();
         [(active, first), (linearised, second)]
     }
 
@@ -95,7 +73,7 @@ mod tests {
             let compliance: DMatrix<f64> = &a * a.transpose() + DMatrix::identity(10, 10) * 0.1;
             let constraint = if load { Constraint::Total(1.0) } else { Constraint::Penetration(0.1) };
             let problem = NormalProblem { compliance: &compliance, profile: &profile, constraint };
-            let mut solver = ActiveSet::new(10);
+            let mut solver = ActiveSet::new(10, NormalSettings::default());
             let (mut p, mut q) = (vec![0.0; 10], vec![0.0; 10]);
             let first = solver.solve(&problem, &mut p).unwrap();
             let second = solver.descend(&problem, &mut q).unwrap();

@@ -1,8 +1,9 @@
 //! The paper's method for the normal problem.
 
-use super::{Constraint, NormalProblem, NormalSolution};
+use super::problem::{Constraint, NormalProblem, NormalSolution};
 use crate::error::{Error, Result};
 use crate::numerics::dense;
+use crate::settings::NormalSettings;
 
 /// Pschenichnyj's linearisation method (section 4.1 of the paper; Pschenichnyj, Optimization 18, 1987).
 ///
@@ -12,21 +13,18 @@ use crate::numerics::dense;
 /// σ = 1 in any units the method needs as many steps as the condition number of C, a few hundred times more.
 #[derive(Debug, Clone)]
 pub struct Pschenichnyj {
+    settings: NormalSettings,
     gradient: Vec<f64>,
     direction: Vec<f64>,
     image: Vec<f64>,
     sorted: Vec<f64>,
 }
 
-/// Limit of the iterations of [`Pschenichnyj`].
-const LINEARISATIONS: usize = 200_000;
-/// Step ‖d‖_∞ of the linearisation method at which it stops, relative to the largest pressure.
-const LINEARISATION_TOLERANCE: f64 = 1e-12;
-
 impl Pschenichnyj {
     /// Scratch for problems with `nodes` nodes.
-    pub fn new(nodes: usize) -> Pschenichnyj {
+    pub fn new(nodes: usize, settings: NormalSettings) -> Pschenichnyj {
         Pschenichnyj {
+            settings,
             gradient: vec![0.0; nodes],
             direction: vec![0.0; nodes],
             image: vec![0.0; nodes],
@@ -46,7 +44,7 @@ impl Pschenichnyj {
         self.project(problem.constraint, pressure);
         let mut curvature = (0..pressure.len()).map(|i| problem.compliance[(i, i)]).sum::<f64>();
         let mut residual = f64::INFINITY;
-        for iterations in 1..=LINEARISATIONS {
+        for iterations in 1..=self.settings.linearisations {
             // ∇f = C p − b − δ (Step 2 of the paper's algorithm); anew each time, so that round-off does not pile up.
             for (g, b) in self.gradient.iter_mut().zip(problem.profile) {
                 *g = -b - offset;
@@ -73,7 +71,7 @@ impl Pschenichnyj {
             let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
             let slope = dot(&self.gradient, &self.direction);
             let bend = dot(&self.image, &self.direction);
-            if residual <= LINEARISATION_TOLERANCE || slope >= 0.0 {
+            if residual <= self.settings.linearisation_tolerance || slope >= 0.0 {
                 // The projected point: its zeros are exact, where shortened steps leave a trace of pressure.
                 for (p, d) in pressure.iter_mut().zip(&self.direction) {
                     *p = (*p + d).max(0.0);
@@ -96,9 +94,9 @@ impl Pschenichnyj {
         }
         Err(Error::NormalNotConverged {
             solver: "Pschenichnyj",
-            iterations: LINEARISATIONS,
+            iterations: self.settings.linearisations,
             residual,
-            tolerance: LINEARISATION_TOLERANCE,
+            tolerance: self.settings.linearisation_tolerance,
         })
     }
 

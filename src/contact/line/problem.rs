@@ -1,0 +1,207 @@
+//! One implicit step of the line contact as a problem: its data, and the parts of its equations that the split and its
+//! derivative share.
+
+use super::coupling::Coupling;
+use super::fields::Fields;
+use super::rail::Rail;
+use crate::contact::rim::HeatedNode;
+use crate::contact::task::Conditions;
+use crate::friction::FrictionState;
+use crate::heat::march::HeatMarch;
+use crate::heat::surface::{SurfaceCondition, SurfaceExchange};
+use crate::mechanics::normal::problem::Constraint;
+use crate::mechanics::problem::{MechanicsProblem, Tractions};
+use crate::mechanics::softening::Softening;
+use crate::numerics::dense;
+use crate::parameters::{Control, Parameters, WheelHeating};
+use crate::settings::Settings;
+use crate::signals::Inputs;
+use crate::transport::Upwind;
+
+/// One problem: the rail, its parameters, the limits of the methods, the conditions of the step.
+#[derive(Clone, Copy)]
+pub struct Problem<'a> {
+    /// The rail.
+    pub rail: &'a Rail,
+    /// The parameters.
+    pub parameters: &'a Parameters,
+    /// Limits and tolerances.
+    pub settings: &'a Settings,
+    /// What the step holds fixed.
+    pub conditions: Conditions,
+}
+
+/// The data of the mechanics at n contact nodes, scaled.
+pub struct MechanicsData {
+    /// Profile of the wheel, less wear, plus the upward displacement that heat and inertia cause, n.
+    profile: Vec<f64>,
+    /// Displacement along x₁ that heat and inertia cause, n.
+    displacement: Vec<f64>,
+}
+
+impl MechanicsData {
+    /// With n contact nodes.
+    pub fn new(nodes: usize) -> MechanicsData {
+        MechanicsData {
+            profile: vec![0.0; nodes],
+            displacement: vec![0.0; nodes],
+        }
+    }
+}
+
+impl<'a> Problem<'a> {
+    /// The same problem under other inputs.
+    pub fn under(&self, inputs: Inputs) -> Problem<'a> {
+        Problem {
+            conditions: Conditions {
+                inputs,
+                motion: inputs.motion(self.parameters),
+                ..self.conditions
+            },
+            ..*self
+        }
+    }
+
+    /// The friction law at this ambient temperature and scale.
+    pub fn friction(&self) -> FrictionState<'a> {
+        FrictionState {
+            parameters: self.parameters,
+            ambient: self.conditions.inputs.ambient_temperature,
+            scale: self.conditions.inputs.friction_scale,
+        }
+    }
+
+    /// Load or penetration, scaled.
+    pub fn constraint(&self) -> Constraint {
+        match self.parameters.control {
+            Control::Load => Constraint::Total(
+                self.rail
+                    .scaled_load(self.parameters, self.conditions.inputs.normal_load),
+            ),
+            Control::Penetration => {
+                Constraint::Penetration(self.parameters.prescribed_penetration / self.rail.scales.displacement)
+            }
+        }
+    }
+
+    /// The order in which material crosses the columns.
+    pub fn upwind(&self) -> Upwind<'a> {
+        Upwind::new(&self.rail.mesh.x, self.conditions.motion.rolling_speed)
+    }
+
+    /// Strain of a scaled displacement over the node spacing.
+    pub fn strain_scale(&self) -> f64 {
+        self.rail.scales.displacement / self.rail.mesh.contact_spacing()
+    }
+
+    /// ρ V², `Pa`.
+    pub fn rho_v2(&self) -> f64 {
+        self.parameters.density * self.conditions.motion.rolling_speed.powi(2)
+    }
+
+    /// Temperature rise θ_w of the wheel in (23) at the rim's temperature, `K`.
+    pub fn wheel_rise(&self, wheel_temperature: f64) -> f64 {
+        match self.parameters.wheel_heating {
+            WheelHeating::Off => 0.0,
+            WheelHeating::On => wheel_temperature - self.conditions.inputs.ambient_temperature,
+        }
+    }
+
+    /// Force of a scaled traction of 1 on a node, `N`.
+    pub fn unit_force(&self) -> f64 {
+        self.rail.node_area(self.parameters) * self.rail.scales.pressure
+    }
+
+    /// The nodes as the rim sees them, or with changes of fields their changes.
+    pub fn heated_nodes<'f>(&self, fields: &'f Fields) -> impl Iterator<Item = HeatedNode> + 'f {
+        let surface = &fields.surface_temperature[self.rail.mesh.window()];
+        (0..fields.pressure.len()).map(move |node| HeatedNode {
+            pressure: fields.pressure[node],
+            shear: fields.shear[node],
+            slip: fields.slip[node],
+            rise: surface[node],
+        })
+    }
+
+    /// The heat march of the step.
+    pub fn heat_march(&self) -> HeatMarch<'a> {
+        HeatMarch {
+            basis: &self.rail.heat.basis,
+            transport: self.upwind(),
+            first_contact: self.rail.mesh.first_contact,
+            duration: self.conditions.duration,
+            surface: SurfaceCondition {
+                friction: self.friction(),
+                settings: self.settings.heat,
+            },
+        }
+    }
+
+    /// What heats and cools the surface at the contact nodes with the wheel at θ_w.
+    pub fn exchange(&self, fields: &Fields, wheel_rise: f64, exchange: &mut [SurfaceExchange]) {
+        let nodes = fields.pressure.iter().zip(&fields.slip);
+        for (exchange, (pressure, slip)) in exchange.iter_mut().zip(nodes) {
+            let pressure = pressure * self.rail.scales.pressure;
+            *exchange = SurfaceExchange::new(self.parameters, pressure, slip.abs(), wheel_rise);
+        }
+    }
+
+    /// Friction coefficient of the fields, profile and displacement for given temperature and wear. The convective
+    /// inertia is that of the fields' tractions, those of the iteration before: it rests where the split does.
+    pub fn update_mechanics_data(&self, coupling: &Coupling, fields: &mut Fields, data: &mut MechanicsData) {
+        let friction = self.friction();
+        for (mu, temperature) in fields.friction.iter_mut().zip(coupling.temperature()) {
+            *mu = friction.coefficient(temperature).0;
+        }
+        data.displacement.copy_from_slice(coupling.along());
+        let gap = self.rail.profile.iter().zip(coupling.wear()).zip(coupling.upward());
+        for (profile, ((wheel, wear), lift)) in data.profile.iter_mut().zip(gap) {
+            *profile = wheel - wear + lift;
+        }
+        self.add_inertia(
+            self.rho_v2(),
+            &fields.pressure,
+            &fields.shear,
+            &mut data.displacement,
+            &mut data.profile,
+        );
+    }
+
+    /// Adds the displacement along x₁ and upward that the convective inertia of the given tractions causes.
+    pub fn add_inertia(&self, rho_v2: f64, pressure: &[f64], shear: &[f64], along: &mut [f64], upward: &mut [f64]) {
+        let inertia = &self.rail.compliance.inertia;
+        dense::multiply_add(&inertia.normal_normal, pressure, -rho_v2, upward);
+        dense::multiply_add(&inertia.normal_tangential, shear, rho_v2, upward);
+        dense::multiply_add(&inertia.tangential_normal, pressure, -rho_v2, along);
+        dense::multiply_add(&inertia.tangential_tangential, shear, rho_v2, along);
+    }
+
+    /// The mechanics problem over the data of [`Problem::update_mechanics_data`], and the tractions that it is solved from.
+    pub fn mechanics<'s>(
+        &'s self,
+        fields: &'s mut Fields,
+        data: &'s MechanicsData,
+        softening: &'s Softening,
+    ) -> (MechanicsProblem<'s>, Tractions<'s>) {
+        let motion = self.conditions.motion;
+        let problem = MechanicsProblem {
+            compliance: &self.rail.compliance.at_rest,
+            normal_compliance: softening.compliance(),
+            profile: &data.profile,
+            displacement: &data.displacement,
+            friction: &fields.friction,
+            constraint: self.constraint(),
+            normal_solver: self.parameters.normal_solver,
+            rigid_slip: motion.rigid_slip,
+            strain_speed: motion.rolling_speed * self.strain_scale(),
+            regularisation: self.parameters.slip_regularisation,
+        };
+        let tractions = Tractions {
+            pressure: &mut fields.pressure,
+            shear: &mut fields.shear,
+            slip: &mut fields.slip,
+            penetration: &mut fields.penetration,
+        };
+        (problem, tractions)
+    }
+}

@@ -1,0 +1,64 @@
+//! When the operator split rests (Step 4 of section 4 of the paper: ‖Δθ‖ ≤ η), and how accurately its parts are to be solved
+//! until then.
+//!
+//! The iteration contracts: each change is some ratio of the one before, and so the error that remains after a change
+//! is about that change times the ratio. The split rests where that estimate is below the tolerance, which saves the
+//! iteration that would only confirm it.
+
+use crate::mechanics::sweep::Sweep;
+use crate::settings::SplitSettings;
+
+/// Judges the iterations of one split.
+#[derive(Debug, Clone, Copy)]
+pub struct Rest {
+    settings: SplitSettings,
+    /// Change of the last iteration; infinite before the first.
+    change: f64,
+}
+
+impl Rest {
+    /// Before the first iteration.
+    pub fn new(settings: SplitSettings) -> Rest {
+        Rest {
+            settings,
+            change: f64::INFINITY,
+        }
+    }
+
+    /// Tolerance for the mechanics of the next iteration.
+    pub fn mechanics_tolerance(&self) -> f64 {
+        (self.settings.mechanics_tolerance * self.change).clamp(
+            self.settings.last_mechanics_tolerance,
+            self.settings.first_mechanics_tolerance,
+        )
+    }
+
+    /// Takes the change of an iteration and what its mechanics changed. Whether the split rests.
+    pub fn is_reached(&mut self, change: f64, sweep: &Sweep) -> bool {
+        let contraction = self.contraction(change);
+        self.change = change;
+        change * contraction <= self.settings.tolerance
+            && sweep.shear_change * contraction <= self.settings.shear_tolerance
+            && !sweep.set_changed
+    }
+
+    /// Ratio of this change to the last one, 1 where it cannot be trusted.
+    fn contraction(&self, change: f64) -> f64 {
+        let last = self.change;
+        if change < self.settings.trusted_contraction * last && last.is_finite() {
+            (change / last).max(self.settings.least_contraction)
+        } else {
+            1.0
+        }
+    }
+
+    /// Replaces the change of the last iteration, after more of it has been computed.
+    pub fn amend(&mut self, change: f64) {
+        self.change = change;
+    }
+
+    /// Change of the last iteration.
+    pub fn change(&self) -> f64 {
+        self.change
+    }
+}

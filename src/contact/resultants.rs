@@ -1,0 +1,78 @@
+//! What the fields of a contact sum up to. The sums of two parts of a contact add up to those of the whole.
+
+/// State of one surface node.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Node {
+    /// Position ahead of the axle, `m`.
+    pub position: f64,
+    /// Pressure, scaled.
+    pub pressure: f64,
+    /// Shear traction on the rail, scaled.
+    pub shear: f64,
+    /// Slip velocity, `m/s`.
+    pub slip: f64,
+    /// Friction coefficient.
+    pub friction: f64,
+    /// Heat flux into the rail, `W/m²`.
+    pub heat_flux: f64,
+    /// Whether it sticks.
+    pub sticks: bool,
+}
+
+/// Sums and largest values over the nodes. Tractions are scaled; every node stands for the same area.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Resultants {
+    /// Σ p.
+    pub pressure: f64,
+    /// Σ p x, `m`.
+    pub moment: f64,
+    /// Σ τ.
+    pub shear: f64,
+    /// Σ p μ.
+    pub friction: f64,
+    /// Σ |τ s|, `m/s`.
+    pub friction_power: f64,
+    /// Σ p |s|, `m/s`.
+    pub sliding: f64,
+    /// Σ q, `W/m²`.
+    pub heat_flux: f64,
+    /// Number of nodes in contact.
+    pub nodes: f64,
+    /// Number of those that stick.
+    pub sticking: f64,
+    /// Largest p.
+    pub peak_pressure: f64,
+    /// Largest |τ|.
+    pub peak_shear: f64,
+}
+
+impl Resultants {
+    /// Of the given nodes.
+    pub fn of(nodes: impl Iterator<Item = Node>) -> Resultants {
+        let mut sum = Resultants::default();
+        for node in nodes {
+            sum.heat_flux += node.heat_flux;
+            if node.pressure <= 0.0 {
+                continue;
+            }
+            sum.pressure += node.pressure;
+            sum.moment += node.pressure * node.position;
+            sum.shear += node.shear;
+            sum.friction += node.pressure * node.friction;
+            sum.friction_power += (node.shear * node.slip).abs();
+            sum.sliding += node.pressure * node.slip.abs();
+            sum.peak_pressure = sum.peak_pressure.max(node.pressure);
+            sum.peak_shear = sum.peak_shear.max(node.shear.abs());
+            sum.nodes += 1.0;
+            if node.sticks {
+                sum.sticking += 1.0;
+            }
+        }
+        sum
+    }
+
+    /// A sum over the pressure's, 0 without contact: Σ p x becomes the resultant's position.
+    pub fn per_pressure(&self, sum: f64) -> f64 {
+        if self.pressure > 0.0 { sum / self.pressure } else { 0.0 }
+    }
+}

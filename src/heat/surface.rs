@@ -1,0 +1,183 @@
+//! The condition (23) at the surface of one column: what heats and cools it, and the flux that follows.
+
+use crate::error::{Error, Result};
+use crate::friction::{self, FrictionState, coulomb};
+use crate::parameters::Parameters;
+use crate::settings::HeatSettings;
+
+/// What heats and cools one column's surface, at the rail temperature θ (rise):
+/// q = ᾱ [ μ(θ) P + S − H θ ], the condition (23) with P = p φ(|s|) |s|, S = θ_w p / r and H = k ρ c_p |s| p + p / r.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct SurfaceExchange {
+    /// P: friction power per area and friction coefficient, `W/m²`.
+    pub friction: f64,
+    /// k ρ c_p |s| p: heat carried off by debris per kelvin, `W/(m² K)`.
+    pub debris: f64,
+    /// p / r: heat conducted into the wheel per kelvin, `W/(m² K)`.
+    pub conduction: f64,
+    /// S: heat conducted from a wheel at θ_w into rail at ambient, `W/m²`.
+    pub wheel: f64,
+}
+
+/// Change of pressure, slip speed and the wheel's temperature at one column.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct ExchangeChange {
+    /// dp, `Pa`.
+    pub pressure: f64,
+    /// d|s|, `m/s`.
+    pub speed: f64,
+    /// dθ_w, `K`.
+    pub wheel_rise: f64,
+}
+
+/// What [`SurfaceExchange`] changes by.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct ExchangeTangent {
+    /// dP, `W/m²`.
+    pub friction: f64,
+    /// d(k ρ c_p |s| p), `W/(m² K)`.
+    pub debris: f64,
+    /// d(p / r), `W/(m² K)`.
+    pub conduction: f64,
+    /// The two parts of dS: by the conduction, and by the wheel's temperature, `W/m²`.
+    pub wheel: [f64; 2],
+}
+
+impl SurfaceExchange {
+    /// The exchange under pressure `pressure` `Pa` and slip speed |s| `speed` `m/s` with a wheel at `wheel_rise` `K` over
+    /// the ambient.
+    pub fn new(parameters: &Parameters, pressure: f64, speed: f64, wheel_rise: f64) -> SurfaceExchange {
+        if pressure == 0.0 {
+            return SurfaceExchange::default();
+        }
+        let saturation = coulomb::saturation(speed, parameters.slip_regularisation);
+        let conduction = pressure / parameters.contact_thermal_resistance;
+        SurfaceExchange {
+            friction: pressure * (saturation * speed),
+            debris: parameters.wear_coefficient * parameters.volumetric_heat_capacity() * speed * pressure,
+            conduction,
+            wheel: conduction * wheel_rise,
+        }
+    }
+
+    /// The change of [`SurfaceExchange::new`] with that of its arguments.
+    pub fn tangent(
+        parameters: &Parameters,
+        pressure: f64,
+        speed: f64,
+        wheel_rise: f64,
+        change: &ExchangeChange,
+    ) -> ExchangeTangent {
+        let regularisation = parameters.slip_regularisation;
+        let phi = coulomb::saturation(speed, regularisation);
+        let slope = coulomb::saturation_slope(speed, regularisation);
+        let conduction = change.pressure / parameters.contact_thermal_resistance;
+        ExchangeTangent {
+            friction: change.pressure * phi * speed + pressure * (slope * speed + phi) * change.speed,
+            debris: parameters.wear_coefficient
+                * parameters.volumetric_heat_capacity()
+                * (change.speed * pressure + speed * change.pressure),
+            conduction,
+            wheel: [
+                conduction * wheel_rise,
+                pressure / parameters.contact_thermal_resistance * change.wheel_rise,
+            ],
+        }
+    }
+
+    /// Whether the surface is free, so that no heat crosses it.
+    pub fn is_open(&self) -> bool {
+        self.conduction == 0.0 && self.friction == 0.0
+    }
+
+    /// H, `W/(m² K)`.
+    fn loss(&self) -> f64 {
+        self.debris + self.conduction
+    }
+}
+
+/// The condition (23) of the columns in one step.
+#[derive(Debug, Clone, Copy)]
+pub struct SurfaceCondition<'a> {
+    /// Friction law.
+    pub friction: FrictionState<'a>,
+    /// Limits.
+    pub settings: HeatSettings,
+}
+
+/// Changes that all columns have in common.
+#[derive(Debug, Clone, Copy)]
+pub struct CommonChange {
+    /// Of the ambient temperature, `K`.
+    pub ambient: f64,
+    /// Of the factor on μ.
+    pub friction_scale: f64,
+}
+
+impl SurfaceCondition<'_> {
+    /// The flux q into the rail that satisfies (23) where θ = `unheated` + `response` q: Newton with a bracket. `position`
+    /// is that of the column, `m`, for the error.
+    ///
+    /// # Errors
+    /// [`Error::SurfaceHeatNotConverged`].
+    pub fn flux(&self, exchange: &SurfaceExchange, unheated: f64, response: f64, position: f64) -> Result<f64> {
+        let parameters = self.friction.parameters;
+        let gain = response * parameters.heat_partition;
+        let loss = exchange.loss();
+        let damping = 1.0 + gain * loss;
+        let unheated = unheated + gain * exchange.wheel;
+        // Without friction θ is unheated / damping, with the largest μ it is the upper end.
+        let largest = self.friction.scale * friction::largest_coefficient(parameters);
+        let mut low = unheated / damping;
+        let mut high = low + gain * largest * exchange.friction / damping;
+        let tolerance = self.settings.surface_tolerance * (low.abs() + high.abs() + 1.0);
+        let mut theta = high;
+        let mut residual = f64::INFINITY;
+        for _ in 0..self.settings.surface_newton_steps {
+            let (mu, slope) = self.friction.coefficient(theta);
+            residual = damping * theta - unheated - gain * mu * exchange.friction;
+            if residual.abs() <= tolerance * damping || high - low <= tolerance {
+                return Ok(parameters.heat_partition * (mu * exchange.friction + exchange.wheel - loss * theta));
+            }
+            if residual > 0.0 {
+                high = theta;
+            } else {
+                low = theta;
+            }
+            let newton = theta - residual / (damping - gain * slope * exchange.friction);
+            theta = if newton > low && newton < high {
+                newton
+            } else {
+                0.5 * (low + high)
+            };
+        }
+        Err(Error::SurfaceHeatNotConverged {
+            position,
+            iterations: self.settings.surface_newton_steps,
+            residual,
+        })
+    }
+
+    /// The change of [`SurfaceCondition::flux`] at its solution with surface temperature `rise`, `K`, where `unheated` is
+    /// the change of the temperature at an unchanged flux.
+    pub fn flux_tangent(
+        &self,
+        exchange: &SurfaceExchange,
+        tangent: &ExchangeTangent,
+        common: &CommonChange,
+        (rise, unheated, response): (f64, f64, f64),
+    ) -> f64 {
+        let parameters = self.friction.parameters;
+        let (mu, slope) = self.friction.coefficient(rise);
+        let scale = common.friction_scale * friction::coefficient(parameters, self.friction.ambient + rise).0;
+        let loss = exchange.loss();
+        let partition = parameters.heat_partition;
+        let source =
+            slope * (unheated + common.ambient) * exchange.friction + scale * exchange.friction + mu * tangent.friction
+                - (tangent.debris + tangent.conduction) * rise
+                - loss * unheated
+                + tangent.wheel[0]
+                + tangent.wheel[1];
+        partition * source / (1.0 - partition * response * (slope * exchange.friction - loss))
+    }
+}

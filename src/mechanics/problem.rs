@@ -1,0 +1,83 @@
+//! The data of the mechanics problem and its unknowns.
+
+use super::normal::problem::Constraint;
+use crate::body::compliance::Compliance;
+use crate::parameters::NormalSolver;
+use nalgebra::DMatrix;
+
+/// The data of one mechanics problem with n contact nodes, scaled.
+#[derive(Debug, Clone, Copy)]
+pub struct MechanicsProblem<'a> {
+    /// Compliance at rest.
+    pub compliance: &'a Compliance,
+    /// Its C_nn, softened by the wear of the step where that is treated implicitly.
+    pub normal_compliance: &'a DMatrix<f64>,
+    /// Profile of the wheel, less wear, plus the upward displacement that heat and inertia cause, n.
+    pub profile: &'a [f64],
+    /// Displacement along x₁ that heat and inertia cause, n.
+    pub displacement: &'a [f64],
+    /// μ, n.
+    pub friction: &'a [f64],
+    /// Load or penetration.
+    pub constraint: Constraint,
+    /// Method for the normal problem.
+    pub normal_solver: NormalSolver,
+    /// ω r₀ − V, `m/s`.
+    pub rigid_slip: f64,
+    /// V times the displacement scale over the node spacing, `m/s`; its sign gives the leading side.
+    pub strain_speed: f64,
+    /// ε, `m/s`.
+    pub regularisation: f64,
+}
+
+/// Change of a [`MechanicsProblem`]'s data in one direction, n contact nodes.
+#[derive(Debug, Clone, Copy)]
+pub struct ProblemTangent<'a> {
+    /// Of the profile.
+    pub profile: &'a [f64],
+    /// Of the displacement along x₁.
+    pub displacement: &'a [f64],
+    /// Of μ.
+    pub friction: &'a [f64],
+    /// Of Σp; without effect where the penetration is given.
+    pub total: f64,
+    /// Of ω r₀ − V, `m/s`.
+    pub rigid_slip: f64,
+    /// Of the strain speed's magnitude, `m/s`.
+    pub strain_speed: f64,
+}
+
+/// Tractions and what belongs to them, or a change of them, n contact nodes.
+pub struct Tractions<'a> {
+    /// Pressure, scaled.
+    pub pressure: &'a mut [f64],
+    /// Shear traction on the rail, scaled.
+    pub shear: &'a mut [f64],
+    /// Slip velocity, `m/s`, 0 outside the contact.
+    pub slip: &'a mut [f64],
+    /// Penetration, scaled.
+    pub penetration: &'a mut f64,
+}
+
+impl MechanicsProblem<'_> {
+    /// Whether the leading side is towards +x₁: V ≥ 0.
+    pub fn is_forward(&self) -> bool {
+        self.strain_speed >= 0.0
+    }
+
+    /// Whether the load is given, and the penetration an unknown.
+    pub fn load_is_given(&self) -> bool {
+        matches!(self.constraint, Constraint::Total(_))
+    }
+}
+
+/// The nodes under pressure. The ends of the window have no neighbour on one side; a contact that reaches them is an error
+/// of the step.
+pub fn under_pressure(pressure: &[f64]) -> impl Iterator<Item = usize> + '_ {
+    (1..pressure.len() - 1).filter(|&i| pressure[i] > 0.0)
+}
+
+/// The next node on the leading side.
+pub fn node_ahead(node: usize, forward: bool) -> usize {
+    if forward { node + 1 } else { node - 1 }
+}

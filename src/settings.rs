@@ -1,0 +1,266 @@
+//! Limits and tolerances of the numerical methods, each with its reason. None of them is physics: those are
+//! [`crate::parameters`].
+//!
+//! Every iteration has a limit. A limit of 0 makes its method fail at once, which is how the tests see what a failed
+//! step leaves behind.
+
+/// All of them. A [`crate::wheel_rail::Model`] has one set, the default unless told otherwise.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Settings {
+    /// Division of a step.
+    pub step: StepSettings,
+    /// The operator split of one sub-step.
+    pub split: SplitSettings,
+    /// Normal and tangential problem in turn.
+    pub mechanics: MechanicsSettings,
+    /// The normal problem.
+    pub normal: NormalSettings,
+    /// The tangential problem.
+    pub tangential: TangentialSettings,
+    /// The wear of a step inside the normal problem.
+    pub softening: SofteningSettings,
+    /// The surface condition of the heat march, and the rim.
+    pub heat: HeatSettings,
+    /// Derivatives of the outputs.
+    pub sensitivity: SensitivitySettings,
+}
+
+/// How a step is divided into sub-steps.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct StepSettings {
+    /// A change of the inputs by more than this share of their scale is a jump: what follows it is a transient of the
+    /// length of a passage, which one long implicit step would smear.
+    pub jump: f64,
+    /// Length of the first sub-step after a jump, in passages of the contact window; each further one is twice as long.
+    pub first_substep: f64,
+    /// Largest number of sub-steps of equal length while the inputs change at given rates.
+    pub ramp_substeps: f64,
+    /// Shortest time that a step takes, `s`: a rate of change over less would overflow, and no output tells the
+    /// difference.
+    pub shortest: f64,
+    /// How often in one step a sub-step that fails is tried again with a quarter of its length. 4: a 256th of the step.
+    pub retries: usize,
+}
+
+/// Convergence of the operator split.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SplitSettings {
+    /// Limit of the iterations. Most steps take two, a wheel that slides in a hot contact takes ten.
+    pub iterations: usize,
+    /// Error at which the split rests (η of section 4): of the surface temperature relative to its largest value, of wear and
+    /// thermal displacement relative to the displacement scale. 1e-9 is far below what a mesh resolves, and above the
+    /// round-off of the marches by three decades.
+    pub tolerance: f64,
+    /// Error of the shear at which it rests, relative to the peak pressure.
+    pub shear_tolerance: f64,
+    /// Tolerance of the mechanics in the first iteration, whose temperature is only a guess.
+    pub first_mechanics_tolerance: f64,
+    /// Tolerance of the mechanics relative to the last change of the split: their error must not hide its contraction.
+    pub mechanics_tolerance: f64,
+    /// The smallest tolerance that is asked of the mechanics: round-off of the compliance's products.
+    pub last_mechanics_tolerance: f64,
+    /// Tolerance of the mechanics where they are solved alone, for the initial state.
+    pub mechanics_alone_tolerance: f64,
+    /// A change of the thermal displacement below this share of `tolerance` is not handed to the mechanics.
+    pub unfelt: f64,
+    /// Iterations after which Anderson's method takes part. Two plain ones settle most steps.
+    pub accelerate_after: usize,
+    /// Least temperature to which the change of the temperature is related, `K`.
+    pub least_temperature: f64,
+    /// The error of an iteration is estimated as its change times the ratio of the last two changes. The estimate is used
+    /// only where that ratio is below this one.
+    pub trusted_contraction: f64,
+    /// Nor is a ratio below this one believed: the first change contains what one iteration settles for good.
+    pub least_contraction: f64,
+}
+
+/// Normal and tangential problem in turn.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MechanicsSettings {
+    /// Limit of the sweeps over both problems. With the active-set method two or three do, with the paper's method some
+    /// ten.
+    pub sweeps: usize,
+    /// Change of the shear, relative to the peak pressure, to which they are solved before they are linearised.
+    pub linearisation_tolerance: f64,
+}
+
+/// The normal problem.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct NormalSettings {
+    /// Separations above minus this one count as closed: round-off of sums whose terms are of order 1.
+    pub round_off: f64,
+    /// Exchanges of all violated nodes at once. Two ends of a contact that wait for each other can cycle, so that from then
+    /// on only the worst node is exchanged.
+    pub set_exchanges: usize,
+    /// Exchanges altogether before the method that descends takes over.
+    pub exchanges: usize,
+    /// Exchanges of the method that descends, per node.
+    pub descents_per_node: usize,
+    /// Limit of the iterations of the paper's linearisation method.
+    pub linearisations: usize,
+    /// Its largest step, relative to the largest pressure, at which it rests.
+    pub linearisation_tolerance: f64,
+}
+
+/// The tangential problem.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TangentialSettings {
+    /// Limit of the Newton steps at one regularisation ε.
+    pub newton_steps: usize,
+    /// Limit of the halvings of one step in the line search: 2⁻¹² of a step moves nothing any more.
+    pub halvings: usize,
+    /// Half-decades by which ε is raised where Newton's method fails at the given one, and then lowered again.
+    pub continuation: usize,
+    /// A factorisation is kept while each step is shorter than this share of the one before.
+    pub slow_contraction: f64,
+    /// Ratio of two steps that is expected of a fresh factorisation until a second step has shown it. Where that was too
+    /// hopeful, the next sweep starts from the residual that was left.
+    pub fresh_contraction: f64,
+    /// The smallest ratio of two steps that is believed: steps of the size of round-off say nothing.
+    pub least_contraction: f64,
+}
+
+/// The wear of a step inside the normal problem.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SofteningSettings {
+    /// Wear per pressure, relative to the smallest compliance, up to which the split converges fast with the wear of the
+    /// iteration before.
+    pub explicit: f64,
+    /// Relative change of the softening from which on it is computed anew.
+    pub renewal: f64,
+}
+
+/// The surface condition of a column, and the wheel's rim.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct HeatSettings {
+    /// Limit of the Newton steps of one column's surface condition. Bisection alone would need 50.
+    pub surface_newton_steps: usize,
+    /// Residual at which that condition holds, relative to the temperatures between which it is sought.
+    pub surface_tolerance: f64,
+    /// Limit of the iterations between rail and rim.
+    pub rim_iterations: usize,
+    /// Change of the rim's temperature at which they rest, relative to the absolute temperature: ten times the tolerance of
+    /// the surface condition.
+    pub rim_tolerance: f64,
+    /// Iterations that reach this tolerance unless the conductance is extreme.
+    pub rim_fast_iterations: usize,
+    /// The tolerance after them, where the round-off of an extreme conductance is larger.
+    pub rim_round_off: f64,
+}
+
+/// Derivatives of the outputs.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SensitivitySettings {
+    /// Limit of the iterations of the linear split.
+    pub iterations: usize,
+    /// Iterations after which Anderson's method takes part.
+    pub accelerate_after: usize,
+    /// Change of the tangents, relative to the largest, at which the linear split rests.
+    pub tolerance: f64,
+    /// Relative step of the central difference of the outputs along the tangent of the fields. The outputs are sums,
+    /// products and ratios of the fields: truncation is 1e-14, round-off 1e-9.
+    pub output_step: f64,
+    /// The same for fields of which the outputs are linear functions or the largest value: temperature, displacement, wear
+    /// and flux. It is larger, so that a change of the rail that hardly moves the tractions is not lost in round-off.
+    pub linear_output_step: f64,
+}
+
+impl Default for StepSettings {
+    fn default() -> Self {
+        StepSettings {
+            jump: 0.2,
+            first_substep: 0.25,
+            ramp_substeps: 50.0,
+            shortest: 1e-100,
+            retries: 4,
+        }
+    }
+}
+
+impl Default for SplitSettings {
+    fn default() -> Self {
+        SplitSettings {
+            iterations: 100,
+            tolerance: 1e-9,
+            shear_tolerance: 1e-9,
+            first_mechanics_tolerance: 1e-8,
+            mechanics_tolerance: 1e-4,
+            last_mechanics_tolerance: 1e-12,
+            mechanics_alone_tolerance: 1e-11,
+            unfelt: 0.1,
+            accelerate_after: 1,
+            least_temperature: 1.0,
+            trusted_contraction: 0.3,
+            least_contraction: 1e-3,
+        }
+    }
+}
+
+impl Default for MechanicsSettings {
+    fn default() -> Self {
+        MechanicsSettings {
+            sweeps: 200,
+            linearisation_tolerance: 1e-10,
+        }
+    }
+}
+
+impl Default for NormalSettings {
+    fn default() -> Self {
+        NormalSettings {
+            round_off: 1e-13,
+            set_exchanges: 4,
+            exchanges: 40,
+            descents_per_node: 20,
+            linearisations: 200_000,
+            linearisation_tolerance: 1e-12,
+        }
+    }
+}
+
+impl Default for TangentialSettings {
+    fn default() -> Self {
+        TangentialSettings {
+            newton_steps: 60,
+            halvings: 12,
+            continuation: 10,
+            slow_contraction: 0.1,
+            fresh_contraction: 0.01,
+            least_contraction: 1e-3,
+        }
+    }
+}
+
+impl Default for SofteningSettings {
+    fn default() -> Self {
+        SofteningSettings {
+            explicit: 0.05,
+            renewal: 0.1,
+        }
+    }
+}
+
+impl Default for HeatSettings {
+    fn default() -> Self {
+        HeatSettings {
+            surface_newton_steps: 60,
+            surface_tolerance: 1e-14,
+            rim_iterations: 50,
+            rim_tolerance: 1e-13,
+            rim_fast_iterations: 10,
+            rim_round_off: 1e-12,
+        }
+    }
+}
+
+impl Default for SensitivitySettings {
+    fn default() -> Self {
+        SensitivitySettings {
+            iterations: 400,
+            accelerate_after: 6,
+            tolerance: 1e-9,
+            output_step: 1e-7,
+            linear_output_step: 1e-5,
+        }
+    }
+}
