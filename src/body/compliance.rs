@@ -1,4 +1,5 @@
-//! Factorise once, apply unit loads, keep the dense maps that a step uses (section 4.1 of the paper).
+//! The compliance of a body: factorise once, apply unit loads, keep the dense maps that a step uses (section 4.1 of the
+//! paper).
 //!
 //! With u the surface displacement of the contact nodes and f the nodal forces on the rail,
 //! u(V) = C(V) f + C_θ θ, C(V) = C(0) + ρV² Zᵀ K₁ Z, where the columns of Z are the fields of the unit loads and K₁ is
@@ -8,12 +9,10 @@
 //! Everything is scaled: tractions by p₀, displacements by a²/r₀ of the largest load. Raw compliances of
 //! 1e-11 m/N beside a 1 would wreck the row of the load constraint.
 
-use crate::body::elastic_wheel;
 use crate::body::elasticity::{Elasticity, Fields};
 use crate::body::mesh::Mesh;
-use crate::error::Result;
 use crate::numerics::dense;
-use crate::parameters::{Parameters, Wheel};
+use crate::parameters::Parameters;
 use nalgebra::DMatrix;
 
 /// The units in which the contact problem is solved.
@@ -77,31 +76,8 @@ impl Compliance {
     }
 }
 
-/// The unit-load fields at the contact nodes and what follows from them: compliance of the pair and thermal displacement
-/// of the rail.
-///
-/// # Errors
-/// [`crate::error::Error::StiffnessNotPositiveDefinite`].
-pub fn build(
-    mesh: &Mesh,
-    parameters: &Parameters,
-    scales: &Scales,
-) -> Result<(RollingCompliance, ThermalDisplacement)> {
-    let rail = Elasticity::new(mesh, parameters.lame_lambda, parameters.shear_modulus, 0.0)?;
-    let fields = rail.unit_load_fields(mesh);
-
-    let mut compliance = rolling_compliance(mesh, parameters, scales, &rail, &fields);
-    if parameters.wheel == Wheel::Elastic {
-        elastic_wheel::add(&mut compliance, mesh, parameters, scales)?;
-    }
-    let thermal_stress = parameters.thermal_expansion * (3.0 * parameters.lame_lambda + 2.0 * parameters.shear_modulus);
-    let mut thermal = thermal_displacement(mesh, &rail, &fields);
-    thermal *= thermal_stress / scales.displacement;
-    Ok((compliance, thermal))
-}
-
 /// Compliance of a body from its forms and its fields of the unit loads.
-pub(crate) fn rolling_compliance(
+pub fn rolling_compliance(
     mesh: &Mesh,
     parameters: &Parameters,
     scales: &Scales,
@@ -178,7 +154,7 @@ fn inertia_form(rail: &Elasticity, fields: &Fields) -> DMatrix<f64> {
 /// Adjoint of the thermal load: the displacement at a contact node caused by a unit thermal stress at a node is the
 /// work of that stress on the contact node's unit-load field. Nodes × 2n. The displacements on the right are the mirror
 /// images of those on the left, u₁ with the opposite sign.
-fn thermal_displacement(mesh: &Mesh, rail: &Elasticity, fields: &Fields) -> ThermalDisplacement {
+pub fn thermal_displacement(mesh: &Mesh, rail: &Elasticity, fields: &Fields) -> ThermalDisplacement {
     let (n, nodes) = (mesh.contact_nodes, mesh.nodes());
     let mut map = ThermalDisplacement::zeros(nodes, 2 * n);
     for (direction, sign) in [(0, -1.0), (1, 1.0)] {

@@ -217,3 +217,99 @@ impl FixedPoint {
 pub fn wear_rate(parameters: &Parameters, sliding: f64) -> f64 {
     parameters.wheel_wear_coefficient * sliding / (2.0 * PI * parameters.wheel_radius * parameters.contact_width)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn parameters() -> Parameters {
+        Parameters {
+            wheel_heating: WheelHeating::On,
+            rim_depth: 2e-3,
+            rim_width: 5e-3,
+            ..Parameters::default()
+        }
+    }
+
+    fn nodes(step: f64) -> Vec<HeatedNode> {
+        (0..5)
+            .map(|i| {
+                let x = f64::from(i);
+                HeatedNode {
+                    pressure: 1.0 - 0.2 * x + step * 0.3,
+                    shear: -0.3 + 0.05 * x + step * 0.1 * x,
+                    slip: 0.2 - 0.03 * x + step * 0.05,
+                    rise: 50.0 + 10.0 * x + step * 7.0,
+                }
+            })
+            .collect()
+    }
+
+    /// C (T − T before)/Δt + h A (T − T_a) = what the contact gives to a wheel at T.
+    #[test]
+    fn the_step_closes_the_rims_heat_balance() {
+        let parameters = parameters();
+        let heat = ContactHeat::new(&parameters, 1e3, nodes(0.0).into_iter());
+        for duration in [1e-4, 1.0, 1e6] {
+            let (before, ambient) = (310.0, 295.0);
+            let after = temperature(&parameters, before, ambient, duration, &heat);
+            let stored = heat_capacity(&parameters) * (after - before) / duration;
+            let lost = convection(&parameters) * (after - ambient);
+            let given = heat.flow(after - ambient);
+            assert!(
+                (stored + lost - given).abs() < 1e-8 * given.abs().max(lost),
+                "{duration}"
+            );
+        }
+    }
+
+    #[test]
+    fn the_tangents_are_the_derivatives() {
+        let parameters = parameters();
+        let at = |h: f64| {
+            let heat = ContactHeat::new(&parameters, 1e3, nodes(h).into_iter());
+            temperature(&parameters, 310.0, 295.0 + 2.0 * h, 0.1, &heat)
+        };
+        let h = 1e-6;
+        let changes = nodes(1.0).into_iter().zip(nodes(0.0)).map(|(moved, node)| HeatedNode {
+            pressure: moved.pressure - node.pressure,
+            shear: moved.shear - node.shear,
+            slip: moved.slip - node.slip,
+            rise: moved.rise - node.rise,
+        });
+        let heat = ContactHeat::new(&parameters, 1e3, nodes(0.0).into_iter());
+        let tangent = ContactHeat::tangent(&parameters, 1e3, nodes(0.0).into_iter().zip(changes));
+        let exact = temperature_tangent(&parameters, at(0.0), (295.0, 2.0), 0.1, &heat, &tangent);
+        let difference = (at(h) - at(-h)) / (2.0 * h);
+        // Round-off of 300 K over h.
+        assert!(
+            (exact - difference).abs() < 1e-6 * (1.0 + exact.abs()),
+            "{exact} {difference}"
+        );
+    }
+
+    /// The secant method ends at the fixed point of a linear map in three iterations, whatever its slope below 1.
+    #[test]
+    fn the_fixed_point_is_found() {
+        for slope in [0.0, 0.3, 0.9999] {
+            let map = |t: f64| 300.0 + slope * (t - 350.0);
+            let mut point = FixedPoint::new(293.15, HeatSettings::default());
+            let mut iterations = 0;
+            while !point.rests(map(point.temperature())).unwrap() {
+                iterations += 1;
+                assert!(iterations < 10, "{slope}");
+            }
+            let exact = (300.0 - 350.0 * slope) / (1.0 - slope);
+            assert!(
+                (point.temperature() / exact - 1.0).abs() < 1e-8,
+                "{slope}: {}",
+                point.temperature()
+            );
+        }
+        let none = HeatSettings {
+            rim_iterations: 0,
+            ..HeatSettings::default()
+        };
+        assert!(FixedPoint::new(300.0, none).rests(300.0).is_err());
+    }
+}

@@ -2,9 +2,10 @@
 //!
 //! [`basis`] takes the depth apart into modes, [`march`] carries them through the columns under the condition of
 //! [`surface`], [`incoming`] is the rail that the wheel ahead has left, [`thermal_map`] the displacement of the contact
-//! nodes. [`Heat`] holds what of this is computed once.
+//! nodes, compressed by [`compression`]. [`Heat`] holds what of this is computed once.
 
 pub mod basis;
+pub mod compression;
 pub mod incoming;
 pub mod march;
 pub mod surface;

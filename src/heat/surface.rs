@@ -181,3 +181,106 @@ impl SurfaceCondition<'_> {
         partition * source / (1.0 - partition * response * (slope * exchange.friction - loss))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn condition(parameters: &Parameters) -> SurfaceCondition<'_> {
+        SurfaceCondition {
+            friction: FrictionState {
+                parameters,
+                ambient: 293.15,
+                scale: 0.9,
+            },
+            settings: HeatSettings::default(),
+        }
+    }
+
+    fn parameters(resistance: f64) -> Parameters {
+        Parameters {
+            contact_thermal_resistance: resistance,
+            wear_coefficient: 1e-11,
+            ..Parameters::default()
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn the_flux_satisfies_the_condition(
+            pressure in 1e7..1e9,
+            speed in 0.0..1.0,
+            wheel_rise in -20.0..200.0,
+            unheated in -5.0..150.0,
+            response in 1e-8..1e-6,
+            log_resistance in 1.0..4.0,
+        ) {
+            let parameters = parameters(10.0_f64.powf(log_resistance));
+            let condition = condition(&parameters);
+            let exchange = SurfaceExchange::new(&parameters, pressure, speed, wheel_rise);
+            let flux = condition.flux(&exchange, unheated, response, 0.0).unwrap();
+            // (23), written out.
+            let rise = unheated + response * flux;
+            let mu = 0.9 * friction::coefficient(&parameters, 293.15 + rise).0;
+            let power = mu * pressure * coulomb::saturation(speed, parameters.slip_regularisation) * speed;
+            let debris = parameters.wear_coefficient * 7.8e3 * 460.0 * rise * speed * pressure;
+            let conducted = (rise - wheel_rise) * pressure / parameters.contact_thermal_resistance;
+            let expected = 0.5 * (power - debris - conducted);
+            let size = 0.5 * (power + debris.abs() + (rise.abs() + wheel_rise.abs()) * pressure / parameters.contact_thermal_resistance);
+            prop_assert!((flux - expected).abs() <= 1e-10 * size, "{flux} {expected}");
+        }
+
+        #[test]
+        fn the_tangent_is_the_derivative_of_the_flux(
+            pressure in 1e7..1e9,
+            speed in 1e-3..1.0,
+            wheel_rise in -20.0..200.0,
+            unheated in 40.0..80.0,
+            changes in prop::array::uniform6(-1.0..1.0_f64),
+        ) {
+            let parameters = parameters(100.0);
+            let response = 1e-7;
+            let [dp, ds, dw, du, ambient, friction_scale] = changes;
+            let change = ExchangeChange { pressure: 1e7 * dp, speed: 1e-2 * ds, wheel_rise: dw };
+            let common = CommonChange { ambient, friction_scale };
+            let at = |h: f64| {
+                let mut condition = condition(&parameters);
+                condition.friction.ambient += h * ambient;
+                condition.friction.scale += h * friction_scale;
+                let exchange = SurfaceExchange::new(
+                    &parameters,
+                    pressure + h * change.pressure,
+                    speed + h * change.speed,
+                    wheel_rise + h * change.wheel_rise,
+                );
+                let flux = condition.flux(&exchange, unheated + h * du, response, 0.0).unwrap();
+                let rise = unheated + h * du + response * flux;
+                (flux, friction::coefficient(&parameters, condition.friction.ambient + rise).1)
+            };
+            let h = 1e-5;
+            let (here, ahead, behind) = (at(0.0), at(h), at(-h));
+            // Not across a corner of the friction law.
+            prop_assume!(ahead.1 == behind.1);
+            let exchange = SurfaceExchange::new(&parameters, pressure, speed, wheel_rise);
+            let tangent = SurfaceExchange::tangent(&parameters, pressure, speed, wheel_rise, &change);
+            let rise = unheated + response * here.0;
+            let exact = condition(&parameters).flux_tangent(&exchange, &tangent, &common, (rise, du, response));
+            let difference = (ahead.0 - behind.0) / (2.0 * h);
+            // Truncation h², round-off of the flux over h.
+            prop_assert!((exact - difference).abs() <= 1e-5 * exact.abs() + 1e-9 / h * here.0.abs().max(1e4), "{exact} {difference}");
+        }
+    }
+
+    #[test]
+    fn a_limit_of_no_steps_is_an_error() {
+        let parameters = Parameters::default();
+        let mut condition = condition(&parameters);
+        condition.settings.surface_newton_steps = 0;
+        let exchange = SurfaceExchange::new(&parameters, 1e9, 0.1, 0.0);
+        assert!(matches!(
+            condition.flux(&exchange, 0.0, 1e-7, 1.5e-3),
+            Err(Error::SurfaceHeatNotConverged { position, iterations: 0, .. }) if position == 1.5e-3
+        ));
+    }
+}

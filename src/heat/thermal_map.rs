@@ -4,23 +4,21 @@
 //!
 //! 1. Over the depth. The displacement is smooth in the depth of its cause, so that per column a few weighted integrals
 //!    ("moments") carry it. The weights are common to all columns: the leading right singular vectors of the map over the
-//!    profiles that a heated surface can make (`heated_profiles`).
+//!    profiles that a heated surface can make ([`super::compression`]).
 //! 2. Along the rail. The displacement is smooth also in the place of its cause, but for the nodes next to it. Columns are
 //!    taken in blocks of √n; far from a block, a few combinations of its moments carry their effect ("effects"). Next to
 //!    the block what these leave is added from the moments themselves.
 
+use super::basis::DepthBasis;
+use super::compression::{Moments, pieces};
 use crate::body::compliance::ThermalDisplacement;
 use crate::body::mesh::Mesh;
-use crate::heat::basis::DepthBasis;
 use crate::numerics::dense::{self, Arithmetic, LANES};
-use nalgebra::{Cholesky, DMatrix, DVector, SymmetricEigen};
+use nalgebra::DMatrix;
 use std::ops::Range;
 
 /// Error of the compressed map relative to the largest displacement of a heated profile.
 pub const TOLERANCE: f64 = 1e-4;
-
-/// Nodes within so many node spacings of a block are next to it.
-const NEAR: f64 = 4.0;
 
 /// Maps modal amplitudes (columns × modes) to the 2n scaled displacements, along x₁ first.
 #[derive(Debug, Clone)]
@@ -52,227 +50,8 @@ struct Block {
     gains: Vec<f32>,
 }
 
-/// Modal amplitudes under a surface flux that lasts for 1/rate: φ(0)/(rate + κλ), over all rates from seconds to
-/// microseconds that contacts between walking pace and 150 m/s make, and slower ones for rests. Modes × profiles.
-fn heated_profiles(basis: &DepthBasis, diffusivity: f64) -> DMatrix<f64> {
-    const PER_DECADE: usize = 4;
-    const DECADES: usize = 10;
-    DMatrix::from_fn(basis.len(), PER_DECADE * DECADES + 1, |mode, profile| {
-        let rate = 1e-4 * 10.0_f64.powf(profile as f64 / PER_DECADE as f64);
-        basis.surface[mode] / (rate + diffusivity * basis.eigenvalues[mode])
-    })
-}
-
-/// Moments of a column and the displacement that they make.
-struct Moments {
-    /// Modes × moments.
-    weights: DMatrix<f64>,
-    /// Per column, 2n × moments.
-    images: Vec<DMatrix<f64>>,
-}
-
-impl Moments {
-    fn new(mesh: &Mesh, basis: &DepthBasis, exact: &ThermalDisplacement, diffusivity: f64, tolerance: f64) -> Moments {
-        let (rows, m) = (mesh.rows(), basis.len());
-        let of_column = |column: usize| exact.rows(column * rows, rows).transpose();
-        // Each profile counts by the displacement that it makes in the middle of the window.
-        let middle = of_column(mesh.contact_column(mesh.contact_nodes / 2)) * &basis.modes;
-        let mut profiles = heated_profiles(basis, diffusivity);
-        for mut profile in profiles.column_iter_mut() {
-            let size = (&middle * &profile).amax();
-            profile /= if size > 0.0 { size } else { 1.0 };
-        }
-        // S Sᵀ = profiles · profilesᵀ, with a floor that keeps every mode.
-        let mut gram = &profiles * profiles.transpose();
-        for mode in 0..m {
-            gram[(mode, mode)] *= 1.0 + 1e-12;
-        }
-        let root = match Cholesky::new(gram) {
-            Some(cholesky) => cholesky.l(),
-            None => DMatrix::identity(m, m),
-        };
-        // Singular vectors of the map after modes · S: all columns of the mesh one above the other.
-        let mut gram = DMatrix::zeros(rows, rows);
-        for column in 0..mesh.columns() {
-            let block = of_column(column);
-            gram.gemm(1.0, &block.transpose(), &block, 1.0);
-        }
-        let scaled = &basis.modes * &root;
-        let eigen = SymmetricEigen::new(scaled.transpose() * gram * &scaled);
-        let mut order: Vec<usize> = (0..m).collect();
-        order.sort_by(|&a, &b| eigen.eigenvalues[b].total_cmp(&eigen.eigenvalues[a]));
-        // A singular value bounds every displacement of its vector.
-        let candidates = order
-            .iter()
-            .filter(|&&k| eigen.eigenvalues[k] > tolerance * tolerance)
-            .count();
-        let vectors = DMatrix::from_fn(m, candidates, |i, k| eigen.eigenvectors[(i, order[k])]);
-        // Moments are wᵀ a with w = S⁻ᵀ v: of unit size over the profiles.
-        let weights = root
-            .transpose()
-            .solve_upper_triangular(&vectors)
-            .unwrap_or_else(|| vectors.clone());
-        let per_moment = scaled * &vectors;
-        let images: Vec<DMatrix<f64>> = (0..mesh.columns())
-            .map(|column| of_column(column) * &per_moment)
-            .collect();
-        let matters = |&moment: &usize| images.iter().any(|image| image.column(moment).amax() > tolerance);
-        let used = (0..candidates).rev().find(matters).map_or(0, |last| last + 1);
-        // Padding has no weight and no gain.
-        let padded = used.next_multiple_of(LANES);
-        let pad = |matrix: DMatrix<f64>| matrix.resize_horizontally(used, 0.0).resize_horizontally(padded, 0.0);
-        Moments {
-            weights: pad(weights),
-            images: images.into_iter().map(pad).collect(),
-        }
-    }
-
-    /// The displacement that the columns' moments make, row by row: 2n × (columns · moments).
-    fn rows(&self, columns: Range<usize>) -> Vec<f64> {
-        let (displacements, moments) = self.images[0].shape();
-        let mut rows = Vec::with_capacity(displacements * columns.len() * moments);
-        for row in 0..displacements {
-            for image in &self.images[columns.clone()] {
-                rows.extend(image.row(row).iter());
-            }
-        }
-        rows
-    }
-}
-
-/// Takes from the `rows` (each of `inputs` values) their parts along a few orthonormal combinations, until what is left of
-/// those in question is below the tolerance: Gram and Schmidt's method on the row that is largest. Returns the
-/// combinations and, one after the other, the parts of all rows along them.
-fn split_off(rows: &mut [f64], inputs: usize, far: impl Fn(usize) -> bool, tolerance: f64) -> (Vec<f64>, Vec<f64>) {
-    let (mut combinations, mut parts) = (Vec::new(), Vec::new());
-    for _ in 0..inputs {
-        let far_rows = || {
-            rows.chunks_exact(inputs)
-                .enumerate()
-                .filter(|(row, _)| far(*row))
-                .map(|(_, r)| r)
-        };
-        if far_rows().all(|row| dense::largest(row) <= tolerance) {
-            break;
-        }
-        let pivot = far_rows().max_by(|a, b| dense::dot(a, a).total_cmp(&dense::dot(b, b)));
-        let mut direction = pivot.unwrap_or_default().to_vec();
-        let length = dense::dot(&direction, &direction).sqrt();
-        direction.iter_mut().for_each(|value| *value /= length);
-        dense::vectorised(
-            #[inline(always)]
-            |arithmetic| {
-                for row in rows.chunks_exact_mut(inputs) {
-                    let part = arithmetic.dot(row, &direction);
-                    arithmetic.add_multiple(&direction, -part, row);
-                    parts.push(part);
-                }
-            },
-        );
-        combinations.extend(direction);
-    }
-    (combinations, parts)
-}
-
-fn single(values: &[f64]) -> Vec<f32> {
-    values.iter().map(|&value| value as f32).collect()
-}
-
-/// What becomes a [`Block`].
-struct Piece {
-    columns: Range<usize>,
-    near: Range<usize>,
-    /// Effects per moment, row by row.
-    combinations: Vec<f64>,
-    /// Displacement per effect, effect by effect, 2n each.
-    parts: Vec<f64>,
-    /// As those of [`Block`].
-    gains: Vec<f64>,
-}
-
-impl Piece {
-    fn new(moments: &Moments, columns: Range<usize>, near: Range<usize>, tolerance: f64) -> Piece {
-        let (n, inputs) = (moments.images[0].nrows() / 2, columns.len() * moments.images[0].ncols());
-        let mut rows = moments.rows(columns.clone());
-        let (combinations, parts) = split_off(&mut rows, inputs, |row| !near.contains(&(row % n)), tolerance);
-        let next_to = |first: usize| &rows[(first + near.start) * inputs..(first + near.end) * inputs];
-        let gains = [next_to(0), next_to(n)].concat();
-        Piece {
-            columns,
-            near,
-            combinations,
-            parts,
-            gains,
-        }
-    }
-
-    /// The mirror image in x₁ = 0 on a mesh of so many columns, with n contact nodes and so many moments a column: u₁
-    /// changes its sign.
-    fn mirrored(&self, mesh_columns: usize, n: usize, moments: usize) -> Piece {
-        let opposite = |range: &Range<usize>, count: usize| count - range.end..count - range.start;
-        // Values at nodes or columns, `size` each, in opposite order.
-        let reversed =
-            |values: &[f64], size: usize| values.rchunks_exact(size).flatten().copied().collect::<Vec<f64>>();
-        let inputs = self.columns.len() * moments;
-        let opposite_inputs = |rows: &[f64]| -> Vec<f64> {
-            rows.chunks_exact(inputs)
-                .flat_map(|row| reversed(row, moments))
-                .collect()
-        };
-        let opposite_nodes = |along_and_upward: &[f64], size: usize| -> Vec<f64> {
-            let (along, upward) = along_and_upward.split_at(along_and_upward.len() / 2);
-            let along: Vec<f64> = along.iter().map(|value| -value).collect();
-            [reversed(&along, size), reversed(upward, size)].concat()
-        };
-        Piece {
-            columns: opposite(&self.columns, mesh_columns),
-            near: opposite(&self.near, n),
-            combinations: opposite_inputs(&self.combinations),
-            parts: self
-                .parts
-                .chunks_exact(2 * n)
-                .flat_map(|part| opposite_nodes(part, 1))
-                .collect(),
-            gains: opposite_nodes(&opposite_inputs(&self.gains), inputs),
-        }
-    }
-}
-
-/// Blocks of √n columns from the middle to the left, their mirror images, and between them the middle column, if there is
-/// one: mirrored motion is to give mirrored fields to round-off.
-fn pieces(mesh: &Mesh, moments: &Moments, tolerance: f64) -> Vec<Piece> {
-    let (n, columns) = (mesh.contact_nodes, mesh.columns());
-    let width = (n as f64).sqrt().round() as usize;
-    let half = columns / 2;
-    let mut left: Vec<Piece> = (0..half)
-        .step_by(width)
-        .map(|distance| {
-            let own = half.saturating_sub(distance + width)..half - distance;
-            let reach = NEAR * mesh.contact_spacing();
-            let (from, to) = (mesh.x[own.start] - reach, mesh.x[own.end - 1] + reach);
-            let is_near = |node: &usize| (from..=to).contains(&mesh.contact_position(*node));
-            let near = match ((0..n).find(is_near), (0..n).rfind(is_near)) {
-                (Some(first), Some(last)) => first..last + 1,
-                _ => 0..0,
-            };
-            Piece::new(moments, own, near, tolerance)
-        })
-        .collect();
-    let right: Vec<Piece> = left
-        .iter()
-        .map(|piece| piece.mirrored(columns, n, moments.images[0].ncols()))
-        .collect();
-    left.reverse();
-    // Its own mirror image: all nodes are next to it.
-    let middle = (columns % 2 == 1).then(|| Piece::new(moments, half..half + 1, 0..n, tolerance));
-    left.into_iter().chain(middle).chain(right).collect()
-}
-
 impl ThermalMap {
-    /// Compresses the exact map to the given tolerance.
-    ///
-    /// # Errors
-    /// None; a map that cannot be compressed is kept whole.
+    /// Compresses the exact map to the given tolerance. A map that cannot be compressed is kept whole.
     pub fn new(
         mesh: &Mesh,
         basis: &DepthBasis,
@@ -414,6 +193,10 @@ impl ThermalMap {
     }
 }
 
+fn single(values: &[f64]) -> Vec<f32> {
+    values.iter().map(|&value| value as f32).collect()
+}
+
 /// `out += rows · x`.
 #[inline(always)]
 fn multiply_add(arithmetic: Arithmetic, rows: &[f32], x: &[f64], out: &mut [f64]) {
@@ -435,18 +218,149 @@ fn dot(arithmetic: Arithmetic, gains: &[f32], x: &[f64]) -> f64 {
     sums.iter().sum()
 }
 
-/// The displacement of the field by the exact map, for comparison: 2n values.
-pub fn exact_displacement(
-    mesh: &Mesh,
-    basis: &DepthBasis,
-    exact: &ThermalDisplacement,
-    amplitudes: &[f64],
-) -> Vec<f64> {
-    let mut temperature = vec![0.0; mesh.nodes()];
-    for (column, a) in amplitudes.chunks_exact(basis.len()).enumerate() {
-        for row in 0..mesh.rows() {
-            temperature[mesh.node(column, row)] = basis.value(a, row);
+/// On fields that the heat march makes under random fluxes, speeds and times.
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::body::compliance::Scales;
+    use crate::body::pair;
+    use crate::friction::FrictionState;
+    use crate::heat::Heat;
+    use crate::heat::incoming::Incoming;
+    use crate::heat::march::{HeatMarch, Heated};
+    use crate::heat::surface::{SurfaceCondition, SurfaceExchange};
+    use crate::parameters::{FrictionLaw, Parameters};
+    use crate::settings::HeatSettings;
+    use crate::transport::Upwind;
+    use nalgebra::DVector;
+    use proptest::prelude::*;
+    use std::sync::OnceLock;
+
+    /// The displacement of the field by the exact map: 2n values.
+    fn exact_displacement(
+        mesh: &Mesh,
+        basis: &DepthBasis,
+        exact: &ThermalDisplacement,
+        amplitudes: &[f64],
+    ) -> Vec<f64> {
+        let mut temperature = vec![0.0; mesh.nodes()];
+        for (column, a) in amplitudes.chunks_exact(basis.len()).enumerate() {
+            for row in 0..mesh.rows() {
+                temperature[mesh.node(column, row)] = basis.value(a, row);
+            }
+        }
+        exact.tr_mul(&DVector::from_vec(temperature)).as_slice().to_vec()
+    }
+
+    fn parameters() -> Parameters {
+        Parameters {
+            friction_law: FrictionLaw::Constant,
+            friction_cold: 1.0,
+            ..Parameters::default()
         }
     }
-    exact.tr_mul(&DVector::from_vec(temperature)).as_slice().to_vec()
+
+    struct Rail {
+        mesh: Mesh,
+        heat: Heat,
+        exact: ThermalDisplacement,
+    }
+
+    fn rail() -> &'static Rail {
+        static RAIL: OnceLock<Rail> = OnceLock::new();
+        RAIL.get_or_init(|| {
+            let parameters = parameters();
+            let mesh = Mesh::new(&parameters);
+            let (_, exact) = pair::build(&mesh, &parameters, &Scales::new(&parameters)).unwrap();
+            let heat = Heat::new(&mesh, &exact, &parameters).unwrap();
+            Rail { mesh, heat, exact }
+        })
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(40))]
+        #[test]
+        fn the_compressed_map_is_the_exact_one_within_its_tolerance(
+            flux in prop::collection::vec(0.0..1e9, 61),
+            contact in 5_usize..30,
+            log_speed in -1.5..2.1,
+            backward in any::<bool>(),
+            log_step in -4.0..1.0,
+            steps in 1_usize..6,
+        ) {
+            let rail = rail();
+            let parameters = parameters();
+            let speed = 10.0_f64.powf(log_speed) * if backward { -1.0 } else { 1.0 };
+            let exchange: Vec<SurfaceExchange> = flux
+                .iter()
+                .enumerate()
+                .map(|(node, &friction)| SurfaceExchange {
+                    friction: if node.abs_diff(30) < contact { friction } else { 0.0 },
+                    debris: 0.0,
+                    conduction: 0.0,
+                    wheel: 0.0,
+                })
+                .collect();
+            let march = HeatMarch {
+                basis: &rail.heat.basis,
+                transport: Upwind::new(&rail.mesh.x, speed),
+                first_contact: rail.mesh.first_contact,
+                duration: 10.0_f64.powf(log_step),
+                surface: SurfaceCondition {
+                    friction: FrictionState { parameters: &parameters, ambient: 293.15, scale: 1.0 },
+                    settings: HeatSettings::default(),
+                },
+            };
+            let size = rail.mesh.columns() * rail.heat.basis.len();
+            let (mut before, mut after) = (vec![0.0; size], vec![0.0; size]);
+            for _ in 0..steps {
+                march.advance(
+                    &before,
+                    &exchange,
+                    &mut Heated {
+                        temperature: &mut after,
+                        surface: &mut vec![0.0; rail.mesh.columns()],
+                        flux: &mut vec![0.0; 61],
+                    },
+                    &mut vec![0.0; HeatMarch::scratch_len(&rail.heat.basis)],
+                ).unwrap();
+                std::mem::swap(&mut before, &mut after);
+            }
+            let expected = exact_displacement(&rail.mesh, &rail.heat.basis, &rail.exact, &before);
+            let mut computed = vec![0.0; expected.len()];
+            rail.heat.displacement.apply(&before, &mut vec![0.0; rail.heat.displacement.scratch_len()], &mut computed);
+            // Each moment of each column keeps its gains down to TOLERANCE of the largest displacement that a unit of it
+            // makes in the middle of the window; what the columns drop adds up with random signs.
+            let error = dense::largest_change(&expected, &computed) / dense::largest(&expected);
+            prop_assert!(error <= 10.0 * TOLERANCE, "{error:e}");
+        }
+    }
+
+    /// Rail that comes in hot is hot in all columns, whose dropped gains add up.
+    #[test]
+    fn the_compressed_map_holds_for_rail_that_comes_in_hot() {
+        let rail = rail();
+        let m = rail.heat.basis.len();
+        for skin_depth in [1e-3, 5e-3, 2e-2] {
+            let incoming = Incoming::new(&rail.mesh.depth, &rail.heat.basis, skin_depth);
+            let mut amplitudes = vec![0.0; rail.mesh.columns() * m];
+            // All of the strip, and a front in the middle of it.
+            for from in [0, rail.mesh.columns() / 2] {
+                amplitudes.fill(0.0);
+                for column in amplitudes.chunks_exact_mut(m).skip(from) {
+                    incoming.enter(50.0, column, &mut 0.0);
+                }
+                let expected = exact_displacement(&rail.mesh, &rail.heat.basis, &rail.exact, &amplitudes);
+                let mut computed = vec![0.0; expected.len()];
+                rail.heat.displacement.apply(
+                    &amplitudes,
+                    &mut vec![0.0; rail.heat.displacement.scratch_len()],
+                    &mut computed,
+                );
+                let error = dense::largest_change(&expected, &computed) / dense::largest(&expected);
+                println!("{skin_depth} {from}: {error:e}");
+                assert!(error <= 10.0 * TOLERANCE, "{skin_depth} {from}: {error:e}");
+            }
+        }
+    }
 }

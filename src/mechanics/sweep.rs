@@ -253,3 +253,204 @@ impl Mechanics {
         Ok(change.max(clamped))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::body::compliance::{RollingCompliance, Scales};
+    use crate::body::mesh::Mesh;
+    use crate::body::pair;
+    use crate::friction::coulomb::saturation;
+    use crate::mechanics::normal::problem::Constraint;
+    use crate::mechanics::problem::ProblemTangent;
+    use crate::parameters::Parameters;
+    use crate::settings::Settings;
+
+    const NODES: usize = 25;
+
+    /// A rigid wheel on a small rail, so that normal and tangential problem are coupled.
+    fn pair() -> (RollingCompliance, Vec<f64>) {
+        let parameters = Parameters {
+            contact_nodes: NODES,
+            depth_nodes: 15,
+            ..Parameters::default()
+        };
+        let mesh = Mesh::new(&parameters);
+        let scales = Scales::new(&parameters);
+        let (pair, _) = pair::build(&mesh, &parameters, &scales).unwrap();
+        let profile = (0..NODES)
+            .map(|i| -0.5 * mesh.contact_position(i).powi(2) / parameters.wheel_radius / scales.displacement)
+            .collect();
+        (pair, profile)
+    }
+
+    struct Solved {
+        pressure: Vec<f64>,
+        shear: Vec<f64>,
+        slip: Vec<f64>,
+        penetration: f64,
+    }
+
+    impl Solved {
+        fn new() -> Solved {
+            Solved {
+                pressure: vec![0.0; NODES],
+                shear: vec![0.0; NODES],
+                slip: vec![0.0; NODES],
+                penetration: 0.0,
+            }
+        }
+
+        fn tractions(&mut self) -> Tractions<'_> {
+            Tractions {
+                pressure: &mut self.pressure,
+                shear: &mut self.shear,
+                slip: &mut self.slip,
+                penetration: &mut self.penetration,
+            }
+        }
+    }
+
+    /// Data of a problem, moved by a multiple of a change.
+    struct Data {
+        profile: Vec<f64>,
+        displacement: Vec<f64>,
+        friction: Vec<f64>,
+        total: f64,
+        rigid_slip: f64,
+        strain_speed: f64,
+    }
+
+    impl Data {
+        fn moved(&self, step: f64, change: &Data) -> Data {
+            let add = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a + step * b).collect();
+            Data {
+                profile: add(&self.profile, &change.profile),
+                displacement: add(&self.displacement, &change.displacement),
+                friction: add(&self.friction, &change.friction),
+                total: self.total + step * change.total,
+                rigid_slip: self.rigid_slip + step * change.rigid_slip,
+                strain_speed: self.strain_speed + step * change.strain_speed,
+            }
+        }
+
+        fn problem<'a>(&'a self, pair: &'a RollingCompliance, normal_solver: NormalSolver) -> MechanicsProblem<'a> {
+            MechanicsProblem {
+                compliance: &pair.at_rest,
+                normal_compliance: &pair.at_rest.normal_normal,
+                profile: &self.profile,
+                displacement: &self.displacement,
+                friction: &self.friction,
+                constraint: Constraint::Total(self.total),
+                normal_solver,
+                rigid_slip: self.rigid_slip,
+                strain_speed: self.strain_speed,
+                regularisation: 1e-3,
+            }
+        }
+    }
+
+    fn data(profile: &[f64], rigid_slip: f64, strain_speed: f64) -> Data {
+        Data {
+            profile: profile.to_vec(),
+            displacement: vec![0.0; NODES],
+            friction: (0..NODES).map(|i| 0.3 + 0.005 * i as f64).collect(),
+            total: 8.0,
+            rigid_slip,
+            strain_speed,
+        }
+    }
+
+    fn solve(problem: &MechanicsProblem) -> Solved {
+        let mut solved = Solved::new();
+        let mut mechanics = Mechanics::new(NODES, &Settings::default());
+        mechanics.solve(problem, &mut solved.tractions(), 1e-12).unwrap();
+        solved
+    }
+
+    /// Every condition of (22) and (30) at every node, evaluated from the compliance itself, for both methods and directions.
+    #[test]
+    fn the_tractions_satisfy_contact_and_friction() {
+        let (pair, profile) = pair();
+        for (rigid_slip, strain_speed) in [(0.0, 30.0), (0.02, 30.0), (-0.02, -30.0), (0.3, 30.0)] {
+            for method in [NormalSolver::ActiveSet, NormalSolver::Pschenichnyj] {
+                let data = data(&profile, rigid_slip, strain_speed);
+                let problem = data.problem(&pair, method);
+                let solved = solve(&problem);
+                let (p, tau) = (&solved.pressure, &solved.shear);
+                assert!((p.iter().sum::<f64>() - data.total).abs() < 1e-9);
+                let sum = |matrix: &nalgebra::DMatrix<f64>, i: usize, f: &[f64]| {
+                    (0..NODES).map(|j| matrix[(i, j)] * f[j]).sum::<f64>()
+                };
+                let c = &pair.at_rest;
+                let along = |i: usize| sum(&c.tangential_tangential, i, tau) - sum(&c.tangential_normal, i, p);
+                for i in 1..NODES - 1 {
+                    let upward = sum(&c.normal_tangential, i, tau) - sum(&c.normal_normal, i, p);
+                    let separation = -(upward + profile[i] + solved.penetration);
+                    assert!(p[i] >= 0.0 && separation > -1e-8, "{i}: {} {separation}", p[i]);
+                    assert!(p[i] * separation < 1e-8, "{i}: {} {separation}", p[i]);
+                    if p[i] == 0.0 {
+                        assert_eq!((tau[i], solved.slip[i]), (0.0, 0.0));
+                        continue;
+                    }
+                    let ahead = if strain_speed > 0.0 { i + 1 } else { i - 1 };
+                    let slip = rigid_slip + strain_speed.abs() * (along(i) - along(ahead));
+                    assert!((slip - solved.slip[i]).abs() < 1e-7, "{i}: {slip} {}", solved.slip[i]);
+                    let law = -data.friction[i] * p[i] * saturation(slip, 1e-3);
+                    assert!((tau[i] - law).abs() < 1e-6, "{i}: {} {law}", tau[i]);
+                }
+            }
+        }
+    }
+
+    /// The tangent is the derivative of the solution in every datum at once.
+    #[test]
+    fn the_tangent_is_the_derivative() {
+        let (pair, profile) = pair();
+        let change = Data {
+            profile: (0..NODES).map(|i| 0.2 * (0.7 * i as f64).sin()).collect(),
+            displacement: (0..NODES).map(|i| 0.1 * (0.4 * i as f64).cos()).collect(),
+            friction: (0..NODES).map(|i| 0.05 * (0.3 * i as f64).sin()).collect(),
+            total: 0.7,
+            rigid_slip: 0.03,
+            strain_speed: 2.0,
+        };
+        for (rigid_slip, strain_speed) in [(0.01, 30.0), (-0.05, -20.0)] {
+            let data = data(&profile, rigid_slip, strain_speed);
+            let problem = data.problem(&pair, NormalSolver::ActiveSet);
+            let mut solved = solve(&problem);
+            let mut mechanics = Mechanics::new(NODES, &Settings::default());
+            mechanics.linearise(&problem, &mut solved.tractions()).unwrap();
+            let mut tangent = Solved::new();
+            // Of the magnitude of the strain speed.
+            let sign = strain_speed.signum();
+            mechanics.tangent(
+                &problem,
+                &ProblemTangent {
+                    profile: &change.profile,
+                    displacement: &change.displacement,
+                    friction: &change.friction,
+                    total: change.total,
+                    rigid_slip: change.rigid_slip,
+                    strain_speed: sign * change.strain_speed,
+                },
+                &mut tangent.tractions(),
+            );
+            let h = 1e-6;
+            let [ahead, behind] =
+                [h, -h].map(|h| solve(&data.moved(h, &change).problem(&pair, NormalSolver::ActiveSet)));
+            // Truncation is h², the tolerance of the two solutions 1e-12/h.
+            let close = |a: f64, b: f64, d: f64| ((a - b) / (2.0 * h) - d).abs() < 1e-4 * (1.0 + d.abs());
+            for i in 0..NODES {
+                assert!(
+                    close(ahead.pressure[i], behind.pressure[i], tangent.pressure[i]),
+                    "p {i}"
+                );
+                assert!(close(ahead.shear[i], behind.shear[i], tangent.shear[i]), "tau {i}");
+                assert!(close(ahead.slip[i], behind.slip[i], tangent.slip[i]), "s {i}");
+            }
+            assert!(close(ahead.penetration, behind.penetration, tangent.penetration));
+            assert!(tangent.shear.iter().any(|t| t.abs() > 1e-2));
+        }
+    }
+}

@@ -276,3 +276,100 @@ impl Tangential {
         dense::lu_solve(&self.factor, m, &self.pivots, &mut self.step[..m]);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::friction::coulomb::saturation;
+    use proptest::prelude::*;
+
+    const NODES: usize = 6;
+
+    /// A problem without response: pressure and strain stay what they are.
+    fn stiff<'a>(pressure: &'a [f64], zero: &'a [f64], friction: &'a [f64], rigid_slip: f64) -> TangentialProblem<'a> {
+        TangentialProblem {
+            pressure,
+            strain: &zero[..pressure.len()],
+            pressure_response: zero,
+            strain_response: zero,
+            friction,
+            rigid_slip,
+            strain_speed: 10.0,
+            regularisation: 1e-3,
+            tolerance: 1e-12,
+        }
+    }
+
+    #[test]
+    fn without_compliance_the_shear_is_coulombs_law_of_the_rigid_slip() {
+        let (pressure, friction) = ([0.2, 1.0, 0.6], [0.4, 0.3, 0.5]);
+        let zero = [0.0; 9];
+        for rigid_slip in [-0.2, -1e-4, 0.0, 5e-4, 3.0] {
+            let mut shear = [0.1, -0.2, 0.0];
+            let mut solver = Tangential::new(3, TangentialSettings::default());
+            let problem = stiff(&pressure, &zero, &friction, rigid_slip);
+            solver.solve(&problem, &mut shear).unwrap();
+            for node in 0..3 {
+                let expected = -friction[node] * pressure[node] * saturation(rigid_slip, 1e-3);
+                assert!((shear[node] - expected).abs() < 1e-12, "{rigid_slip}: {shear:?}");
+                assert_eq!(solver.point().slip[node], rigid_slip);
+            }
+        }
+    }
+
+    #[test]
+    fn a_limit_of_no_steps_is_an_error_with_its_numbers() {
+        let settings = TangentialSettings {
+            newton_steps: 0,
+            ..TangentialSettings::default()
+        };
+        let (one, zero) = ([1.0], [0.0]);
+        let mut shear = [0.0];
+        let failed = Tangential::new(1, settings).solve(&stiff(&one, &zero, &one, 1.0), &mut shear);
+        assert!(matches!(
+            failed,
+            Err(Error::TangentialNotConverged { iterations: 0, residual, .. }) if residual > 0.5
+        ));
+        assert_eq!(shear, [0.0]);
+    }
+
+    proptest! {
+        /// Strain that falls with the shear at the node itself and less at its neighbours, as an elastic surface has it, a
+        /// pressure that follows a little, regularisations down to a thousandth of the slip.
+        #[test]
+        fn the_solution_satisfies_the_law(
+            pressure in prop::collection::vec(0.1..1.0, NODES),
+            strain in prop::collection::vec(-1e-3..1e-3, NODES),
+            friction in prop::collection::vec(0.1..0.6, NODES),
+            follows in prop::collection::vec(-0.05..0.05, NODES * NODES),
+            rigid_slip in -0.05..0.05,
+            log_regularisation in -5.0..-2.0,
+        ) {
+            let regularisation = 10.0_f64.powf(log_regularisation);
+            let response: Vec<f64> = (0..NODES * NODES)
+                .map(|k| 2e-3 / (1.0 + (k / NODES).abs_diff(k % NODES) as f64))
+                .collect();
+            let problem = TangentialProblem {
+                pressure: &pressure,
+                strain: &strain,
+                pressure_response: &follows,
+                strain_response: &response,
+                friction: &friction,
+                rigid_slip,
+                strain_speed: 10.0,
+                regularisation,
+                tolerance: 1e-12,
+            };
+            let mut shear = vec![0.0; NODES];
+            Tangential::new(NODES, TangentialSettings::default()).solve(&problem, &mut shear).unwrap();
+            for row in 0..NODES {
+                let sum = |matrix: &[f64]| (0..NODES).map(|column| matrix[column * NODES + row] * shear[column]).sum::<f64>();
+                let slip = rigid_slip + 10.0 * (strain[row] + sum(&response));
+                let p = (pressure[row] + sum(&follows)).max(0.0);
+                let law = -friction[row] * p * saturation(slip, regularisation);
+                // The slope of the law, μ p/ε ds/dτ ≤ 0.6 · 10 · 4e-3/1e-5, times the tolerance of the shear.
+                prop_assert!((shear[row] - law).abs() < 1e-8, "{row}: {} {law}", shear[row]);
+            }
+        }
+    }
+}

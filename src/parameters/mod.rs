@@ -56,7 +56,7 @@ pub enum MeshKind {
 pub enum Wheel {
     /// Rigid: the paper's.
     Rigid,
-    /// Elastic: its compliance adds to the rail's ([`crate::body::elastic_wheel`]).
+    /// Elastic: its compliance adds to the rail's ([`crate::body::pair`]).
     Elastic,
 }
 

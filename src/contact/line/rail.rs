@@ -1,7 +1,8 @@
 //! The rail: everything that is computed once, at initialisation.
 
-use crate::body::compliance::{self, RollingCompliance, Scales};
+use crate::body::compliance::{RollingCompliance, Scales};
 use crate::body::mesh::Mesh;
+use crate::body::pair;
 use crate::error::Result;
 use crate::heat::Heat;
 use crate::parameters::Parameters;
@@ -29,7 +30,7 @@ impl Rail {
     pub fn new(parameters: &Parameters) -> Result<Rail> {
         let mesh = Mesh::new(parameters);
         let scales = Scales::new(parameters);
-        let (compliance, thermal) = compliance::build(&mesh, parameters, &scales)?;
+        let (compliance, thermal) = pair::build(&mesh, parameters, &scales)?;
         let heat = Heat::new(&mesh, &thermal, parameters)?;
         let r0 = parameters.wheel_radius;
         let profile = (0..mesh.contact_nodes)
