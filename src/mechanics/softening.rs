@@ -1,9 +1,9 @@
 //! The wear of a step inside the normal problem.
 //!
-//! Wear within a step opens the gap in proportion to the pressure: W = (what does not depend on the pressure of this step)
-//! + Σ ∂W/∂p p. Where ∂W/∂p is not small against the compliance (a wheel that spins on the spot, a soft rail), a split that
-//! takes the wear from the iteration before diverges. There the normal problem takes ∂W/∂p into its compliance, as if the
-//! rail were softer, and the split iterates only on the rest of the wear.
+//! Wear within a step opens the gap in proportion to the pressure: W is a part that does not depend on the pressure of this
+//! step, and the sum of ∂W/∂p p over the nodes. Where ∂W/∂p is not small against the compliance (a wheel that spins on the
+//! spot, a soft rail), a split that takes the wear from the iteration before diverges. There the normal problem takes
+//! ∂W/∂p into its compliance, as if the rail were softer, and the split iterates only on the rest of the wear.
 
 use crate::settings::SofteningSettings;
 use nalgebra::DMatrix;
