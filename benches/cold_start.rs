@@ -1,12 +1,12 @@
 //! From nothing to the first output: mesh, factorisation, unit loads, thermal map, first contact.
 
-// Of what criterion's macro makes.
+// criterion's macro makes a public function without documentation.
 #![allow(missing_docs)]
 
 mod braking;
 
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
-use wheelrail::wheel_rail::Model;
+use wheelrail::Model;
 
 fn cold_start(c: &mut Criterion) {
     let inputs = braking::manoeuvre()[0];

@@ -10,7 +10,7 @@ use interface::common::{Api, OK, reference};
 use interface::{STEP, inputs, instance, native};
 use std::hint::black_box;
 use std::ptr::null_mut;
-use wheelrail::wheel_rail::State;
+use wheelrail::State;
 
 fn state(c: &mut Criterion) {
     let api = Api::load();
@@ -54,7 +54,7 @@ fn state(c: &mut Criterion) {
     group.finish();
 }
 
-/// The rail warms up on in both runs in the same way: the difference is the interface.
+/// The rail goes on warming in both runs, and in the same way: they differ by the interface alone.
 fn step(c: &mut Criterion) {
     let mut group = c.benchmark_group("step of 1 ms");
     let api = Api::load();

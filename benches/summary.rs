@@ -1,21 +1,21 @@
 //! Single steps of the braking manoeuvre: percentiles, growth with the number of nodes in contact, cold start, and two
 //! threads against one, each beside its target.
 //!
-//! Times are those that the thread has computed: what else runs on the machine does not count, but it can make the
-//! processor slower. All is measured in rounds; of each quantity the fastest round counts, and for the step the median of
-//! the slowest one is told, too.
+//! Times are those that the thread has computed. What else runs on the machine is not in them, but can make the processor
+//! slower: all is measured in several rounds, and the fastest counts. For the step, the median of the slowest round is printed
+//! too.
 
 #![allow(unsafe_code)]
 
 mod braking;
 mod interface;
 
-use braking::Run;
+use braking::Braking;
 use interface::common::{Api, OK};
 use std::time::Instant;
-use wheelrail::wheel_rail::Model;
+use wheelrail::Model;
 
-/// Steps measured at most, and on a fine mesh.
+/// Steps measured at most: on the meshes of up to 100 nodes, and on finer ones.
 const STEPS: usize = 18_000;
 const FINE_STEPS: usize = 3_000;
 /// Instances on two threads.
@@ -42,7 +42,7 @@ struct Steps {
 
 impl Steps {
     fn measure(contact_nodes: usize) -> Steps {
-        let mut run = Run::new(contact_nodes);
+        let mut run = Braking::new(contact_nodes);
         let count = run
             .remaining()
             .min(if contact_nodes > 100 { FINE_STEPS } else { STEPS });
@@ -52,7 +52,7 @@ impl Steps {
             run.step();
             times.push(1e6 * (thread_time() - start));
             nodes += run.nodes_in_contact();
-            iterations += run.state.convergence.iterations;
+            iterations += run.simulation.state.convergence.iterations;
         }
         times.sort_by(f64::total_cmp);
         Steps {
@@ -67,7 +67,7 @@ impl Steps {
     }
 }
 
-/// Median of three times `ms` that what is given takes.
+/// Time that a function takes, `ms`: the median of three calls.
 fn median_of_three(mut timed: impl FnMut()) -> f64 {
     let mut times = [(); 3].map(|()| {
         let start = thread_time();
@@ -132,8 +132,8 @@ impl Mesh {
 
 /// How many times faster [`INSTANCES`] instances step on two threads than on one.
 fn two_threads() -> f64 {
-    let step = |runs: &mut [Run]| runs.iter_mut().for_each(|run| (0..20).for_each(|_| run.step()));
-    let mut runs: Vec<Run> = (0..INSTANCES).map(|_| Run::new(61)).collect();
+    let step = |runs: &mut [Braking]| runs.iter_mut().for_each(|run| (0..20).for_each(|_| run.step()));
+    let mut runs: Vec<Braking> = (0..INSTANCES).map(|_| Braking::new(61)).collect();
     let (mut one, mut two) = (f64::INFINITY, f64::INFINITY);
     for _ in 0..SHORT_ROUNDS {
         let start = Instant::now();
@@ -219,7 +219,7 @@ fn main() {
         println!("{what:<58} {value:>8.2} {unit:<3} target {relation} {bound} {unit:<3} {verdict}");
     };
     println!();
-    let (moments, effects, gains) = Run::new(61).model.rail().heat.displacement.size();
+    let (moments, effects, gains) = Braking::new(61).simulation.model.rail().heat.displacement.size();
     println!("thermal map at default settings: {moments} moments a column, {effects} effects, {gains} gains");
     println!();
     target(

@@ -6,23 +6,21 @@
 //! equations.
 //!
 //! ```
-//! use wheelrail::parameters::Parameters;
-//! use wheelrail::signals::Inputs;
-//! use wheelrail::wheel_rail::Model;
+//! use wheelrail::{Inputs, Parameters, Simulation};
 //!
-//! let model = Model::new(Parameters::default())?;
-//! let mut workspace = model.workspace();
 //! let inputs = Inputs { wheel_speed: 40.0, creepage: 0.01, normal_load: 60e3, ..Inputs::default() };
-//! let mut state = model.initial_state(&mut workspace, &inputs)?;
-//! for _ in 0..10 {
-//!     model.step(&mut workspace, &mut state, &inputs, &Inputs::ZERO, 1e-3)?;
-//! }
-//! assert!(state.outputs.peak_temperature > 300.0);
-//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! let mut simulation = Simulation::new(&Parameters::default(), &inputs)?;
+//! let outputs = simulation.hold(&inputs, 1e-3, 10)?;
+//! assert!(outputs.peak_temperature > 300.0);
+//! # Ok::<(), wheelrail::Error>(())
 //! ```
 //!
-//! One model serves any number of wheels with its parameters, on any number of threads: a wheel has its state, a thread its
-//! workspace.
+//! [`Simulation`] drives one wheel, by a table of inputs over time or step by step. It is made of a [`Model`], which does not
+//! change, a [`State`], which holds all that does, and a [`Workspace`], which is scratch. One model serves any number
+//! of wheels with its parameters, on any number of threads: a wheel has its state, a thread its workspace.
+//!
+//! [`Inputs`], [`Outputs`] and [`Parameters`] are plain structs. [`INPUTS`], [`OUTPUTS`], [`REAL_PARAMETERS`] and
+//! [`INTEGER_PARAMETERS`] list their fields by name, with unit, range and description.
 //!
 //! # The equations
 //!
@@ -73,7 +71,7 @@
 //!    wheel ahead has left.
 //! 5. `contact`: one implicit step. `contact::line` is the operator split over mechanics, heat and wear and its
 //!    derivatives; `contact::rim` is the wheel's temperature and wear, `contact::outputs` what all this sums up to.
-//! 6. `wheel_rail`: the stepped model.
+//! 6. `wheel_rail`: the stepped model. `simulation`: a wheel's way through time.
 //! 7. `verification`: the closed forms and published numbers that all this is held against.
 //! 8. `fmi2`: the same model as a co-simulation unit. Nothing above knows of FMI.
 //!
@@ -91,7 +89,17 @@ pub mod numerics;
 pub mod parameters;
 pub mod settings;
 pub mod signals;
+pub mod simulation;
 pub mod transport;
 pub mod verification;
 pub mod wear;
 pub mod wheel_rail;
+
+pub use error::Error;
+pub use parameters::{
+    Control, FrictionLaw, INTEGER_PARAMETERS, MeshKind, NormalSolver, Parameters, REAL_PARAMETERS, SlipSource, Wheel,
+    WheelHeating,
+};
+pub use signals::{INPUTS, Inputs, OUTPUTS, Outputs};
+pub use simulation::Simulation;
+pub use wheel_rail::{Interrupted, Model, Profiles, State, Workspace};

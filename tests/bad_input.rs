@@ -3,7 +3,7 @@
 use wheelrail::error::Error;
 use wheelrail::parameters::{FrictionLaw, INTEGER_PARAMETERS, Parameters, REAL_PARAMETERS, SlipSource};
 use wheelrail::signals::{INPUTS, Inputs};
-use wheelrail::verification::Run;
+use wheelrail::simulation::Simulation as Run;
 use wheelrail::wheel_rail::Model;
 
 /// NaN, both infinities, and the next representable values outside a range.

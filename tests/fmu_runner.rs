@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use wheelrail::parameters::Parameters;
 use wheelrail::signals::{INPUTS, Inputs, OUTPUTS};
-use wheelrail::verification::Run;
+use wheelrail::simulation::Simulation as Run;
 
 /// Exact in binary, so that no rounding of the time comes in.
 const STEP: f64 = 1.0 / 512.0;

@@ -2,7 +2,7 @@
 
 use wheelrail::parameters::{Parameters, SlipSource};
 use wheelrail::signals::Inputs;
-use wheelrail::verification::Run;
+use wheelrail::simulation::Simulation as Run;
 
 fn parameters() -> Parameters {
     Parameters {

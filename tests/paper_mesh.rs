@@ -2,7 +2,7 @@
 
 use wheelrail::error::Error;
 use wheelrail::parameters::{Control, MeshKind, NormalSolver, Parameters};
-use wheelrail::verification::Run;
+use wheelrail::simulation::Simulation as Run;
 use wheelrail::verification::paper_cases::{inputs, parameters, settled};
 
 fn on_the_papers_mesh(hot: Option<f64>, creepage: f64, control: Control) -> Result<Run, Error> {

@@ -3,7 +3,7 @@
 use wheelrail::error::Error;
 use wheelrail::parameters::{Parameters, SlipSource};
 use wheelrail::signals::Inputs;
-use wheelrail::verification::Run;
+use wheelrail::simulation::Simulation as Run;
 
 fn parameters() -> Parameters {
     Parameters {

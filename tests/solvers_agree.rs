@@ -7,7 +7,7 @@ mod checks;
 use checks::largest_difference;
 use wheelrail::parameters::{Control, NormalSolver, Parameters, SlipSource};
 use wheelrail::signals::Inputs;
-use wheelrail::verification::Run;
+use wheelrail::simulation::Simulation as Run;
 
 /// Leaves temperature and wear, the state proper, and nothing that a step only starts its iteration from.
 fn forget_the_start(run: &mut Run) {

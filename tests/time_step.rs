@@ -6,7 +6,7 @@ mod checks;
 use wheelrail::error::Error;
 use wheelrail::parameters::{Control, Parameters, SlipSource};
 use wheelrail::signals::{Inputs, OUTPUTS, Outputs};
-use wheelrail::verification::Run;
+use wheelrail::simulation::Simulation as Run;
 
 /// Outputs but for the totals, which grow, and the slip, which is an input.
 fn settled_outputs(outputs: &Outputs) -> Vec<(&'static str, f64)> {

@@ -5,8 +5,8 @@ use proptest::prelude::*;
 use wheelrail::contact::line::fields::Fields;
 use wheelrail::parameters::{Parameters, SlipSource};
 use wheelrail::signals::Inputs;
+use wheelrail::simulation::Simulation as Run;
 use wheelrail::transport::Upwind;
-use wheelrail::verification::Run;
 use wheelrail::wear;
 
 /// ∫W dx on the march's own weights, the spacing upstream of each column, [m²].

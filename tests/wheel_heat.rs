@@ -2,7 +2,7 @@
 
 use wheelrail::parameters::{FrictionLaw, Parameters, WheelHeating};
 use wheelrail::signals::Inputs;
-use wheelrail::verification::Run;
+use wheelrail::simulation::Simulation as Run;
 
 /// A ring of 1 mm by 1 mm, 10 J/K, that takes from N/r = 60 W/K to 60 MW/K from the rail.
 fn thin(contact_thermal_resistance: f64) -> Parameters {

@@ -4,9 +4,8 @@
 // Each benchmark uses a part of this.
 #![allow(dead_code)]
 
-use wheelrail::parameters::{Parameters, SlipSource};
-use wheelrail::signals::Inputs;
-use wheelrail::wheel_rail::{Model, State, Workspace};
+use wheelrail::simulation::{Point, Schedule};
+use wheelrail::{Inputs, Parameters, Simulation, SlipSource};
 
 /// Communication step, `s`.
 pub const STEP: f64 = 1e-3;
@@ -24,63 +23,52 @@ pub fn parameters(contact_nodes: usize) -> Parameters {
 
 /// The inputs at the communication points, linear between the rows of the scenario.
 pub fn manoeuvre() -> Vec<Inputs> {
-    let rows: Vec<[f64; 4]> = include_str!("../../examples/braking.csv")
+    let points = include_str!("../../examples/braking.csv")
         .lines()
         .skip(1)
         .map(|line| {
             let mut cells = line.split(',').map(|cell| cell.parse().expect("a number"));
-            std::array::from_fn(|_| cells.next().expect("four columns"))
+            let mut next = || cells.next().expect("four columns");
+            let [time, wheel_speed, vehicle_speed, normal_load] = std::array::from_fn(|_| next());
+            let inputs = Inputs {
+                wheel_speed,
+                vehicle_speed,
+                normal_load,
+                ..Inputs::default()
+            };
+            Point { time, inputs }
         })
         .collect();
-    let end = rows[rows.len() - 1][0];
-    let steps = (end / STEP).round() as usize;
-    (0..=steps)
-        .map(|step| {
-            let time = step as f64 * STEP;
-            let next = rows.partition_point(|row| row[0] < time).clamp(1, rows.len() - 1);
-            let (a, b) = (rows[next - 1], rows[next]);
-            let share = ((time - a[0]) / (b[0] - a[0])).clamp(0.0, 1.0);
-            let at = |cell: usize| a[cell] + share * (b[cell] - a[cell]);
-            Inputs {
-                wheel_speed: at(1),
-                vehicle_speed: at(2),
-                normal_load: at(3),
-                ..Inputs::default()
-            }
-        })
+    let schedule = Schedule::new(points).expect("rows in order");
+    let steps = schedule.steps(STEP).expect("a step");
+    [schedule.start().inputs]
+        .into_iter()
+        .chain(steps.map(|step| step.to.inputs))
         .collect()
 }
 
-/// A model under way through the manoeuvre.
-pub struct Run {
-    pub model: Model,
-    pub workspace: Workspace,
-    pub state: State,
+/// A wheel under way through the manoeuvre.
+pub struct Braking {
+    pub simulation: Simulation,
     manoeuvre: Vec<Inputs>,
     next: usize,
 }
 
-impl Run {
-    /// At the beginning of the measured stretch.
-    pub fn new(contact_nodes: usize) -> Run {
-        let model = Model::new(parameters(contact_nodes)).expect("a model");
-        let mut workspace = model.workspace();
+impl Braking {
+    /// At the beginning of the measured stretch, after a hundred steps from cold.
+    pub fn new(contact_nodes: usize) -> Braking {
         let manoeuvre = manoeuvre();
-        let next = (FROM / STEP) as usize;
-        let state = model
-            .initial_state(&mut workspace, &manoeuvre[next - 100])
-            .expect("a state");
-        let mut run = Run {
-            model,
-            workspace,
-            state,
+        let next = (FROM / STEP) as usize - 100;
+        let simulation = Simulation::new(&parameters(contact_nodes), &manoeuvre[next]).expect("a model");
+        let mut braking = Braking {
+            simulation,
             manoeuvre,
-            next: next - 100,
+            next,
         };
         for _ in 0..100 {
-            run.step();
+            braking.step();
         }
-        run
+        braking
     }
 
     /// One communication step; after the last one the manoeuvre begins again.
@@ -89,15 +77,7 @@ impl Run {
         if self.next == self.manoeuvre.len() {
             self.next = 0;
         }
-        self.model
-            .step(
-                &mut self.workspace,
-                &mut self.state,
-                &self.manoeuvre[self.next],
-                &Inputs::ZERO,
-                STEP,
-            )
-            .expect("a step");
+        self.simulation.step(&self.manoeuvre[self.next], STEP).expect("a step");
     }
 
     /// Steps from here to the end of the manoeuvre.
@@ -107,6 +87,7 @@ impl Run {
 
     /// Nodes under pressure.
     pub fn nodes_in_contact(&self) -> usize {
-        self.state.fields().pressure.iter().filter(|&&p| p > 0.0).count()
+        let pressure = &self.simulation.state.fields().pressure;
+        pressure.iter().filter(|&&p| p > 0.0).count()
     }
 }

@@ -7,12 +7,10 @@
 pub mod common;
 
 use common::{Api, Client, OK};
-use wheelrail::parameters::Parameters;
-use wheelrail::signals::Inputs;
-use wheelrail::verification::Run;
+use wheelrail::{Inputs, Parameters, Simulation};
 
 const CREEPAGE: f64 = 0.004;
-/// Communication step, [s].
+/// Communication step, `s`.
 pub const STEP: f64 = 1e-3;
 /// Steps from cold until the measurements begin: 0.1 s.
 const WARM_UP: u32 = 100;
@@ -41,8 +39,8 @@ pub fn inputs() -> Inputs {
 }
 
 /// The same without the interface.
-pub fn native() -> Run {
-    let mut run = Run::new(&Parameters::default(), &inputs()).expect("a model");
+pub fn native() -> Simulation {
+    let mut run = Simulation::new(&Parameters::default(), &inputs()).expect("a model");
     run.hold(&inputs(), STEP, WARM_UP as usize).expect("steps");
     run
 }

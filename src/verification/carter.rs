@@ -5,16 +5,17 @@
 //! Carter's bodies are alike, so that pressure moves no surface along x₁: the mixed compliances are switched off. The
 //! rigid wheel takes the part of its mirror image, which makes the creepage of two like bodies that of a rigid wheel.
 
-use super::{Row, Run};
+use super::row::Row;
 use crate::error::Result;
 use crate::friction::coulomb;
 use crate::parameters::{FrictionLaw, Parameters};
 use crate::signals::Inputs;
+use crate::simulation::Simulation;
 
 const SOURCE: &str = "Carter 1926; Johnson, Contact Mechanics, 8.3";
 /// Creepages of the curve.
 pub const CREEPAGES: [f64; 8] = [0.0, 0.0005, 0.001, 0.002, 0.003, 0.004, 0.006, 0.01];
-/// 1 % of a is a node's share, the regularisation adds (2/π) ε/s: together below 0.02.
+/// A node is some 1 % of the half-length, and the regularisation takes (2/π) ε/s off the traction: together below 0.02.
 pub const TRACTION_TOLERANCE: f64 = 0.02;
 /// Creepage at which the stick zone is measured.
 const STICK_CREEPAGE: f64 = 0.002;
@@ -48,7 +49,7 @@ fn traction_share(parameters: &Parameters, load: f64, creepage: f64) -> f64 {
 /// A solver that did not converge.
 pub fn curve() -> Result<Vec<Vec<f64>>> {
     let parameters = parameters();
-    let mut run = Run::new(&parameters, &Inputs::default())?;
+    let mut run = Simulation::new(&parameters, &Inputs::default())?;
     let mut points = Vec::new();
     for step in 0..=60 {
         let inputs = Inputs {
@@ -73,7 +74,7 @@ pub fn rows() -> Result<Vec<Row>> {
         ..Inputs::default()
     };
     let load = inputs(0.0).normal_load;
-    let mut run = Run::new(&parameters, &inputs(0.0))?;
+    let mut run = Simulation::new(&parameters, &inputs(0.0))?;
     let mut rows = Vec::new();
     for creepage in CREEPAGES {
         let outputs = run.hold(&inputs(creepage), 1e-3, 1)?;
@@ -90,8 +91,9 @@ pub fn rows() -> Result<Vec<Row>> {
     Ok(rows)
 }
 
-/// The zone of sticking nodes, each with its tributary length: one zone, its length and its two ends.
-fn stick_zone(run: &mut Run, inputs: &Inputs) -> Result<Vec<Row>> {
+/// Length and ends of the zone in which the nodes stick; each node stands for one spacing. Were there two zones, length and
+/// ends would contradict each other.
+fn stick_zone(run: &mut Simulation, inputs: &Inputs) -> Result<Vec<Row>> {
     run.hold(inputs, 1e-3, 1)?;
     let parameters = run.model.parameters();
     let spacing = run.model.rail().mesh.contact_spacing();

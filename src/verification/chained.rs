@@ -6,10 +6,11 @@
 //! the temperature Q/(ρ c √(π κ t)) of heat Q per area put in a time t = D/V before (Carslaw and Jaeger, Conduction of Heat in
 //! Solids, 10.3).
 
-use super::{Row, Run};
+use super::row::Row;
 use crate::error::Result;
 use crate::parameters::{FrictionLaw, Parameters};
 use crate::signals::{Inputs, Outputs};
+use crate::simulation::Simulation;
 use crate::transport::Upwind;
 use std::collections::VecDeque;
 use std::f64::consts::PI;
@@ -39,8 +40,8 @@ fn inputs() -> Inputs {
 
 /// Two wheels and the rail between them.
 struct Pair {
-    front: Run,
-    rear: Run,
+    front: Simulation,
+    rear: Simulation,
     /// Leaving temperature and wear depth of the front wheel on their way to the rear one, the latest last.
     between: VecDeque<(f64, f64)>,
     /// Wear depth that has left the rear unit, summed over the steps.
@@ -52,8 +53,8 @@ impl Pair {
         let delay = ((DISTANCE - 2.0 * HALF_LENGTH) / SPEED / STEP).round() as usize;
         let ambient = inputs().ambient_temperature;
         Ok(Pair {
-            front: Run::new(parameters, &inputs())?,
-            rear: Run::new(parameters, &inputs())?,
+            front: Simulation::new(parameters, &inputs())?,
+            rear: Simulation::new(parameters, &inputs())?,
             between: VecDeque::from(vec![(ambient, 0.0); delay]),
             gone: 0.0,
         })
@@ -83,7 +84,7 @@ impl Pair {
     }
 }
 
-/// Wear, heat, temperature.
+/// Wear and heat are conserved from wheel to wheel, and the second wheel meets the temperature that the first has left.
 ///
 /// # Errors
 /// A solver that did not converge.
@@ -109,7 +110,7 @@ pub fn rows() -> Result<Vec<Row>> {
         "W = k/V int |s| p dx of each",
     ));
 
-    // The wake enters the second unit half a second's share after its contact.
+    // The rail enters the second strip this long after it has left the first contact.
     let age = (DISTANCE - HALF_LENGTH) / SPEED;
     let aged = Parameters {
         skin_depth: (PI * parameters.thermal_diffusivity * age).sqrt(),
@@ -151,16 +152,16 @@ pub fn rows() -> Result<Vec<Row>> {
         "K",
         per_area / (aged.volumetric_heat_capacity() * diffused),
         pair.rear.state.fields().surface_temperature[middle],
-        // First order over the coarse columns before the window: some 0.05 s each.
+        // The march is of first order, and the columns before the contact window are long: rail takes some 0.05 s through one.
         0.05,
         "Q/(rho c sqrt(pi kappa t)), Carslaw and Jaeger 10.3",
     ));
     Ok(rows)
 }
 
-/// Volume worn by both wheels, on the rail of both, between them and behind.
+/// Volume worn by both wheels against the wear that lies on the rail: in both strips, between them and behind.
 fn volume(pair: &Pair) -> Row {
-    let on_the_rail = |run: &Run| -> f64 {
+    let on_the_rail = |run: &Simulation| -> f64 {
         let columns = Upwind::new(&run.model.rail().mesh.x, SPEED).columns();
         columns
             .map(|column| column.spacing * run.state.fields().wear[column.index])

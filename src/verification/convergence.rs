@@ -3,7 +3,7 @@
 //!
 //! Displacement: P1, order 2 in L². Temperature: order 1 along x₁ (upwind), order 2 in depth (P1), in L². Wear: order 1.
 
-use super::Row;
+use super::row::Row;
 use crate::body::elasticity::{Elasticity, Fields};
 use crate::body::mesh::Mesh;
 use crate::error::Result;
@@ -18,7 +18,7 @@ use crate::wear;
 use std::f64::consts::{FRAC_PI_2, PI};
 
 const SOURCE: &str = "order of the scheme, manufactured solution";
-/// Observed orders come near the asymptotic one to first order in the coarser spacing.
+/// An observed order differs from that of the scheme by about the coarser spacing over the size of the field.
 const TOLERANCE: f64 = 0.15;
 
 /// Observed order of each field.
@@ -201,7 +201,7 @@ fn displacement_error(cells: usize) -> Result<f64> {
 const PEAK: f64 = 100.0;
 const WINDOW: f64 = 0.01;
 const DEPTH: f64 = 1e-3;
-/// Transport over the window and conduction over the depth take about the same time, a step as well.
+/// Chosen such that transport over the window, conduction over the depth and one step take about the same time.
 const HEAT_SPEED: f64 = 0.1;
 const HEAT_STEP: f64 = 0.1;
 

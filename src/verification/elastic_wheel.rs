@@ -2,15 +2,18 @@
 //! curve for like materials, whose normal and tangential problems are not coupled, without any switch; and free
 //! rolling at creepage 0 where the rigid wheel's is −0.0016 (6e6 N/m).
 
-use super::{Row, Run, carter, hertz};
+use super::row::Row;
+use super::{carter, hertz};
 use crate::error::Result;
 use crate::parameters::{FrictionLaw, Parameters, Wheel};
 use crate::signals::Inputs;
+use crate::simulation::Simulation;
 
 const CARTER: &str = "Carter 1926; Johnson, Contact Mechanics, 8.3";
 /// Each halves the spacing of the one before it.
 const NODES: [usize; 3] = [31, 61, 121];
-/// The like bodies' mixed compliances cancel to the last bits of some tenths, and ξ follows from them by factors of order 1.
+/// The mixed compliances of like bodies are some tenths, in scaled units, and cancel but for round-off; the creepage of free
+/// rolling is of the size of what is left.
 const ROUND_OFF: f64 = 1e-12;
 
 /// A wheel of the rail's material.
@@ -77,7 +80,7 @@ fn creep_curve() -> Result<Vec<Row>> {
         rows.push(Row::at_most(
             format!("mean error of T/(mu N) at {} nodes over that at {}", nodes[1], nodes[0]),
             "1",
-            // Not one half: the regularisation's share, (2/π) ε/s ≈ 0.6 %, stays.
+            // Not one half: the regularisation takes (2/π) ε/s ≈ 0.6 % off on any mesh.
             0.9,
             pair[1] / pair[0],
             "falls under refinement",
@@ -102,7 +105,7 @@ fn mean_error(contact_nodes: usize) -> Result<f64> {
 }
 
 /// Like bodies without heat or wear in the gap.
-fn like_bodies(contact_nodes: usize) -> Result<Run> {
+fn like_bodies(contact_nodes: usize) -> Result<Simulation> {
     let parameters = Parameters {
         friction_law: FrictionLaw::Constant,
         slip_regularisation: 1e-4,
@@ -111,11 +114,11 @@ fn like_bodies(contact_nodes: usize) -> Result<Run> {
         contact_nodes,
         ..like()
     };
-    Run::new(&parameters, &Inputs::default())
+    Simulation::new(&parameters, &Inputs::default())
 }
 
 /// Creepage, Carter's T/(μN) and ours at the given creepages.
-fn curve(run: &mut Run, normal_load: f64, creepages: &[f64]) -> Result<Vec<(f64, f64, f64)>> {
+fn curve(run: &mut Simulation, normal_load: f64, creepages: &[f64]) -> Result<Vec<(f64, f64, f64)>> {
     let parameters = run.model.parameters().clone();
     let inputs = |creepage| Inputs {
         creepage,
@@ -137,7 +140,7 @@ fn free_rolling(parameters: Parameters) -> Result<f64> {
         friction_law: FrictionLaw::Constant,
         ..parameters
     };
-    let mut run = Run::new(&parameters, &Inputs::default())?;
+    let mut run = Simulation::new(&parameters, &Inputs::default())?;
     let mut traction = |creepage| -> Result<f64> {
         let inputs = Inputs {
             creepage,
@@ -145,7 +148,7 @@ fn free_rolling(parameters: Parameters) -> Result<f64> {
         };
         Ok(run.hold(&inputs, 1e-2, 60)?.traction_coefficient)
     };
-    // The curve is nearly straight here: a few secant steps. Like bodies are done at the first.
+    // The curve is nearly straight here: a few secant steps. Like bodies roll freely at the first guess.
     let (mut before, mut now) = (-0.001, 0.0);
     let mut traction_before = traction(before)?;
     for _ in 0..5 {

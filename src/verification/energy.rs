@@ -6,17 +6,19 @@
 //! And that of rail, wheel and debris together: with C dT_w/dt + h A θ_w in place of the conduction, the sum is all of the
 //! friction power, not ᾱ of it.
 
-use super::{Row, Run};
+use super::row::Row;
 use crate::contact::line::fields::Fields;
 use crate::contact::line::rail::Rail;
 use crate::contact::rim;
 use crate::error::Result;
 use crate::parameters::{FrictionLaw, Parameters, SlipSource, Wheel, WheelHeating};
 use crate::signals::Inputs;
+use crate::simulation::Simulation;
 use crate::transport::Upwind;
 
 const SOURCE: &str = "identity of the discrete equations";
-/// The operator split rests at 1e-10 of the temperature, which moves μ, and so the friction power, by less.
+/// Round-off of the sums: after the operator split, friction is evaluated anew at the final temperature, so that the split's own
+/// tolerance is in the equilibrium and not in the heat.
 const TOLERANCE: f64 = 1e-10;
 
 /// Terms of the balance over one step, `W`.
@@ -30,20 +32,20 @@ struct Balance {
     debris: f64,
     /// ᾱ of the friction power.
     friction: f64,
-    /// Stored in the rim and given to the ambient; what flows into a cold wheel.
+    /// Stored in the rim and given to the ambient; of a wheel that stays cold, what flows into it.
     rim: f64,
     /// All of the friction power.
     power: f64,
 }
 
 impl Balance {
-    /// Of the rail.
+    /// What the balance of the rail misses, over the friction heat.
     fn defect(&self) -> f64 {
         let sum = self.rail() + self.conduction;
         ((sum - self.friction) / self.friction).abs()
     }
 
-    /// Of rail, wheel and debris.
+    /// What the balance of rail, wheel and debris misses, over the friction power.
     fn total_defect(&self) -> f64 {
         let sum = self.rail() + self.rim;
         ((sum - self.power) / self.power).abs()
@@ -53,7 +55,7 @@ impl Balance {
         self.stored + self.carried_out - self.carried_in + self.bottom + self.debris
     }
 
-    /// Larger of the two in every term, relative to the friction.
+    /// Of each term the larger share of the friction heat: that so far, or that of another step.
     fn largest(self, other: Balance) -> Balance {
         let share = |term: f64| (term / other.friction).abs();
         Balance {
@@ -157,7 +159,7 @@ pub fn rows() -> Result<Vec<Row>> {
             TOLERANCE,
             SOURCE,
         ));
-        // The balance says something of a term only where the term is there.
+        // A balance that closes says nothing about a term that is 0 all the time.
         let shallow = parameters.strip_height < 0.1;
         let smallest = [
             (shares.stored, true),
@@ -182,7 +184,7 @@ pub fn rows() -> Result<Vec<Row>> {
     Ok(rows)
 }
 
-/// Of the rail, of rail, wheel and debris, and the terms' shares.
+/// The largest defect over the steps, of the rail and of rail, wheel and debris, and the largest share of each term.
 fn largest_defect(
     parameters: &Parameters,
     steps: &[Step],
@@ -196,15 +198,15 @@ fn largest_defect(
         incoming_temperature,
         ..Inputs::default()
     };
-    let mut run = Run::new(parameters, &inputs(&steps[0]))?;
-    // The balance holds of each implicit step: one that was divided does not count.
+    let mut run = Simulation::new(parameters, &inputs(&steps[0]))?;
+    // The balance is one of implicit steps: of a step that was divided it would compare the wrong states, and is NaN.
     let (mut defect, mut total_defect, mut shares) = (0.0_f64, 0.0_f64, Balance::default());
     for step in steps {
         let before = run.state.fields().clone();
         let inputs = inputs(step);
         run.step(&inputs, duration)?;
         let balance = balance(&run, &before, step.0, duration);
-        // f64::max would pass over NaN.
+        // Not f64::max, which would lose a NaN.
         let divided = run.state.duration != duration;
         let worse = |own: f64, worst: f64| match own <= worst {
             true if !divided => worst,
@@ -218,7 +220,7 @@ fn largest_defect(
     Ok((defect, total_defect, shares))
 }
 
-fn balance(run: &Run, before: &Fields, speed: f64, duration: f64) -> Balance {
+fn balance(run: &Simulation, before: &Fields, speed: f64, duration: f64) -> Balance {
     let (rail, parameters) = (run.model.rail(), run.model.parameters());
     let after = run.state.fields();
     let ambient = run.state.inputs.ambient_temperature;

@@ -1,7 +1,7 @@
 //! Flash temperature of a semi-elliptic source that slides over the rail, without debris and conduction:
 //! θ(t) = 1/(ρc √(πκ)) ∫₀ᵗ q(t′)/√(t − t′) dt′ with q = ᾱ μ p s (Carslaw and Jaeger, Conduction of Heat in Solids, 2.9).
 
-use super::Row;
+use super::row::Row;
 use crate::body::mesh::Mesh;
 use crate::error::Result;
 use crate::friction::FrictionState;

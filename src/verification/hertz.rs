@@ -4,15 +4,16 @@
 //! Without friction, heat and wear the contact is Hertz's but for the strip's finite size, the mesh, and the circle in
 //! place of its parabola (a²/r₀² ≈ 1e-4).
 
-use super::{Row, Run};
+use super::row::Row;
 use crate::error::Result;
 use crate::parameters::{FrictionLaw, Parameters};
 use crate::signals::Inputs;
+use crate::simulation::Simulation;
 
 const SOURCE: &str = "Johnson, Contact Mechanics, 4.43 and 4.45";
-/// Half a node spacing over the smallest contact would be 6 %; the ends are interpolated, which leaves about 1 %.
+/// Half a node spacing is 6 % of the smallest half-length; because the ends are interpolated between nodes, about 1 % is left.
 const HALF_LENGTH_TOLERANCE: f64 = 0.02;
-/// Nodal values beside the crest are low by (Δx/2a)² ≤ 0.4 % at 10 % load.
+/// A crest that lies between two nodes is missed by at most (Δx/2a)², 0.4 % at 10 % load.
 const PRESSURE_TOLERANCE: f64 = 0.01;
 
 /// Half-length and peak pressure over 10–100 % of the largest load.
@@ -22,8 +23,8 @@ const PRESSURE_TOLERANCE: f64 = 0.01;
 pub fn rows() -> Result<Vec<Row>> {
     let mut rows = contact("rigid wheel", Parameters::default(), &[10, 20, 35, 50, 75, 100])?;
     let inputs = Inputs::default();
-    let mut run = Run::new(&smooth(Parameters::default()), &inputs)?;
-    // The approach of a line contact depends on the size of the body: no closed form for the strip.
+    let mut run = Simulation::new(&smooth(Parameters::default()), &inputs)?;
+    // The penetration of a line contact depends on the size of the body, and there is no closed form for the strip.
     rows.push(Row::relative(
         "penetration at 60 kN, rigid wheel",
         "m",
@@ -52,7 +53,7 @@ fn smooth(parameters: Parameters) -> Parameters {
 /// A solver that did not converge.
 pub fn curve() -> Result<Vec<Vec<f64>>> {
     let parameters = smooth(Parameters::default());
-    let mut run = Run::new(&parameters, &Inputs::default())?;
+    let mut run = Simulation::new(&parameters, &Inputs::default())?;
     let mut points = Vec::new();
     for share in [0.2, 0.5, 1.0] {
         let load = share * parameters.largest_load;
@@ -76,7 +77,7 @@ pub fn curve() -> Result<Vec<Vec<f64>>> {
 /// A solver that did not converge.
 pub fn contact(pair: &str, parameters: Parameters, percents: &[u8]) -> Result<Vec<Row>> {
     let parameters = smooth(parameters);
-    let mut run = Run::new(&parameters, &Inputs::default())?;
+    let mut run = Simulation::new(&parameters, &Inputs::default())?;
     let mut rows = Vec::new();
     for &percent in percents {
         let load = 0.01 * f64::from(percent) * parameters.largest_load;

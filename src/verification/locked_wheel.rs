@@ -3,9 +3,10 @@
 //! by thermal expansion.
 
 use super::paper_cases::{CASES, parameters, settled};
-use super::{Row, Run};
+use super::row::Row;
 use crate::error::Result;
 use crate::parameters::Parameters;
+use crate::simulation::Simulation;
 
 const PAPER: &str = "the paper, section 5";
 
@@ -16,7 +17,7 @@ const PAPER: &str = "the paper, section 5";
 pub fn rows() -> Result<Vec<Row>> {
     let locked = |parameters: &Parameters| settled(parameters, -1.0);
     let constant = locked(&parameters(None))?;
-    let wear = |run: &Run| run.state.outputs.wear_depth;
+    let wear = |run: &Simulation| run.state.outputs.wear_depth;
     let mut rows = Vec::new();
     for (case, hot) in CASES {
         let run = locked(&parameters(Some(hot)))?;
@@ -54,6 +55,6 @@ pub fn rows() -> Result<Vec<Row>> {
 }
 
 /// Middle of the contact zone by the resultant of the pressure, `m`.
-fn middle(run: &Run) -> f64 {
+fn middle(run: &Simulation) -> f64 {
     run.state.outputs.contact_offset
 }

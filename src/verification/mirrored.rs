@@ -1,13 +1,14 @@
 //! Mirrored motion (V, ω → −V, −ω) gives mirrored fields, T → −T: to round-off, because the mesh is its own mirror
 //! image, diagonals included.
 
-use super::{Row, Run};
+use super::row::Row;
 use crate::error::Result;
 use crate::parameters::{Parameters, SlipSource, Wheel, WheelHeating};
 use crate::signals::Inputs;
+use crate::simulation::Simulation;
 
 const SOURCE: &str = "symmetry of the equations";
-/// Round-off: wherever the solvers come to rest, both runs take the same path to it.
+/// Round-off alone: both runs go through the same iterations, so that it does not matter how exactly the solvers solve.
 const TOLERANCE: f64 = 1e-10;
 
 /// Largest difference of each field from its mirror image, relative to the field's largest value.
@@ -44,7 +45,7 @@ fn pair(pair: &str, parameters: &Parameters) -> Result<Vec<Row>> {
         let (mut difference, mut largest) = (0.0_f64, 0.0_f64);
         for (a, b) in pairs {
             largest = largest.max(a.abs());
-            // f64::max would pass over NaN.
+            // Not f64::max, which would lose a NaN.
             let own = (a - b).abs();
             difference = if own <= difference { difference } else { own };
         }
@@ -61,7 +62,7 @@ fn pair(pair: &str, parameters: &Parameters) -> Result<Vec<Row>> {
     let outputs = (&forward.state.outputs, &backward.state.outputs);
     let rail = forward.model.rail();
     let columns = rail.mesh.columns();
-    let surface = |run: &Run, column: usize| run.state.fields().surface_temperature[column];
+    let surface = |run: &Simulation, column: usize| run.state.fields().surface_temperature[column];
     Ok(vec![
         row("pressure", &mut pairs().map(|(a, b)| (a.pressure, b.pressure))),
         row("shear traction", &mut pairs().map(|(a, b)| (a.shear, -b.shear))),
@@ -111,7 +112,7 @@ fn pair(pair: &str, parameters: &Parameters) -> Result<Vec<Row>> {
 }
 
 /// From rolling into a slide of 8 %, in the given direction.
-fn braking(parameters: &Parameters, direction: f64) -> Result<Run> {
+fn braking(parameters: &Parameters, direction: f64) -> Result<Simulation> {
     let inputs = |slide: f64| Inputs {
         vehicle_speed: 10.0 * direction,
         wheel_speed: 10.0 * direction * (1.0 - slide) / parameters.wheel_radius,
@@ -119,7 +120,7 @@ fn braking(parameters: &Parameters, direction: f64) -> Result<Run> {
         incoming_wear_depth: 1e-7,
         ..Inputs::default()
     };
-    let mut run = Run::new(parameters, &inputs(0.0))?;
+    let mut run = Simulation::new(parameters, &inputs(0.0))?;
     for step in 0..40 {
         run.step(&inputs(0.002 * f64::from(step)), 2e-3)?;
     }

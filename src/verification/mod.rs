@@ -15,103 +15,11 @@ pub mod mirrored;
 pub mod paper_cases;
 pub mod power_balance;
 pub mod rigid_wheel;
-mod run;
+mod row;
 pub mod wheel_temperature;
 
 use crate::error::Result;
-pub use run::{ContactNode, Run};
-
-/// One compared quantity.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Row {
-    /// What is compared, with the conditions.
-    pub quantity: String,
-    /// Unit of reference and computed value.
-    pub unit: &'static str,
-    /// What it should be; of a bound, the bound.
-    pub reference: f64,
-    /// What the model gives.
-    pub computed: f64,
-    /// Distance of the two as the kind of row measures it: relative, absolute, or beyond a bound.
-    pub deviation: f64,
-    /// Largest deviation that passes.
-    pub tolerance: f64,
-    /// Whether the deviation is a number not above the tolerance.
-    pub pass: bool,
-    /// Where the reference comes from.
-    pub source: &'static str,
-}
-
-impl Row {
-    fn new(
-        quantity: impl Into<String>,
-        unit: &'static str,
-        [reference, computed, deviation, tolerance]: [f64; 4],
-        source: &'static str,
-    ) -> Row {
-        Row {
-            quantity: quantity.into(),
-            unit,
-            reference,
-            computed,
-            deviation,
-            tolerance,
-            pass: deviation <= tolerance,
-            source,
-        }
-    }
-
-    /// Deviation relative to the reference.
-    pub fn relative(
-        quantity: impl Into<String>,
-        unit: &'static str,
-        reference: f64,
-        computed: f64,
-        tolerance: f64,
-        source: &'static str,
-    ) -> Row {
-        let deviation = ((computed - reference) / reference).abs();
-        Row::new(quantity, unit, [reference, computed, deviation, tolerance], source)
-    }
-
-    /// Deviation in the unit of the quantity.
-    pub fn absolute(
-        quantity: impl Into<String>,
-        unit: &'static str,
-        reference: f64,
-        computed: f64,
-        tolerance: f64,
-        source: &'static str,
-    ) -> Row {
-        let deviation = (computed - reference).abs();
-        Row::new(quantity, unit, [reference, computed, deviation, tolerance], source)
-    }
-
-    /// A claim of size: the computed value does not exceed `bound`.
-    pub fn at_most(
-        quantity: impl Into<String>,
-        unit: &'static str,
-        bound: f64,
-        computed: f64,
-        source: &'static str,
-    ) -> Row {
-        // Not `max`, which would turn NaN into 0.
-        let deviation = if computed <= bound { 0.0 } else { computed - bound };
-        Row::new(quantity, unit, [bound, computed, deviation, 0.0], source)
-    }
-
-    /// A claim of size: the computed value is no less than `bound`.
-    pub fn at_least(
-        quantity: impl Into<String>,
-        unit: &'static str,
-        bound: f64,
-        computed: f64,
-        source: &'static str,
-    ) -> Row {
-        let deviation = if computed >= bound { 0.0 } else { bound - computed };
-        Row::new(quantity, unit, [bound, computed, deviation, 0.0], source)
-    }
-}
+pub use row::Row;
 
 /// What a figure draws: the model beside its closed form, point by point, in SI units.
 pub struct Curve {

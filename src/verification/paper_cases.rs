@@ -3,10 +3,11 @@
 //! its temperatures. It finds peaks "lower up to 5–20 °C" in a–c, the pressure "highest in the middle", shear
 //! that differs in front and behind, a temperature that falls fast with depth, and slower cooling behind the contact.
 
-use super::{Row, Run};
+use super::row::Row;
 use crate::error::Result;
 use crate::parameters::{Control, FrictionLaw, Parameters, SlipSource};
 use crate::signals::Inputs;
+use crate::simulation::Simulation;
 
 const PROTOTYPE: &str = "independent prototype, 61 nodes over 12 mm";
 const PAPER: &str = "the paper, section 5";
@@ -49,9 +50,9 @@ pub fn inputs(creepage: f64) -> Inputs {
 ///
 /// # Errors
 /// A solver that did not converge.
-pub fn settled(parameters: &Parameters, creepage: f64) -> Result<Run> {
+pub fn settled(parameters: &Parameters, creepage: f64) -> Result<Simulation> {
     let inputs = inputs(creepage);
-    let mut run = Run::new(parameters, &inputs)?;
+    let mut run = Simulation::new(parameters, &inputs)?;
     run.hold(&inputs, 1e-2, 200)?;
     Ok(run)
 }
@@ -62,7 +63,7 @@ pub fn settled(parameters: &Parameters, creepage: f64) -> Result<Run> {
 /// A solver that did not converge.
 pub fn rows() -> Result<Vec<Row>> {
     let constant = settled(&parameters(None), 0.04)?;
-    let peak = |run: &Run| run.state.outputs.peak_temperature - AMBIENT;
+    let peak = |run: &Simulation| run.state.outputs.peak_temperature - AMBIENT;
     let mut rows = vec![Row::relative(
         "peak temperature rise, constant mu",
         "K",
@@ -94,7 +95,7 @@ pub fn rows() -> Result<Vec<Row>> {
 }
 
 /// Pressure, shear and depth profile of a settled case.
-fn fields(run: &Run) -> Vec<Row> {
+fn fields(run: &Simulation) -> Vec<Row> {
     let nodes = run.contact_nodes();
     let half_length = 0.5 * run.state.outputs.contact_length;
     let pressed: Vec<_> = nodes.iter().filter(|node| node.pressure > 0.0).collect();
@@ -148,7 +149,7 @@ fn fields(run: &Run) -> Vec<Row> {
 }
 
 /// Surface temperature 5 mm behind the axle, some 1 mm behind the contact, over the peak.
-fn wake_share(run: &Run) -> f64 {
+fn wake_share(run: &Simulation) -> f64 {
     let nodes = run.contact_nodes();
     let peak = nodes.iter().fold(0.0, |m: f64, node| node.temperature.max(m));
     let behind = nodes.iter().rev().find(|node| node.position <= -5e-3);

@@ -3,10 +3,11 @@
 //!
 //! The references are those of an independent prototype (61 nodes over ±6 mm, 6e6 N/m, constant μ = 0.45).
 
-use super::{Row, Run};
+use super::row::Row;
 use crate::error::Result;
 use crate::parameters::{FrictionLaw, Parameters};
 use crate::signals::Inputs;
+use crate::simulation::Simulation;
 
 const SOURCE: &str = "independent prototype, 61 nodes over 12 mm";
 
@@ -19,7 +20,7 @@ pub fn rows() -> Result<Vec<Row>> {
         friction_law: FrictionLaw::Constant,
         ..Parameters::default()
     };
-    let mut run = Run::new(&parameters, &Inputs::default())?;
+    let mut run = Simulation::new(&parameters, &Inputs::default())?;
     let mut traction = |creepage| -> Result<f64> {
         let inputs = Inputs {
             creepage,

@@ -2,10 +2,11 @@
 //! T_w = T_a + (1 − ᾱ) P/(h A) (1 − exp(−t/t_w)), t_w = C/(h A), and lifted it cools as T_a + (T_w − T_a) exp(−t/t_w), with
 //! C and A of the ring (`rim_depth`, `rim_width`). What it wears is k_w ∫∫ |s| p dA dt, spread over the circumference.
 
-use super::{Row, Run};
+use super::row::Row;
 use crate::error::Result;
 use crate::parameters::{FrictionLaw, Parameters, WheelHeating};
 use crate::signals::Inputs;
+use crate::simulation::Simulation;
 use std::f64::consts::PI;
 
 const SOURCE: &str = "C dT/dt = (1 - alpha) P - h A (T - T_a)";
@@ -47,7 +48,7 @@ fn ring() -> (f64, f64) {
 /// A solver that did not converge.
 pub fn rows() -> Result<Vec<Row>> {
     let mut rows = Vec::new();
-    // Implicit Euler is behind by Δt/(2 t_w) relative to the rate; twice that over a time constant.
+    // Implicit Euler lags by half a step, Δt/(2 t_w) of the rise for each time constant: twice that is allowed.
     let tolerance = 1.0 / STEPS as f64;
     for (constants, warmed, cooled) in history(STEPS)? {
         rows.push(Row::relative(
@@ -102,8 +103,8 @@ fn history(steps: usize) -> Result<Vec<Instant>> {
     let mut instants = Vec::new();
     for constants in [1_u8, 2] {
         let count = usize::from(constants) * steps;
-        let mut run = Run::new(&parameters, &sliding)?;
-        let rise = |run: &Run| run.state.outputs.wheel_temperature - sliding.ambient_temperature;
+        let mut run = Simulation::new(&parameters, &sliding)?;
+        let rise = |run: &Simulation| run.state.outputs.wheel_temperature - sliding.ambient_temperature;
         let power = run.hold(&sliding, constant / steps as f64, count)?.friction_power;
         let limit = (1.0 - parameters.heat_partition) * power / convection;
         let share = (-f64::from(constants)).exp();
@@ -124,7 +125,7 @@ fn wear() -> Result<Row> {
         wheel_wear_coefficient: 2e-13,
         ..Parameters::default()
     };
-    let mut run = Run::new(&parameters, &Inputs::default())?;
+    let mut run = Simulation::new(&parameters, &Inputs::default())?;
     let (duration, mut volume) = (1e-3, 0.0);
     let area = parameters.contact_width * run.model.rail().mesh.contact_spacing();
     for step in 0..50 {

@@ -5,10 +5,10 @@ use indicatif::{ProgressBar, ProgressStyle};
 use std::fs::File;
 use std::io;
 use std::path::{Path, PathBuf};
-use wheelrail::error::Error as ModelError;
-use wheelrail::parameters::Parameters;
-use wheelrail::signals::{INPUTS, InputSignal, Inputs, OUTPUTS};
-use wheelrail::wheel_rail::{Model, State};
+use std::sync::Arc;
+use wheelrail::signals::InputSignal;
+use wheelrail::simulation::{self, Point, Schedule};
+use wheelrail::{Error as ModelError, INPUTS, Inputs, Model, OUTPUTS, Outputs, Parameters, Simulation};
 
 /// Options of `simulate`.
 #[derive(Args)]
@@ -131,64 +131,44 @@ pub enum Error {
     #[error("at the start of the scenario: {0}")]
     Start(ModelError),
     /// The model cannot go on.
-    #[error("the step from {time} s over {step} s: {source}; {output} holds what was computed before")]
+    #[error("{source}; {output} holds what was computed before")]
     Interrupted {
-        /// Start of the step.
-        time: f64,
-        /// Its length.
-        step: f64,
         /// The results.
         output: PathBuf,
-        /// Why.
-        source: ModelError,
+        /// Which step, and why.
+        source: simulation::Error,
     },
 }
 
 impl Simulate {
     /// Runs the command.
     pub fn run(&self) -> Result<(), Error> {
-        if !(self.step > 0.0 && self.step.is_finite()) {
-            return Err(Error::Step { step: self.step });
-        }
         let parameters = self.parameters()?;
-        let scenario = Scenario::read(&self.scenario, &parameters)?;
-        let model = Model::new(parameters).map_err(Error::Parameter)?;
-        let mut workspace = model.workspace();
-        let mut inputs = scenario.at(scenario.start());
-        let mut state = model.initial_state(&mut workspace, &inputs).map_err(Error::Start)?;
-        // Not before everything that can be refused: no file is left behind then.
+        let schedule = read_schedule(&self.scenario, &parameters)?;
+        let steps = schedule.steps(self.step).map_err(|_| Error::Step { step: self.step })?;
+        let model = Arc::new(Model::new(parameters).map_err(Error::Parameter)?);
+        let start = schedule.start();
+        let mut simulation = Simulation::of(model, &start.inputs).map_err(Error::Start)?;
+        // Only now that nothing can be refused any more, so that a refusal leaves no file behind.
         let mut table = Table::create(&self.output)?;
-        table.write(scenario.start(), &inputs, &state)?;
+        table.write(&start, simulation.outputs())?;
 
-        // A remainder below a millionth of a step is rounding of the scenario's times.
-        let steps = (scenario.duration() / self.step - 1e-6).ceil().max(1.0) as u64;
-        let bar = progress(steps);
-        let mut time = scenario.start();
-        for number in 1..=steps {
-            let end = if number == steps {
-                scenario.end()
-            } else {
-                scenario.start() + number as f64 * self.step
-            };
-            let (step, next) = (end - time, scenario.at(end));
-            let rates = rates(&inputs, &next, step);
-            if let Err(interrupted) = model.step(&mut workspace, &mut state, &inputs, &rates, step) {
+        let count = steps.len();
+        let bar = progress(count as u64);
+        for step in steps {
+            if let Err(source) = simulation.follow(&step) {
                 bar.abandon();
                 table.finish()?;
-                return Err(Error::Interrupted {
-                    time,
-                    step,
-                    output: self.output.clone(),
-                    source: interrupted.error,
-                });
+                let output = self.output.clone();
+                return Err(Error::Interrupted { output, source });
             }
-            (time, inputs) = (end, next);
-            table.write(time, &inputs, &state)?;
+            table.write(&step.to, simulation.outputs())?;
             bar.inc(1);
         }
         bar.finish_and_clear();
         table.finish()?;
-        eprintln!("{steps} steps to {time} s: {}", self.output.display());
+        let end = schedule.end().time;
+        eprintln!("{count} steps to {end} s: {}", self.output.display());
         Ok(())
     }
 
@@ -212,114 +192,61 @@ fn progress(steps: u64) -> ProgressBar {
     ProgressBar::new(steps).with_style(style)
 }
 
-/// Rates that lead from one set of inputs to another in `time` `s`.
-fn rates(from: &Inputs, to: &Inputs, time: f64) -> Inputs {
-    let mut rates = Inputs::ZERO;
-    for signal in INPUTS {
-        (signal.set)(&mut rates, ((signal.get)(to) - (signal.get)(from)) / time);
-    }
-    rates
-}
+/// Reads the table and checks each value against the parameters.
+fn read_schedule(path: &Path, parameters: &Parameters) -> Result<Schedule, Error> {
+    let csv_error = |source| Error::Csv {
+        path: path.to_owned(),
+        source,
+    };
+    let file = File::open(path).map_err(|source| Error::File {
+        path: path.to_owned(),
+        source,
+    })?;
+    let mut reader = csv::ReaderBuilder::new()
+        .trim(csv::Trim::All)
+        .comment(Some(b'#'))
+        .from_reader(file);
+    let headings = reader.headers().map_err(csv_error)?.clone();
+    let columns = columns(path, &headings)?;
 
-/// Inputs at ascending times; never empty.
-struct Scenario {
-    times: Vec<f64>,
-    inputs: Vec<Inputs>,
-}
-
-impl Scenario {
-    /// Reads the table and checks each value against the parameters.
-    fn read(path: &Path, parameters: &Parameters) -> Result<Scenario, Error> {
-        let csv_error = |source| Error::Csv {
-            path: path.to_owned(),
-            source,
-        };
-        let file = File::open(path).map_err(|source| Error::File {
-            path: path.to_owned(),
-            source,
-        })?;
-        let mut reader = csv::ReaderBuilder::new()
-            .trim(csv::Trim::All)
-            .comment(Some(b'#'))
-            .from_reader(file);
-        let headings = reader.headers().map_err(csv_error)?.clone();
-        let columns = columns(path, &headings)?;
-
-        let mut scenario = Scenario {
-            times: Vec::new(),
-            inputs: Vec::new(),
-        };
-        for record in reader.records() {
-            let record = record.map_err(csv_error)?;
-            let line = record.position().map_or(0, csv::Position::line);
-            let mut inputs = Inputs::default();
-            let mut time = f64::NAN;
-            for ((heading, column), text) in headings.iter().zip(&columns).zip(&record) {
-                let value: f64 = text.parse().map_err(|_| Error::NotANumber {
-                    path: path.to_owned(),
-                    line,
-                    column: heading.to_owned(),
-                    text: text.to_owned(),
-                })?;
-                match column {
-                    Column::Time => time = value,
-                    Column::Input(signal) => (signal.set)(&mut inputs, value),
-                }
-            }
-            inputs.check(parameters).map_err(|source| Error::Refused {
+    let (mut points, mut lines) = (Vec::new(), Vec::new());
+    for record in reader.records() {
+        let record = record.map_err(csv_error)?;
+        let line = record.position().map_or(0, csv::Position::line);
+        let mut inputs = Inputs::default();
+        let mut time = f64::NAN;
+        for ((heading, column), text) in headings.iter().zip(&columns).zip(&record) {
+            let value: f64 = text.parse().map_err(|_| Error::NotANumber {
                 path: path.to_owned(),
                 line,
-                source,
+                column: heading.to_owned(),
+                text: text.to_owned(),
             })?;
-            let before = scenario.times.last().copied().unwrap_or(f64::NEG_INFINITY);
-            if !(time > before && time.is_finite()) {
-                return Err(Error::TimeNotAscending {
-                    path: path.to_owned(),
-                    line,
-                    value: time,
-                    before,
-                });
+            match column {
+                Column::Time => time = value,
+                Column::Input(signal) => (signal.set)(&mut inputs, value),
             }
-            scenario.times.push(time);
-            scenario.inputs.push(inputs);
         }
-        match scenario.times.len() {
-            rows @ (0 | 1) => Err(Error::TooShort {
-                path: path.to_owned(),
-                rows,
-            }),
-            _ => Ok(scenario),
-        }
+        inputs.check(parameters).map_err(|source| Error::Refused {
+            path: path.to_owned(),
+            line,
+            source,
+        })?;
+        points.push(Point { time, inputs });
+        lines.push(line);
     }
-
-    fn start(&self) -> f64 {
-        self.times[0]
-    }
-
-    fn end(&self) -> f64 {
-        self.times[self.times.len() - 1]
-    }
-
-    fn duration(&self) -> f64 {
-        self.end() - self.start()
-    }
-
-    /// The inputs at a time, linear between the rows.
-    fn at(&self, time: f64) -> Inputs {
-        let upper = self
-            .times
-            .partition_point(|&row| row < time)
-            .clamp(1, self.times.len() - 1);
-        let (before, after) = (self.times[upper - 1], self.times[upper]);
-        let weight = ((time - before) / (after - before)).clamp(0.0, 1.0);
-        let mut inputs = self.inputs[upper - 1];
-        for signal in INPUTS {
-            let (low, high) = ((signal.get)(&inputs), (signal.get)(&self.inputs[upper]));
-            // Both ends exact, so that a value at its limit stays within it.
-            (signal.set)(&mut inputs, low * (1.0 - weight) + high * weight);
-        }
-        inputs
-    }
+    Schedule::new(points).map_err(|error| match error {
+        simulation::Error::TimeNotAscending { row, time, before } => Error::TimeNotAscending {
+            path: path.to_owned(),
+            line: lines[row],
+            value: time,
+            before,
+        },
+        _ => Error::TooShort {
+            path: path.to_owned(),
+            rows: lines.len(),
+        },
+    })
 }
 
 /// What a column of the scenario holds.
@@ -380,10 +307,10 @@ impl Table {
     }
 
     /// Numbers are the shortest that read back to the same value.
-    fn write(&mut self, time: f64, inputs: &Inputs, state: &State) -> Result<(), Error> {
-        let inputs = INPUTS.iter().map(|signal| (signal.get)(inputs));
-        let outputs = OUTPUTS.iter().map(|signal| (signal.get)(&state.outputs));
-        let values = std::iter::once(time).chain(inputs).chain(outputs);
+    fn write(&mut self, point: &Point, outputs: &Outputs) -> Result<(), Error> {
+        let inputs = INPUTS.iter().map(|signal| (signal.get)(&point.inputs));
+        let outputs = OUTPUTS.iter().map(|signal| (signal.get)(outputs));
+        let values = std::iter::once(point.time).chain(inputs).chain(outputs);
         self.record(values.map(shortest))
     }
 
