@@ -22,6 +22,11 @@
 //! [`Inputs`], [`Outputs`] and [`Parameters`] are plain structs. [`INPUTS`], [`OUTPUTS`], [`REAL_PARAMETERS`] and
 //! [`INTEGER_PARAMETERS`] list their fields by name, with unit, range and description.
 //!
+//! # Features
+//!
+//! `fmi` exports the C functions of FMI, `verification` has the checks against closed forms and published figures, `cli` is the
+//! command line and brings both. With `default-features = false` there is the model alone.
+//!
 //! # The equations
 //!
 //! Units are SI throughout. x₁ points along the rail in the direction of travel, x₂ upward; the observer moves with the
@@ -77,20 +82,24 @@
 //!
 //! `numerics` holds methods that know nothing of contact, `error` what can go wrong.
 
+// What is public below without standing in the face is what tests and benchmarks reach into.
 pub mod body;
 pub mod contact;
+#[cfg(feature = "cli")]
 pub mod description;
 pub mod error;
+#[cfg(feature = "fmi")]
 pub mod fmi2;
 pub mod friction;
 pub mod heat;
-pub mod mechanics;
-pub mod numerics;
+mod mechanics;
+mod numerics;
 pub mod parameters;
 pub mod settings;
 pub mod signals;
 pub mod simulation;
 pub mod transport;
+#[cfg(feature = "verification")]
 pub mod verification;
 pub mod wear;
 pub mod wheel_rail;
@@ -100,6 +109,7 @@ pub use parameters::{
     Control, FrictionLaw, INTEGER_PARAMETERS, MeshKind, NormalSolver, Parameters, REAL_PARAMETERS, SlipSource, Wheel,
     WheelHeating,
 };
+pub use settings::Settings;
 pub use signals::{INPUTS, Inputs, OUTPUTS, Outputs};
 pub use simulation::Simulation;
 pub use wheel_rail::{Interrupted, Model, Profiles, State, Workspace};

@@ -15,7 +15,7 @@ from pathlib import Path
 
 REPOSITORY = Path(__file__).resolve().parent.parent
 TARGET = Path(os.environ.get("CARGO_TARGET_DIR", REPOSITORY / "target"))
-OPTIONS = ["--release", "--lib", "--no-default-features"]
+OPTIONS = ["--release", "--lib", "--no-default-features", "--features", "fmi"]
 
 
 def why_not_portable(target):

@@ -19,6 +19,8 @@ def linked_packages():
             "cargo",
             "tree",
             "--no-default-features",
+            "--features",
+            "fmi",
             "--edges",
             "normal,no-proc-macro",
             "--prefix",
@@ -34,7 +36,9 @@ def linked_packages():
     linked = {tuple(line.split()[:2]) for line in tree.splitlines() if line.strip()}
     metadata = json.loads(
         subprocess.check_output(
-            ["cargo", "metadata", "--format-version", "1", "--no-default-features"], cwd=REPOSITORY, text=True
+            ["cargo", "metadata", "--format-version", "1", "--no-default-features", "--features", "fmi"],
+            cwd=REPOSITORY,
+            text=True,
         )
     )
     packages = [p for p in metadata["packages"] if (p["name"], "v" + p["version"]) in linked]

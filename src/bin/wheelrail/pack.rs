@@ -60,7 +60,7 @@ pub enum Error {
     },
     /// The library was built with another description.
     #[error(
-        "{path} was not built with this model description (GUID {guid}): build it again with `cargo build --release --lib --no-default-features`"
+        "{path} was not built with this model description (GUID {guid}): build it again with `cargo build --release --lib --no-default-features --features fmi`"
     )]
     StaleLibrary {
         /// The library.
@@ -255,7 +255,7 @@ fn platform() -> String {
     format!("{system}{}", usize::BITS)
 }
 
-/// Where `cargo build --release --lib --no-default-features` leaves the library.
+/// Where `cargo build --release --lib --no-default-features --features fmi` leaves the library.
 fn default_library() -> PathBuf {
     let name = format!(
         "{}wheelrail{}",
