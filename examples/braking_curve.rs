@@ -1,0 +1,54 @@
+//! Braking from 20 m/s with a wheel slide in between: a table of what the contact does.
+//!
+//!     cargo run --release --example braking_curve
+
+use wheelrail::simulation::{Point, Schedule};
+use wheelrail::{Inputs, Parameters, Simulation, SlipSource};
+
+/// The vehicle slows down by 1 m/s² from 20 m/s on.
+fn point(parameters: &Parameters, time: f64, creepage: f64) -> Point {
+    let vehicle_speed = 20.0 - time;
+    let inputs = Inputs {
+        vehicle_speed,
+        wheel_speed: vehicle_speed * (1.0 + creepage) / parameters.wheel_radius,
+        ..Inputs::default()
+    };
+    Point { time, inputs }
+}
+
+fn main() -> Result<(), wheelrail::simulation::Error> {
+    let parameters = Parameters {
+        slip_source: SlipSource::VehicleSpeed,
+        ..Parameters::default()
+    };
+    // Braked at a creepage of -0.2 %; from 4 s to 6 s the wheel falls behind by a fifth and recovers.
+    let rows = [
+        (0.0, -0.002),
+        (4.0, -0.002),
+        (4.5, -0.2),
+        (5.5, -0.2),
+        (6.0, -0.002),
+        (9.0, -0.002),
+    ];
+    let points = rows.map(|(time, creepage)| point(&parameters, time, creepage));
+    let schedule = Schedule::new(points.to_vec())?;
+
+    let mut simulation = Simulation::new(&parameters, &schedule.start().inputs)?;
+    println!("time [s]  traction [kN]  creepage [%]  temperature [K]  friction [1]  worn [mm3]");
+    for (number, step) in schedule.steps(1e-3)?.enumerate() {
+        simulation.follow(&step)?;
+        if (number + 1) % 500 == 0 {
+            let outputs = simulation.outputs();
+            println!(
+                "{:8.2}  {:13.2}  {:12.2}  {:15.1}  {:12.3}  {:10.4}",
+                step.to.time,
+                1e-3 * outputs.traction_force,
+                100.0 * outputs.slip_creepage,
+                outputs.peak_temperature,
+                outputs.friction_coefficient,
+                1e9 * outputs.worn_volume,
+            );
+        }
+    }
+    Ok(())
+}
