@@ -1,4 +1,4 @@
-"""README.md and the documentation page say what the component does: their tables are compared, the example is run."""
+"""README.md and the documentation say what the component does: their tables are compared, the example is run."""
 
 import html
 import re
@@ -31,13 +31,14 @@ def cells(text):
 
 def test_tables_of_variables():
     """The tables are those of `wheelrail describe`."""
-    assert block(update_docs.README, "wheelrail describe") == update_docs.variables_markdown().strip(), STALE
+    assert block(update_docs.VARIABLES, "wheelrail describe") == update_docs.variables_markdown().strip(), STALE
+    assert block(update_docs.README, "first variables") == update_docs.first_variables_markdown().strip(), STALE
     assert block(update_docs.PAGE, "wheelrail describe") == update_docs.variables_html().strip(), STALE
 
 
 def test_tables_list_every_variable(description):
-    """Each variable of the model description is in README, repeated ones by their first point, and nothing else is."""
-    listed = set(re.findall(r"^\| `([^`]+)`", block(update_docs.README, "wheelrail describe"), re.MULTILINE))
+    """Its page lists each variable of the model description, repeated ones by their first point, and nothing else."""
+    listed = set(re.findall(r"^\| `([^`]+)`", block(update_docs.VARIABLES, "wheelrail describe"), re.MULTILINE))
     names = {re.sub(r"\[\d+\]", "[i]", variable.name) for variable in description.modelVariables}
     # `wheelrail describe` leaves out the solver's locals and the profiles' further points only.
     assert listed <= names
@@ -45,8 +46,8 @@ def test_tables_list_every_variable(description):
 
 
 def test_figures_of_the_paper_cases():
-    """README's figures are those of the simulation, to one unit of the last digit."""
-    rows = [line.split("|")[1:-1] for line in block(update_docs.README, "examples/paper_cases.py").splitlines()[2:]]
+    """The figures of the paper's cases are those of the simulation, to one unit of the last digit."""
+    rows = [line.split("|")[1:-1] for line in block(update_docs.INDEX, "examples/paper_cases.py").splitlines()[2:]]
     shown = {row[0].strip(): [re.search(r"[\d.]+", cell)[0] for cell in row[1:]] for row in rows}
     assert set(shown) == set(paper_cases.CASES)
     last = {case: paper_cases.roll(case)[-1] for case in paper_cases.CASES}

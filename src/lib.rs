@@ -113,3 +113,8 @@ pub use settings::Settings;
 pub use signals::{INPUTS, Inputs, OUTPUTS, Outputs};
 pub use simulation::Simulation;
 pub use wheel_rail::{Interrupted, Model, Profiles, State, Workspace};
+
+/// README's lines of Rust are compiled and run as a documentation test.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

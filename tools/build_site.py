@@ -1,7 +1,7 @@
 """Build the documentation site from docs/, warnings being errors (`make site`).
 
-The sources are copied to target/site-source, next to what is not written by hand: the tables of variables from
-`wheelrail describe`, the table of the verification from `wheelrail verify`, and the changelog.
+The sources are copied to target/site-source, next to what is not there as a file: the table of the verification
+from `wheelrail verify`, and the changelog.
 """
 
 import argparse
@@ -58,7 +58,6 @@ def main():
         (SOURCE / "performance.md").write_text(PERFORMANCE)
     generated = SOURCE / "generated"
     generated.mkdir()
-    (generated / "variables.md").write_text(update_docs.variables_markdown().replace("### ", "## "))
     (generated / "verification.md").write_text(verification_markdown())
     shutil.copy(update_docs.REPOSITORY / "CHANGELOG.md", SOURCE / "changelog.md")
     code = sphinx_build(["-W", "--keep-going", "-q", "-E", "-d", f"{SOURCE}/.doctrees", str(SOURCE), str(output)])

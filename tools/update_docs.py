@@ -1,6 +1,6 @@
-"""Write the generated parts of README.md and of the documentation page, between their markers (`make docs`).
+"""Write the generated parts of README.md and of the documentation, between their markers (`make docs`).
 
-- the table of variables, from `wheelrail describe`;
+- the tables of variables, from `wheelrail describe`: all of them, and for README those to begin with;
 - the figures of the paper's cases, from results/paper_cases.csv, which examples/paper_cases.py writes;
 - the figures of the verification, from `wheelrail verify`.
 """
@@ -15,8 +15,14 @@ from pathlib import Path
 REPOSITORY = Path(__file__).resolve().parent.parent
 WHEELRAIL = REPOSITORY / "target" / "release" / "wheelrail"
 README = REPOSITORY / "README.md"
+VARIABLES = REPOSITORY / "docs" / "variables.md"
+INDEX = REPOSITORY / "docs" / "index.md"
 PAGE = REPOSITORY / "modelDescription" / "documentation" / "index.html"
 PAPER_CASES = REPOSITORY / "results" / "paper_cases.csv"
+
+# What one sets and reads first.
+FIRST = ["wheel_speed", "creepage", "vehicle_speed", "normal_load", "slip_source", "friction_law", "wheel"]
+FIRST += ["traction_force", "friction_torque", "peak_temperature", "friction_coefficient", "worn_volume"]
 
 
 def variables():
@@ -40,12 +46,23 @@ def variables_markdown():
     """Return the tables of variables in Markdown."""
     lines = []
     for title, rows in variables():
-        lines += [f"### {title}", "", "| name | unit | start | range | description |", "|---|---|---|---|---|"]
+        lines += [f"## {title}", "", "| name | unit | start | range | description |", "|---|---|---|---|---|"]
         for name, *cells in rows:
             name, *tunable = name.split()
             shown = f"`{repeats(name)}`" + "".join(f" {mark}" for mark in tunable)
             lines.append(f"| {shown} | {' | '.join(cells)} |")
         lines.append("")
+    return "\n".join(lines)
+
+
+def first_variables_markdown():
+    """Return the table of the variables to begin with in Markdown."""
+    kinds = {"Inputs": "input", "Outputs": "output"}
+    rows = {row[0].split()[0]: (kinds.get(title, "parameter"), row) for title, group in variables() for row in group}
+    lines = ["| | name | unit | start | description |", "|---|---|---|---|---|"]
+    for name in FIRST:
+        kind, (_, unit, start, _, description) = rows[name]
+        lines.append(f"| {kind} | `{name}` | {unit} | {start} | {description} |")
     return "\n".join(lines)
 
 
@@ -128,14 +145,20 @@ def between(text, marker, content):
     return replaced
 
 
+def write(path, parts):
+    """Replace the parts of a file that stand between markers."""
+    text = path.read_text()
+    for marker, content in parts.items():
+        text = between(text, marker, content)
+    path.write_text(text)
+
+
 def main():
     """Write all parts."""
-    page = between(PAGE.read_text(), "wheelrail describe", variables_html())
-    page = between(page, "wheelrail verify", verification_html())
-    readme = README.read_text()
-    readme = between(readme, "wheelrail describe", variables_markdown())
-    README.write_text(between(readme, "examples/paper_cases.py", paper_cases_markdown()))
-    PAGE.write_text(page)
+    write(README, {"first variables": first_variables_markdown()})
+    write(VARIABLES, {"wheelrail describe": variables_markdown()})
+    write(INDEX, {"examples/paper_cases.py": paper_cases_markdown()})
+    write(PAGE, {"wheelrail describe": variables_html(), "wheelrail verify": verification_html()})
 
 
 if __name__ == "__main__":
