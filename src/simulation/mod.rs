@@ -234,10 +234,19 @@ mod tests {
         assert!(Simulation::resume(simulation.model.clone(), broken).is_err());
     }
 
-    /// The scheme is of first order in the step: four sub-steps take about three quarters of the error of one away.
+    /// The scheme is of first order in the step: with a quarter of it a quarter of the error is left, where the model does not
+    /// divide the steps itself because the inputs change little.
     #[test]
     fn sub_steps_come_nearer_to_the_limit_of_short_steps() {
-        let schedule = schedule(0.02);
+        let sliding = |creepage| Inputs {
+            creepage,
+            ..Inputs::default()
+        };
+        let point = |time, creepage| Point {
+            time,
+            inputs: sliding(creepage),
+        };
+        let schedule = Schedule::new(vec![point(0.0, 0.018), point(0.02, 0.02)]).unwrap();
         let mut energies = [1, 4, 32].map(|count| {
             let mut simulation = Simulation::new(&coarse(), &schedule.start().inputs).unwrap();
             for step in schedule.steps(5e-3).unwrap() {
@@ -249,8 +258,8 @@ mod tests {
         });
         let limit = energies[2];
         energies.iter_mut().for_each(|energy| *energy -= limit);
-        let gained = energies[1] / energies[0];
-        assert!((0.05..0.4).contains(&gained), "{gained}");
+        let left = energies[1] / energies[0];
+        assert!((0.1..0.35).contains(&left), "{left}");
     }
 
     #[test]
