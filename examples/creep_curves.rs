@@ -20,7 +20,7 @@ fn curve(model: Arc<Model>, speed: f64) -> Result<Vec<f64>, Error> {
     let mut simulation = Simulation::of(model, &inputs(0.0))?;
     CREEPAGES
         .iter()
-        // Until what the creepage before has left on the strip of 4 m is gone.
+        // Ten metres: what the creepage before has left on the strip of 4 m is gone.
         .map(|&creepage| {
             Ok(simulation
                 .hold(&inputs(creepage), 0.1 / speed, 100)?

@@ -69,13 +69,15 @@
 //!
 //! # Reading order
 //!
-//! 1. `parameters` and `signals`: every quantity that goes in and out, with unit, default, range and source.
+//! 1. `parameters` and `signals`: every quantity that goes in and out, with unit, default, range and source. `settings`: limits and
+//!    tolerances of the methods, each with its reason.
 //! 2. `body`: mesh, elasticity and compliance of rail and wheel. What is computed once; after it, no sparse system is solved.
 //! 3. `friction`: the laws of μ(θ), and Coulomb's law. `mechanics`: tractions for given temperature and wear.
 //! 4. `transport`, `heat`, `wear`: temperature and wear of the rail for given tractions; `heat::incoming`: the rail that the
 //!    wheel ahead has left.
-//! 5. `contact`: one implicit step. `contact::line` is the operator split over mechanics, heat and wear and its
-//!    derivatives; `contact::rim` is the wheel's temperature and wear, `contact::outputs` what all this sums up to.
+//! 5. `contact`: one implicit step, by an engine. `contact::line` is the engine that there is, the operator split over
+//!    mechanics, heat and wear, with its derivatives; `contact::rim` is the wheel's temperature and wear, `contact::outputs` what
+//!    all this sums up to.
 //! 6. `wheel_rail`: the stepped model. `simulation`: a wheel's way through time.
 //! 7. `verification`: the closed forms and published numbers that all this is held against.
 //! 8. `fmi2`: the same model as a co-simulation unit. Nothing above knows of FMI.
