@@ -1,6 +1,6 @@
 //! The contact of wheel and rail: one implicit step of tractions, temperature and wear.
 //!
-//! An engine resolves the contact; [`line`] resolves it along the rail. What does not depend on how it is resolved is
+//! An engine resolves the contact; [`mod@line`] resolves it along the rail. What does not depend on how it is resolved is
 //! shared: the [`task`] of a step, [`resultants`] of the fields, [`outputs`] from them, the wheel's [`rim`].
 //!
 //! The engines stand side by side in enums, not behind a trait, because their states are serialised.
