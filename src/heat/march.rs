@@ -58,7 +58,7 @@ impl HeatMarch<'_> {
     /// of `after` holds what enters. `scratch` holds [`HeatMarch::scratch_len`] values.
     ///
     /// # Errors
-    /// [`Error::SurfaceHeatNotConverged`].
+    /// [`crate::error::Error::SurfaceHeatNotConverged`].
     pub fn advance(
         &self,
         before: &[f64],
