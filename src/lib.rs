@@ -85,15 +85,15 @@
 //! `numerics` holds methods that know nothing of contact, `error` what can go wrong.
 
 // What is public below without standing in the face is what tests and benchmarks reach into.
-pub mod body;
+mod body;
 pub mod contact;
 #[cfg(feature = "cli")]
 pub mod description;
 pub mod error;
 #[cfg(feature = "fmi")]
 pub mod fmi2;
-pub mod friction;
-pub mod heat;
+mod friction;
+mod heat;
 mod mechanics;
 mod numerics;
 pub mod parameters;

@@ -19,7 +19,7 @@ pub struct Inputs {
     pub friction_scale: f64,
     /// Ambient temperature, `K`; the rail's and the wheel's far away from the contact.
     pub ambient_temperature: f64,
-    /// Temperature of the rail's skin where it enters, `K` ([`crate::heat::incoming`]).
+    /// Temperature of the rail's skin where it enters, `K` (`heat::incoming`).
     pub incoming_temperature: f64,
     /// Wear depth of the rail where it enters, `m`.
     pub incoming_wear_depth: f64,
@@ -72,7 +72,7 @@ pub struct Outputs {
     pub wheel_heat_flow: f64,
     /// Radius that the wheel has lost by wear since the start, `m`.
     pub wheel_wear_depth: f64,
-    /// Temperature of the rail's skin where it leaves, `K` ([`crate::heat::incoming`]).
+    /// Temperature of the rail's skin where it leaves, `K` (`heat::incoming`).
     pub leaving_temperature: f64,
     /// Wear depth of the rail where it leaves, `m`.
     pub leaving_wear_depth: f64,

@@ -156,6 +156,7 @@ impl Elasticity {
     }
 
     /// Displacements under nodal loads, [N/m per metre of width]: `loads` and result are [`Fields`].
+    #[cfg(any(test, feature = "verification"))]
     pub fn solve(&self, loads: &Fields) -> Fields {
         let mut displacements = Mat::zeros(loads.nrows(), loads.ncols());
         self.solve_each(

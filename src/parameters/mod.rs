@@ -56,7 +56,7 @@ pub enum MeshKind {
 pub enum Wheel {
     /// Rigid: the paper's.
     Rigid,
-    /// Elastic: its compliance adds to the rail's ([`crate::body::pair`]).
+    /// Elastic: its compliance adds to the rail's (`body::pair`).
     Elastic,
 }
 
@@ -165,7 +165,7 @@ pub struct Parameters {
     pub wheel_heat_transfer: f64,
     /// Archard's coefficient of the wheel, `1/Pa`; 0 switches its wear off.
     pub wheel_wear_coefficient: f64,
-    /// Depth over which incoming and leaving temperature spread the rail's heat, `m` ([`crate::heat::incoming`]).
+    /// Depth over which incoming and leaving temperature spread the rail's heat, `m` (`heat::incoming`).
     pub skin_depth: f64,
     /// Couple normal and tangential displacement (Dundurs). A rigid wheel on an elastic rail is coupled; the
     /// switch exists for the comparison with Carter's theory, which has identical bodies. Not an FMI parameter.
