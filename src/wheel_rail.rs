@@ -108,11 +108,7 @@ impl Model {
     /// [`Error::OutOfRange`] or [`Error::Combination`]; nothing is changed then.
     pub fn retune(&mut self, parameters: &Parameters) -> Result<()> {
         let mut tuned = self.parameters.clone();
-        for entry in crate::parameters::REAL_PARAMETERS.iter().filter(|entry| entry.tunable) {
-            let value = (entry.get)(parameters);
-            entry.check(value)?;
-            (entry.set)(&mut tuned, value);
-        }
+        tuned.retune(parameters)?;
         tuned.validate_friction()?;
         self.parameters = tuned;
         Ok(())

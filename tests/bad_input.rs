@@ -108,17 +108,19 @@ fn a_rolling_speed_beyond_the_validity_is_refused() {
 #[test]
 fn every_parameter_out_of_its_range_is_refused() {
     for entry in REAL_PARAMETERS {
-        for value in refused(entry.minimum, entry.maximum) {
-            let mut parameters = Parameters::default();
-            (entry.set)(&mut parameters, value);
-            let range = (entry.minimum, entry.maximum);
-            assert_out_of_range(&parameters.validate().unwrap_err(), entry.name, value, range);
-            assert!(Model::new(parameters).is_err());
+        let range = (entry.minimum, entry.maximum);
+        for (element, name) in entry.elements.iter().enumerate() {
+            for value in refused(entry.minimum, entry.maximum) {
+                let mut parameters = Parameters::default();
+                (entry.get_mut)(&mut parameters)[element] = value;
+                assert_out_of_range(&parameters.validate().unwrap_err(), name, value, range);
+                assert!(Model::new(parameters).is_err());
 
-            let mut parameters = Parameters::default();
-            let error = parameters.set_by_name(entry.name, &format!("{value}")).unwrap_err();
-            assert_out_of_range(&error, entry.name, value, range);
-            assert_eq!(parameters, Parameters::default());
+                let mut parameters = Parameters::default();
+                let error = parameters.set_by_name(name, &format!("{value}")).unwrap_err();
+                assert_out_of_range(&error, name, value, range);
+                assert_eq!(parameters, Parameters::default());
+            }
         }
     }
     for entry in INTEGER_PARAMETERS {

@@ -1,37 +1,59 @@
-//! The one table of parameters: name, default, range, whether tunable, description. One row a line.
+//! The parameters, each declared once: field, start value and row of the table.
+//!
+//! A row reads
+//!
+//! ```text
+//! /// The description: one sentence, on as many lines as it needs.
+//! name symbol: type = kind { columns }
+//! ```
+//!
+//! where the symbol is that of the equations, where there is one. The order is that of the table and of a saved state.
 
-use super::validation::check_range;
-use super::{Control, FrictionLaw, MeshKind, NormalSolver, Parameters, SlipSource, TABLE_POINTS, Wheel, WheelHeating};
-use crate::error::Result;
+use super::choices::{Control, FrictionLaw, MeshKind, NormalSolver, SlipSource, Wheel, WheelHeating};
+use super::range::check_range;
+use crate::error::{Error, Result};
+use serde::{Deserialize, Serialize};
 
-/// One row of the table of real parameters.
+/// Number of (temperature, coefficient) points that a friction table can hold.
+pub const TABLE_POINTS: usize = 10;
+
+/// One row of the table of real parameters: a number, or an array of numbers that share all but their start values.
+#[derive(Clone, Copy)]
 pub struct RealParameter {
     /// Name, the same in FMI, on the command line and in messages.
     pub name: &'static str,
+    /// Whether it is an array.
+    pub is_array: bool,
+    /// The names of the elements of an array; of a number its own name.
+    pub elements: &'static [&'static str],
     /// Unit as written in FMI unit definitions.
     pub unit: &'static str,
-    /// Start value.
-    pub default: f64,
+    /// Unit in which a person would read the value.
+    pub display_unit: Option<&'static str>,
+    /// Start value of each element.
+    pub start: &'static [f64],
     /// Smallest allowed value.
     pub minimum: f64,
     /// Largest allowed value.
     pub maximum: f64,
     /// May be changed while the simulation runs.
     pub tunable: bool,
-    /// One sentence.
+    /// One sentence; of an array on one of its elements.
     pub description: &'static str,
-    /// Reads the value.
-    pub get: fn(&Parameters) -> f64,
-    /// Writes a value that [`RealParameter::check`] has accepted.
-    pub set: fn(&mut Parameters, f64),
+    /// The elements.
+    pub get: fn(&Parameters) -> &[f64],
+    /// The elements, to write what [`RealParameter::check`] has accepted.
+    pub get_mut: fn(&mut Parameters) -> &mut [f64],
 }
 
-/// One row of the table of integer parameters: counts and choices.
+/// One row of the table of integer parameters: counts and choices. A choice is an Integer with the meaning of each value
+/// in its description: some importers pass over Enumerations.
+#[derive(Clone, Copy)]
 pub struct IntegerParameter {
     /// Name, the same in FMI, on the command line and in messages.
     pub name: &'static str,
     /// Start value.
-    pub default: i32,
+    pub start: i32,
     /// Smallest allowed value.
     pub minimum: i32,
     /// Largest allowed value.
@@ -45,12 +67,15 @@ pub struct IntegerParameter {
 }
 
 impl RealParameter {
-    /// Refuses a value that is not finite or outside the range.
+    /// Refuses a value of an element that is not finite or outside the range.
     ///
     /// # Errors
-    /// [`crate::error::Error::OutOfRange`].
-    pub fn check(&self, value: f64) -> Result<()> {
-        check_range(self.name, value, self.minimum, self.maximum, self.unit)
+    /// [`Error::OutOfRange`].
+    ///
+    /// # Panics
+    /// When there is no such element.
+    pub fn check(&self, element: usize, value: f64) -> Result<()> {
+        check_range(self.elements[element], value, self.minimum, self.maximum, self.unit)
     }
 }
 
@@ -58,173 +83,418 @@ impl IntegerParameter {
     /// Refuses a value outside the range.
     ///
     /// # Errors
-    /// [`crate::error::Error::OutOfRange`].
+    /// [`Error::OutOfRange`].
     pub fn check(&self, value: i32) -> Result<()> {
-        check_range(
-            self.name,
-            f64::from(value),
-            f64::from(self.minimum),
-            f64::from(self.maximum),
-            "",
-        )
+        let [value, minimum, maximum] = [value, self.minimum, self.maximum].map(f64::from);
+        check_range(self.name, value, minimum, maximum, "")
     }
 }
 
+/// A row of either kind, as the list below has them.
+#[derive(Clone, Copy)]
+enum Row {
+    Real(RealParameter),
+    Integer(IntegerParameter),
+}
+
+/// A number: unit, unit in which a person would read it, start value, range.
 macro_rules! real {
-    ($name:literal, $unit:literal, $default:expr, $minimum:expr, $maximum:expr, $tunable:expr, $description:expr, $($field:tt)+) => {
-        RealParameter {
-            name: $name,
+    (start { $unit:literal $(shown in $display:literal)?, $start:expr, $minimum:expr, $maximum:expr $(, $tunable:ident)? }) => {
+        $start
+    };
+    (unit { $unit:literal $($rest:tt)* }) => { concat!("\n\nUnit: `", $unit, "`") };
+    (row $field:ident, $description:expr,
+     { $unit:literal $(shown in $display:literal)?, $start:expr, $minimum:expr, $maximum:expr $(, $tunable:ident)? }) => {
+        Row::Real(RealParameter {
+            name: stringify!($field),
+            is_array: false,
+            elements: &[stringify!($field)],
             unit: $unit,
-            default: $default,
+            display_unit: optional!($($display)?),
+            start: &[$start],
             minimum: $minimum,
             maximum: $maximum,
-            tunable: $tunable,
+            tunable: is_there!($($tunable)?),
             description: $description,
-            get: |p| p.$($field)+,
-            set: |p, value| p.$($field)+ = value,
-        }
+            get: |parameters| std::slice::from_ref(&parameters.$field),
+            get_mut: |parameters| std::slice::from_mut(&mut parameters.$field),
+        })
     };
 }
 
+/// An array: name and numbers of its elements, unit, unit in which a person would read it, start values, range.
+macro_rules! reals {
+    (start { $name:literal [$($element:literal)+], $unit:literal $(shown in $display:literal)?, $start:expr, $($rest:tt)* }) => {
+        $start
+    };
+    (unit { $name:literal [$($element:literal)+], $unit:literal $($rest:tt)* }) => {
+        concat!("\n\nUnit: `", $unit, "`")
+    };
+    (row $field:ident, $description:expr,
+     { $name:literal [$($element:literal)+], $unit:literal $(shown in $display:literal)?, $start:expr, $minimum:expr, $maximum:expr }) => {
+        Row::Real(RealParameter {
+            name: $name,
+            is_array: true,
+            elements: &[$(concat!($name, "[", $element, "]")),+],
+            unit: $unit,
+            display_unit: optional!($($display)?),
+            start: &$start,
+            minimum: $minimum,
+            maximum: $maximum,
+            tunable: false,
+            description: $description,
+            get: |parameters| &parameters.$field,
+            get_mut: |parameters| &mut parameters.$field,
+        })
+    };
+}
+
+/// A number of things: start value, range.
 macro_rules! count {
-    ($name:literal, $default:expr, $minimum:expr, $maximum:expr, $description:literal, $field:ident) => {
-        IntegerParameter {
-            name: $name,
-            default: $default,
+    (start { $start:expr, $minimum:expr, $maximum:expr }) => {
+        $start
+    };
+    (unit { $($columns:tt)* }) => {
+        ""
+    };
+    (row $field:ident, $description:expr, { $start:expr, $minimum:expr, $maximum:expr }) => {
+        Row::Integer(IntegerParameter {
+            name: stringify!($field),
+            start: $start,
             minimum: $minimum,
             maximum: $maximum,
             description: $description,
-            get: |p| p.$field as i32,
+            get: |parameters| parameters.$field as i32,
             // Negative counts do not pass `check`.
-            set: |p, value| p.$field = value.unsigned_abs() as usize,
-        }
+            set: |parameters, value| parameters.$field = value.unsigned_abs() as usize,
+        })
     };
 }
 
-/// A choice is an Integer with the meaning of each value in its description: some importers pass over Enumerations.
+/// A choice, numbered from 1: type, start value.
 macro_rules! choice {
-    ($name:literal, $default:expr, $description:literal, $field:ident, [$first:expr $(, $other:expr)*]) => {
-        IntegerParameter {
-            name: $name,
-            default: $default,
+    (start { $type:ident::$start:ident }) => {
+        $type::$start
+    };
+    (unit { $($columns:tt)* }) => {
+        ""
+    };
+    (row $field:ident, $description:expr, { $type:ident::$start:ident }) => {
+        Row::Integer(IntegerParameter {
+            name: stringify!($field),
+            start: $type::$start as i32 + 1,
             minimum: 1,
-            maximum: [$first $(, $other)*].len() as i32,
+            maximum: $type::ALL.len() as i32,
             description: $description,
-            get: |p| {
-                let options = [$first $(, $other)*];
-                options.iter().position(|o| *o == p.$field).map_or(1, |i| i as i32 + 1)
-            },
-            set: |p, value| {
-                let options = [$first $(, $other)*];
-                if let Some(option) = options.get((value - 1) as usize) {
-                    p.$field = *option;
+            get: |parameters| parameters.$field as i32 + 1,
+            set: |parameters, value| {
+                if let Some(choice) = $type::ALL.get((value - 1) as usize) {
+                    parameters.$field = *choice;
                 }
             },
+        })
+    };
+}
+
+macro_rules! optional {
+    () => {
+        None
+    };
+    ($value:literal) => {
+        Some($value)
+    };
+}
+
+macro_rules! is_there {
+    () => {
+        false
+    };
+    (tunable) => {
+        true
+    };
+}
+
+macro_rules! parameters {
+    ($($(#[doc = $description:literal])+ $field:ident $($symbol:literal)?: $type:ty = $kind:ident $columns:tt)+) => {
+        /// All parameters. Start values are those of section 5 of the paper where it gives a number.
+        #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+        pub struct Parameters {
+            $(
+                #[doc = concat!($($description),+)]
+                $(#[doc = concat!("\n\nSymbol: ", $symbol)])?
+                #[doc = $kind!(unit $columns)]
+                pub $field: $type,
+            )+
+            /// Couple normal and tangential displacement (Dundurs). A rigid wheel on an elastic rail is coupled; the
+            /// switch exists for the comparison with Carter's theory, which has identical bodies. Not an FMI parameter.
+            pub normal_tangential_coupling: bool,
         }
+
+        impl Default for Parameters {
+            fn default() -> Self {
+                Parameters {
+                    $($field: $kind!(start $columns),)+
+                    normal_tangential_coupling: true,
+                }
+            }
+        }
+
+        const ROWS: &[Row] = &[
+            $($kind!(row $field, concat!($($description),+).trim_ascii(), $columns),)+
+        ];
     };
 }
 
-/// The integer parameters in the order in which they are listed.
-#[rustfmt::skip]
-pub const INTEGER_PARAMETERS: &[IntegerParameter] = &[
-    choice!("control", 1, "What is prescribed in the normal direction: 1 load (input normal_load), 2 penetration (parameter prescribed_penetration)", control, [Control::Load, Control::Penetration]),
-    choice!("slip_source", 1, "Which inputs define the motion: 1 creepage (wheel_speed and creepage), 2 vehicle_speed (wheel_speed and vehicle_speed)", slip_source, [SlipSource::Creepage, SlipSource::VehicleSpeed]),
-    count!("contact_nodes", 61, 13, 401, "Number of evenly spaced surface nodes in the contact window of the graded mesh", contact_nodes),
-    count!("depth_nodes", 41, 9, 161, "Number of nodes over the depth of the strip of the graded mesh", depth_nodes),
-    choice!("normal_solver", 1, "Method for the normal contact problem: 1 active_set (primal-dual active set), 2 pschenichnyj (linearisation method of the paper)", normal_solver, [NormalSolver::ActiveSet, NormalSolver::Pschenichnyj]),
-    choice!("mesh", 1, "Triangulation: 1 graded (contact_nodes by depth_nodes), 2 paper (192 triangles, 13 surface nodes)", mesh, [MeshKind::Graded, MeshKind::Paper]),
-    choice!("friction_law", 2, "Friction coefficient against temperature: 1 constant, 2 piecewise_linear, 3 flow_stress, 4 table", friction_law, [FrictionLaw::Constant, FrictionLaw::PiecewiseLinear, FrictionLaw::FlowStress, FrictionLaw::Table]),
-    count!("friction_table_points", 2, 2, TABLE_POINTS as i32, "Number of points of the friction table that are used", friction_table_points),
-    choice!("wheel", 1, "Wheel: 1 rigid (the paper's), 2 elastic (wheel_lame_lambda, wheel_shear_modulus and wheel_density)", wheel, [Wheel::Rigid, Wheel::Elastic]),
-    choice!("wheel_heating", 1, "Temperature of the wheel: 1 off (ambient, the paper's cold wheel), 2 on (the contact warms the rim)", wheel_heating, [WheelHeating::Off, WheelHeating::On]),
+parameters! {
+    /// What is prescribed in the normal direction: 1 load (input normal_load), 2 penetration (parameter
+    /// prescribed_penetration)
+    control: Control = choice { Control::Load }
+    /// Which inputs define the motion: 1 creepage (wheel_speed and creepage), 2 vehicle_speed (wheel_speed and
+    /// vehicle_speed)
+    slip_source: SlipSource = choice { SlipSource::Creepage }
+    /// Penetration of the undeformed wheel into the undeformed rail where control is penetration
+    prescribed_penetration "δ": f64 = real { "m" shown in "µm", 1e-4, -1e-2, 1e-2 }
+    /// Largest normal load: it sizes the contact window, and a larger load is refused
+    largest_load: f64 = real { "N" shown in "kN", 100e3, 1.0, 1e7 }
+    /// Number of evenly spaced surface nodes in the contact window of the graded mesh
+    contact_nodes: usize = count { 61, 13, 401 }
+    /// Number of nodes over the depth of the strip of the graded mesh
+    depth_nodes: usize = count { 41, 9, 161 }
+    /// Method for the normal contact problem: 1 active_set (primal-dual active set), 2 pschenichnyj (linearisation
+    /// method of the paper)
+    normal_solver: NormalSolver = choice { NormalSolver::ActiveSet }
+    /// Triangulation: 1 graded (contact_nodes by depth_nodes), 2 paper (192 triangles, 13 surface nodes)
+    mesh: MeshKind = choice { MeshKind::Graded }
+    /// Rolling radius of the wheel
+    wheel_radius "r₀": f64 = real { "m", 0.46, 0.05, 5.0 }
+    /// Height of the elastic strip that stands for the rail
+    strip_height "h": f64 = real { "m", 1.0, 0.05, 10.0 }
+    /// Half-length of the elastic strip that stands for the rail
+    strip_half_length "L": f64 = real { "m", 2.0, 0.1, 20.0 }
+    /// Width of the equivalent line contact
+    contact_width "b": f64 = real { "m" shown in "mm", 0.01, 1e-4, 1.0 }
+    /// First Lame coefficient of the rail
+    lame_lambda "λ": f64 = real { "Pa" shown in "GPa", 11.66e10, 1e5, 1e13 }
+    /// Shear modulus (second Lame coefficient) of the rail
+    shear_modulus "γ": f64 = real { "Pa" shown in "GPa", 8.2e10, 1e5, 1e13 }
+    /// Density of the rail
+    density "ρ": f64 = real { "kg/m3", 7.8e3, 1.0, 1e5 }
+    /// Specific heat capacity of the rail
+    heat_capacity "c_p": f64 = real { "J/(kg.K)", 460.0, 1.0, 1e5 }
+    /// Thermal diffusivity of the rail
+    thermal_diffusivity "κ": f64 = real { "m2/s", 1.44e-5, 1e-8, 1e-2 }
+    /// Coefficient of linear thermal expansion of the rail; 0 switches the thermal bulge off
+    thermal_expansion "α": f64 = real { "1/K", 12e-6, 0.0, 1e-4 }
+    /// Share of the frictional heat that enters the rail
+    heat_partition "ᾱ": f64 = real { "1", 0.5, 0.0, 1.0 }
+    /// Thermal resistance of the contact to the wheel times pressure; 1e12 switches the conduction off
+    contact_thermal_resistance "r": f64 = real { "K.N.s/J", 1000.0, 1e-3, 1e12 }
+    /// Archard wear coefficient; 0 switches wear off
+    wear_coefficient "k": f64 = real { "1/Pa", 0.5e-12, 0.0, 1e-9 }
+    /// Slip speed at which the regularised Coulomb law reaches half the friction bound
+    slip_regularisation "ε": f64 = real { "m/s", 1e-3, 1e-6, 1.0, tunable }
+    /// Friction coefficient against temperature: 1 constant, 2 piecewise_linear, 3 flow_stress, 4 table
+    friction_law: FrictionLaw = choice { FrictionLaw::PiecewiseLinear }
+    /// Friction coefficient of the cold contact
+    friction_cold "μ₀": f64 = real { "1", 0.45, 0.0, 1.0, tunable }
+    /// Friction coefficient of the hot contact
+    friction_hot "μ_F": f64 = real { "1", 0.25, 0.0, 1.0, tunable }
+    /// Absolute temperature up to which the friction coefficient is friction_cold
+    friction_temperature_cold "θ₀": f64 = real { "K" shown in "degC", 323.15, 1.0, 5000.0, tunable }
+    /// Absolute temperature from which on the friction coefficient is friction_hot
+    friction_temperature_hot "θ_F": f64 = real { "K" shown in "degC", 423.15, 1.0, 5000.0, tunable }
+    /// Number of points of the friction table that are used
+    friction_table_points: usize = count { 2, 2, TABLE_POINTS as i32 }
+    /// Absolute temperature of a point of the friction table, ascending from point to point
+    friction_table_temperature: [f64; TABLE_POINTS] = reals {
+        "friction_table.temperature" [1 2 3 4 5 6 7 8 9 10], "K" shown in "degC", TABLE_TEMPERATURES, 1.0, 5000.0
+    }
+    /// Friction coefficient of a point of the friction table
+    friction_table_coefficient: [f64; TABLE_POINTS] = reals {
+        "friction_table.coefficient" [1 2 3 4 5 6 7 8 9 10], "1", TABLE_COEFFICIENTS, 0.0, 1.0
+    }
+    /// Wheel: 1 rigid (the paper's), 2 elastic (wheel_lame_lambda, wheel_shear_modulus and wheel_density)
+    wheel: Wheel = choice { Wheel::Rigid }
+    /// First Lame coefficient of the wheel, used where wheel is elastic
+    wheel_lame_lambda: f64 = real { "Pa" shown in "GPa", 11.66e10, 1e5, 1e13 }
+    /// Shear modulus (second Lame coefficient) of the wheel, used where wheel is elastic
+    wheel_shear_modulus: f64 = real { "Pa" shown in "GPa", 8.2e10, 1e5, 1e13 }
+    /// Density of the wheel
+    wheel_density: f64 = real { "kg/m3", 7.8e3, 1.0, 1e5 }
+    /// Temperature of the wheel: 1 off (ambient, the paper's cold wheel), 2 on (the contact warms the rim)
+    wheel_heating: WheelHeating = choice { WheelHeating::Off }
+    /// Specific heat capacity of the wheel
+    wheel_heat_capacity: f64 = real { "J/(kg.K)", 460.0, 1.0, 1e5 }
+    /// Depth of the ring of the wheel that the contact warms, used where wheel_heating is on
+    rim_depth: f64 = real { "m" shown in "mm", 0.03, 1e-3, 1.0 }
+    /// Width of the ring of the wheel that the contact warms, used where wheel_heating is on
+    rim_width: f64 = real { "m" shown in "mm", 0.135, 1e-3, 1.0 }
+    /// Heat transfer coefficient from tread and flanks of the ring to the ambient, used where wheel_heating is on
+    wheel_heat_transfer: f64 = real { "W/(m2.K)", 30.0, 0.0, 1e5 }
+    /// Archard wear coefficient of the wheel; 0 switches its wear off
+    wheel_wear_coefficient: f64 = real { "1/Pa", 0.0, 0.0, 1e-9 }
+    /// Depth over which incoming_temperature and leaving_temperature spread the rail's heat:
+    /// sqrt(pi*thermal_diffusivity*t) for rail that was heated the time t before it enters
+    skin_depth: f64 = real { "m" shown in "mm", 5e-3, 1e-4, 0.1 }
+}
+
+/// The start values of the friction table: the default piecewise linear law, its hot end repeated.
+const TABLE_TEMPERATURES: [f64; TABLE_POINTS] = [
+    323.15, 423.15, 523.15, 623.15, 723.15, 823.15, 923.15, 1023.15, 1123.15, 1223.15,
 ];
+const TABLE_COEFFICIENTS: [f64; TABLE_POINTS] = [0.45, 0.25, 0.25, 0.25, 0.25, 0.25, 0.25, 0.25, 0.25, 0.25];
 
-/// Start values of the friction table: the default piecewise linear law, then its hot end repeated.
-const fn table_temperature(point: usize) -> f64 {
-    323.15 + 100.0 * point as f64
-}
-
-const fn table_coefficient(point: usize) -> f64 {
-    if point == 0 { 0.45 } else { 0.25 }
-}
-
-macro_rules! table_point {
-    (temperature $index:literal $name:literal) => {
-        real!(
-            $name,
-            "K",
-            table_temperature($index),
-            1.0,
-            5000.0,
-            false,
-            "Absolute temperature of a point of the friction table, ascending from point to point",
-            friction_table_temperature[$index]
-        )
-    };
-    (coefficient $index:literal $name:literal) => {
-        real!(
-            $name,
-            "1",
-            table_coefficient($index),
-            0.0,
-            1.0,
-            false,
-            "Friction coefficient of a point of the friction table",
-            friction_table_coefficient[$index]
-        )
-    };
+/// The rows of one kind, as a table of their own.
+macro_rules! rows_of {
+    ($kind:ident: $type:ty) => {{
+        const NUMBER: usize = {
+            let (mut row, mut number) = (0, 0);
+            while row < ROWS.len() {
+                number += matches!(ROWS[row], Row::$kind(_)) as usize;
+                row += 1;
+            }
+            number
+        };
+        const TABLE: Option<[$type; NUMBER]> = {
+            let (mut row, mut filled, mut table) = (0, 0, None);
+            while row < ROWS.len() {
+                if let Row::$kind(entry) = ROWS[row] {
+                    // An array begins as copies of its first entry.
+                    let mut entries = match table {
+                        Some(entries) => entries,
+                        None => [entry; NUMBER],
+                    };
+                    entries[filled] = entry;
+                    filled += 1;
+                    table = Some(entries);
+                }
+                row += 1;
+            }
+            table
+        };
+        match &TABLE {
+            Some(table) => table,
+            None => &[],
+        }
+    }};
 }
 
 /// The real parameters in the order in which they are listed.
-#[rustfmt::skip]
-pub const REAL_PARAMETERS: &[RealParameter] = &[
-    real!("prescribed_penetration", "m", 1e-4, -1e-2, 1e-2, false, "Penetration of the undeformed wheel into the undeformed rail where control is penetration", prescribed_penetration),
-    real!("largest_load", "N", 100e3, 1.0, 1e7, false, "Largest normal load: it sizes the contact window, and a larger load is refused", largest_load),
-    real!("wheel_radius", "m", 0.46, 0.05, 5.0, false, "Rolling radius of the wheel", wheel_radius),
-    real!("strip_height", "m", 1.0, 0.05, 10.0, false, "Height of the elastic strip that stands for the rail", strip_height),
-    real!("strip_half_length", "m", 2.0, 0.1, 20.0, false, "Half-length of the elastic strip that stands for the rail", strip_half_length),
-    real!("contact_width", "m", 0.01, 1e-4, 1.0, false, "Width of the equivalent line contact", contact_width),
-    real!("lame_lambda", "Pa", 11.66e10, 1e5, 1e13, false, "First Lame coefficient of the rail", lame_lambda),
-    real!("shear_modulus", "Pa", 8.2e10, 1e5, 1e13, false, "Shear modulus (second Lame coefficient) of the rail", shear_modulus),
-    real!("density", "kg/m3", 7.8e3, 1.0, 1e5, false, "Density of the rail", density),
-    real!("heat_capacity", "J/(kg.K)", 460.0, 1.0, 1e5, false, "Specific heat capacity of the rail", heat_capacity),
-    real!("thermal_diffusivity", "m2/s", 1.44e-5, 1e-8, 1e-2, false, "Thermal diffusivity of the rail", thermal_diffusivity),
-    real!("thermal_expansion", "1/K", 12e-6, 0.0, 1e-4, false, "Coefficient of linear thermal expansion of the rail; 0 switches the thermal bulge off", thermal_expansion),
-    real!("heat_partition", "1", 0.5, 0.0, 1.0, false, "Share of the frictional heat that enters the rail", heat_partition),
-    real!("contact_thermal_resistance", "K.N.s/J", 1000.0, 1e-3, 1e12, false, "Thermal resistance of the contact to the wheel times pressure; 1e12 switches the conduction off", contact_thermal_resistance),
-    real!("wear_coefficient", "1/Pa", 0.5e-12, 0.0, 1e-9, false, "Archard wear coefficient; 0 switches wear off", wear_coefficient),
-    real!("slip_regularisation", "m/s", 1e-3, 1e-6, 1.0, true, "Slip speed at which the regularised Coulomb law reaches half the friction bound", slip_regularisation),
-    real!("friction_cold", "1", 0.45, 0.0, 1.0, true, "Friction coefficient of the cold contact", friction_cold),
-    real!("friction_hot", "1", 0.25, 0.0, 1.0, true, "Friction coefficient of the hot contact", friction_hot),
-    real!("friction_temperature_cold", "K", 323.15, 1.0, 5000.0, true, "Absolute temperature up to which the friction coefficient is friction_cold", friction_temperature_cold),
-    real!("friction_temperature_hot", "K", 423.15, 1.0, 5000.0, true, "Absolute temperature from which on the friction coefficient is friction_hot", friction_temperature_hot),
-    table_point!(temperature 0 "friction_table.temperature[1]"),
-    table_point!(temperature 1 "friction_table.temperature[2]"),
-    table_point!(temperature 2 "friction_table.temperature[3]"),
-    table_point!(temperature 3 "friction_table.temperature[4]"),
-    table_point!(temperature 4 "friction_table.temperature[5]"),
-    table_point!(temperature 5 "friction_table.temperature[6]"),
-    table_point!(temperature 6 "friction_table.temperature[7]"),
-    table_point!(temperature 7 "friction_table.temperature[8]"),
-    table_point!(temperature 8 "friction_table.temperature[9]"),
-    table_point!(temperature 9 "friction_table.temperature[10]"),
-    table_point!(coefficient 0 "friction_table.coefficient[1]"),
-    table_point!(coefficient 1 "friction_table.coefficient[2]"),
-    table_point!(coefficient 2 "friction_table.coefficient[3]"),
-    table_point!(coefficient 3 "friction_table.coefficient[4]"),
-    table_point!(coefficient 4 "friction_table.coefficient[5]"),
-    table_point!(coefficient 5 "friction_table.coefficient[6]"),
-    table_point!(coefficient 6 "friction_table.coefficient[7]"),
-    table_point!(coefficient 7 "friction_table.coefficient[8]"),
-    table_point!(coefficient 8 "friction_table.coefficient[9]"),
-    table_point!(coefficient 9 "friction_table.coefficient[10]"),
-    real!("wheel_lame_lambda", "Pa", 11.66e10, 1e5, 1e13, false, "First Lame coefficient of the wheel, used where wheel is elastic", wheel_lame_lambda),
-    real!("wheel_shear_modulus", "Pa", 8.2e10, 1e5, 1e13, false, "Shear modulus (second Lame coefficient) of the wheel, used where wheel is elastic", wheel_shear_modulus),
-    real!("wheel_density", "kg/m3", 7.8e3, 1.0, 1e5, false, "Density of the wheel", wheel_density),
-    real!("wheel_heat_capacity", "J/(kg.K)", 460.0, 1.0, 1e5, false, "Specific heat capacity of the wheel", wheel_heat_capacity),
-    real!("rim_depth", "m", 0.03, 1e-3, 1.0, false, "Depth of the ring of the wheel that the contact warms, used where wheel_heating is on", rim_depth),
-    real!("rim_width", "m", 0.135, 1e-3, 1.0, false, "Width of the ring of the wheel that the contact warms, used where wheel_heating is on", rim_width),
-    real!("wheel_heat_transfer", "W/(m2.K)", 30.0, 0.0, 1e5, false, "Heat transfer coefficient from tread and flanks of the ring to the ambient, used where wheel_heating is on", wheel_heat_transfer),
-    real!("wheel_wear_coefficient", "1/Pa", 0.0, 0.0, 1e-9, false, "Archard wear coefficient of the wheel; 0 switches its wear off", wheel_wear_coefficient),
-    real!("skin_depth", "m", 5e-3, 1e-4, 0.1, false, "Depth over which incoming_temperature and leaving_temperature spread the rail's heat: sqrt(pi*thermal_diffusivity*t) for rail that was heated the time t before it enters", skin_depth),
-];
+pub const REAL_PARAMETERS: &[RealParameter] = rows_of!(Real: RealParameter);
+
+/// The integer parameters in the order in which they are listed.
+pub const INTEGER_PARAMETERS: &[IntegerParameter] = rows_of!(Integer: IntegerParameter);
+
+impl Parameters {
+    /// Takes the tunable parameters from `source`; the others stay.
+    ///
+    /// # Errors
+    /// [`Error::OutOfRange`]; some may have been taken then.
+    pub fn retune(&mut self, source: &Parameters) -> Result<()> {
+        for entry in REAL_PARAMETERS.iter().filter(|entry| entry.tunable) {
+            let values = (entry.get)(source).iter().zip((entry.get_mut)(self));
+            for (element, (value, place)) in values.enumerate() {
+                entry.check(element, *value)?;
+                *place = *value;
+            }
+        }
+        Ok(())
+    }
+
+    /// These parameters with every tunable one at its start value: what a model is built for.
+    pub fn fixed_part(&self) -> Parameters {
+        let mut fixed = self.clone();
+        for entry in REAL_PARAMETERS.iter().filter(|entry| entry.tunable) {
+            (entry.get_mut)(&mut fixed).copy_from_slice(entry.start);
+        }
+        fixed
+    }
+
+    /// Sets a parameter, or an element of an array, by its name from text, as `--set name=value` on the command line does.
+    ///
+    /// # Errors
+    /// [`Error::UnknownParameter`], [`Error::NotANumber`] or [`Error::OutOfRange`].
+    pub fn set_by_name(&mut self, name: &str, text: &str) -> Result<()> {
+        for entry in REAL_PARAMETERS {
+            let Some(element) = entry.elements.iter().position(|element| *element == name) else {
+                continue;
+            };
+            let value = parse(entry.elements[element], text, "a real number")?;
+            entry.check(element, value)?;
+            (entry.get_mut)(self)[element] = value;
+            return Ok(());
+        }
+        if let Some(entry) = INTEGER_PARAMETERS.iter().find(|entry| entry.name == name) {
+            let value = parse(entry.name, text, "an integer")?;
+            entry.check(value)?;
+            (entry.set)(self, value);
+            return Ok(());
+        }
+        Err(Error::UnknownParameter { name: name.to_owned() })
+    }
+}
+
+/// The number that a text holds.
+fn parse<T: std::str::FromStr>(name: &'static str, text: &str, expected: &'static str) -> Result<T> {
+    text.trim().parse().map_err(|_| Error::NotANumber {
+        name,
+        text: text.to_owned(),
+        expected,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_row_has_its_start_values_its_names_and_its_field() {
+        for entry in REAL_PARAMETERS {
+            let mut parameters = Parameters::default();
+            assert_eq!((entry.get)(&parameters), entry.start, "{}", entry.name);
+            assert_eq!(entry.elements.len(), entry.start.len(), "{}", entry.name);
+            assert_eq!(entry.is_array, entry.elements != [entry.name], "{}", entry.name);
+            for element in 0..entry.start.len() {
+                (entry.get_mut)(&mut parameters)[element] = entry.maximum;
+                assert_eq!((entry.get)(&parameters)[element], entry.maximum, "{}", entry.name);
+            }
+        }
+        for entry in INTEGER_PARAMETERS {
+            let mut parameters = Parameters::default();
+            assert_eq!((entry.get)(&parameters), entry.start, "{}", entry.name);
+            for value in entry.minimum..=entry.maximum {
+                (entry.set)(&mut parameters, value);
+                assert_eq!((entry.get)(&parameters), value, "{}", entry.name);
+            }
+        }
+    }
+
+    #[test]
+    fn elements_of_an_array_are_set_by_their_names() {
+        let mut parameters = Parameters::default();
+        parameters.set_by_name("friction_table.temperature[3]", "600").unwrap();
+        assert_eq!(parameters.friction_table_temperature[2], 600.0);
+        assert!(parameters.set_by_name("friction_table.temperature", "600").is_err());
+        assert!(parameters.set_by_name("friction_table.temperature[11]", "600").is_err());
+    }
+
+    #[test]
+    fn only_tunable_parameters_are_retuned_and_left_out_of_the_fixed_part() {
+        let other = Parameters {
+            friction_cold: 0.3,
+            wheel_radius: 0.5,
+            ..Parameters::default()
+        };
+        let mut parameters = Parameters::default();
+        parameters.retune(&other).unwrap();
+        assert_eq!(
+            parameters,
+            Parameters {
+                friction_cold: 0.3,
+                ..Parameters::default()
+            }
+        );
+        assert_eq!(parameters.fixed_part(), Parameters::default());
+        assert_ne!(other.fixed_part(), Parameters::default());
+    }
+}

@@ -1,25 +1,8 @@
 //! Checks of the parameters, once, before a model is built.
 
-use super::{FrictionLaw, INTEGER_PARAMETERS, Parameters, REAL_PARAMETERS};
+use super::choices::FrictionLaw;
+use super::table::{INTEGER_PARAMETERS, Parameters, REAL_PARAMETERS};
 use crate::error::{Error, Result};
-
-/// Refuses a value that is not finite or outside `minimum..=maximum`.
-///
-/// # Errors
-/// [`Error::OutOfRange`].
-pub fn check_range(name: &'static str, value: f64, minimum: f64, maximum: f64, unit: &'static str) -> Result<()> {
-    if value >= minimum && value <= maximum {
-        Ok(())
-    } else {
-        Err(Error::OutOfRange {
-            name,
-            value,
-            minimum,
-            maximum,
-            unit,
-        })
-    }
-}
 
 /// Two values that cannot be together.
 fn combination(first: (&'static str, f64), second: (&'static str, f64), requirement: &'static str) -> Result<()> {
@@ -39,7 +22,9 @@ impl Parameters {
     /// [`Error::OutOfRange`] or [`Error::Combination`].
     pub fn validate(&self) -> Result<()> {
         for entry in REAL_PARAMETERS {
-            entry.check((entry.get)(self))?;
+            for (element, value) in (entry.get)(self).iter().enumerate() {
+                entry.check(element, *value)?;
+            }
         }
         for entry in INTEGER_PARAMETERS {
             entry.check((entry.get)(self))?;

@@ -1,0 +1,81 @@
+//! The choices among the parameters. In FMI 2.0 each is an Integer, numbered from 1 in the order of its values here.
+
+use serde::{Deserialize, Serialize};
+
+/// Declares a choice with the list of its values.
+macro_rules! choices {
+    ($($(#[$about:meta])* $name:ident { $($(#[$meaning:meta])* $value:ident,)+ })+) => {$(
+        $(#[$about])*
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+        pub enum $name {
+            $($(#[$meaning])* $value,)+
+        }
+
+        impl $name {
+            /// All values, in the order of their numbers.
+            pub const ALL: &'static [$name] = &[$($name::$value),+];
+        }
+    )+};
+}
+
+choices! {
+    /// What is prescribed in the normal direction.
+    Control {
+        /// The normal load is given, the penetration follows (the component's normal use).
+        Load,
+        /// The penetration is given, the load follows (the paper's case).
+        Penetration,
+    }
+
+    /// Which pair of inputs defines the motion.
+    SlipSource {
+        /// Wheel speed and creepage: V = ω r₀ / (1 + ξ).
+        Creepage,
+        /// Wheel speed and vehicle speed.
+        VehicleSpeed,
+    }
+
+    /// Method for the normal contact problem (37).
+    NormalSolver {
+        /// Primal–dual active set (semismooth Newton).
+        ActiveSet,
+        /// The paper's Pschenichnyj linearisation method.
+        Pschenichnyj,
+    }
+
+    /// Which triangulation is used.
+    MeshKind {
+        /// `contact_nodes` evenly spaced nodes under the wheel, graded outside.
+        Graded,
+        /// The paper's 12 × 8 cells: 192 triangles, 13 surface nodes.
+        Paper,
+    }
+
+    /// The friction law μ(θ).
+    FrictionLaw {
+        /// μ₀ at every temperature.
+        Constant,
+        /// Linear between (θ₀, μ₀) and (θ_F, μ_F), constant outside: (12)–(13).
+        PiecewiseLinear,
+        /// Follows the flow stress of rail steel.
+        FlowStress,
+        /// Linear between the points of a table, constant outside.
+        Table,
+    }
+
+    /// What the wheel is made of.
+    Wheel {
+        /// Rigid: the paper's.
+        Rigid,
+        /// Elastic: its compliance adds to the rail's (`body::pair`).
+        Elastic,
+    }
+
+    /// Whether the contact warms the wheel.
+    WheelHeating {
+        /// The wheel stays at the ambient temperature: the paper's.
+        Off,
+        /// The contact warms the wheel's rim ([`crate::contact::rim`]).
+        On,
+    }
+}
