@@ -122,7 +122,6 @@ lint: $(VENV)/ready
 rust-test:
 	$(call say,Rust tests)
 	cargo test --no-fail-fast
-	cargo test --features panic-injection --test fmi2_panic
 
 verify: command
 	$(call say,Verification against closed forms and the paper)

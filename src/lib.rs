@@ -80,16 +80,17 @@
 //!    all this sums up to.
 //! 6. `wheel_rail`: the stepped model. `simulation`: a wheel's way through time.
 //! 7. `verification`: the closed forms and published numbers that all this is held against.
-//! 8. `fmi2`: the same model as a co-simulation unit. Nothing above knows of FMI.
+//! 8. `fmi`: the same model as a co-simulation unit, `fmi2`: its C functions and its description of FMI 2.0. Nothing above
+//!    knows of FMI.
 //!
 //! `numerics` holds methods that know nothing of contact, `error` what can go wrong.
 
 // What is public below without standing in the face is what tests and benchmarks reach into.
 mod body;
 pub mod contact;
-#[cfg(feature = "cli")]
-pub mod description;
 pub mod error;
+#[cfg(feature = "fmi")]
+pub mod fmi;
 #[cfg(feature = "fmi")]
 pub mod fmi2;
 mod friction;

@@ -3,7 +3,7 @@
 use quick_xml::Reader;
 use quick_xml::events::{BytesStart, Event};
 use std::collections::{BTreeMap, HashMap, HashSet};
-use wheelrail::description::model_description;
+use wheelrail::fmi2::description::model_description;
 use wheelrail::fmi2::{GUID, guid_of};
 use wheelrail::parameters::Parameters;
 

@@ -2,7 +2,7 @@
 
 use clap::Args;
 use std::io::{self, Write};
-use wheelrail::description::model_description;
+use wheelrail::fmi2::description::model_description;
 use wheelrail::fmi2::variables::{Causality, Kind, Variability, Variable, variables};
 
 /// Options of `describe`.

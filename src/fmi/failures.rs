@@ -1,49 +1,40 @@
-//! What can go wrong in a call, and who is to blame: that decides the status.
+//! What can go wrong in a call, and who is to blame: that decides the status which each version of FMI returns.
 
 use super::modes::Mode;
-use super::state::Corruption;
-use super::types::Status;
+use super::serialized::Corruption;
 use crate::error::Error;
 
-/// Why a call did not return fmi2OK. The message names the variable or argument, its value and what is allowed; the
-/// name of the function is put before it where it is logged.
+/// Who is to blame for a call that did not do all it was asked for, and with it what has become of the instance.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Blame {
+    /// An argument without effect; everything else was done.
+    Unused,
+    /// A value, or a question that has no answer: nothing was changed, the instance goes on.
+    Value,
+    /// A step whose solvers gave up after a part of it was committed.
+    PartOfStep,
+    /// A call that cannot be, parameters that make no model, or a solver that gave up at once: nothing was changed, but
+    /// the importer must decide how to go on.
+    Call,
+    /// This library.
+    Library,
+}
+
+/// Why a call failed, in words that hold for every version of FMI. The message names the variable or argument, its value
+/// and what is allowed; the name of the function is put before it where it is logged.
 #[derive(Debug, thiserror::Error)]
 pub enum Failure {
     /// A value that cannot be; nothing was set.
     #[error("{0}")]
     Value(Error),
-    /// A rate of change of an input that cannot be; nothing was set.
-    #[error("the time derivative of {name} = {value}: allowed is any finite value")]
-    Rate {
-        /// The input.
-        name: &'static str,
-        /// The refused value.
-        value: f64,
-    },
-    /// Only the first time derivative of an input has an effect.
-    #[error("the time derivative of order {order} of {name} is not used: inputs are interpolated to order 1")]
-    HigherOrder {
-        /// The input.
-        name: &'static str,
-        /// The order.
-        order: i32,
-    },
-    /// A status that this component does not have.
-    #[error(
-        "status kind {kind} cannot be retrieved: there are fmi2LastSuccessfulTime (2, Real) and fmi2Terminated (3, Boolean); steps are not asynchronous"
-    )]
-    StatusKind {
-        /// The status kind.
-        kind: i32,
-    },
     /// A step that came only part of its way.
     #[error(
         "the step stopped at t = {reached} s, {committed} s after its start, and the last committed state stands: {error}"
     )]
     Interrupted {
-        /// Time reached in s.
+        /// Time reached, `s`.
         reached: f64,
-        /// Part of the step that was committed in s.
+        /// Part of the step that was committed, `s`.
         committed: f64,
         /// Why it stopped.
         error: Error,
@@ -51,7 +42,7 @@ pub enum Failure {
     /// A step that could not be begun, with the last committed state standing.
     #[error("the step from t = {time} s failed, and the last committed state stands: {error}")]
     Step {
-        /// Time of the last communication point in s.
+        /// Time of the last communication point, `s`.
         time: f64,
         /// Why it failed.
         error: Error,
@@ -59,17 +50,6 @@ pub enum Failure {
     /// The model refuses the combination of parameters and inputs, or cannot solve for it.
     #[error("{0}")]
     Model(Error),
-    /// A call that the state machine does not allow.
-    #[error("not allowed in state {mode}; allowed in {allowed}")]
-    NotAllowed {
-        /// The instance's state.
-        mode: Mode,
-        /// The states in which the call is allowed.
-        allowed: String,
-    },
-    /// fmi2EnterInitializationMode before fmi2SetupExperiment.
-    #[error("fmi2SetupExperiment must be called before")]
-    NoExperiment,
     /// A pointer that must not be null.
     #[error("argument {argument} is a null pointer")]
     NullPointer {
@@ -110,22 +90,6 @@ pub enum Failure {
         /// What can be set.
         settable: &'static str,
     },
-    /// Derivative order 0 or below.
-    #[error("order {order} of the time derivative of {name}: allowed is 1 and above")]
-    Order {
-        /// The variable.
-        name: &'static str,
-        /// The order.
-        order: i32,
-    },
-    /// A direction that is not finite.
-    #[error("dvKnown of {name} = {value}: allowed is any finite value")]
-    Direction {
-        /// The input.
-        name: &'static str,
-        /// The refused value.
-        value: f64,
-    },
     /// A start time that is not finite.
     #[error("startTime = {value} s: allowed is any finite value")]
     StartTime {
@@ -137,7 +101,7 @@ pub enum Failure {
     StopTime {
         /// The refused value.
         value: f64,
-        /// The start time in s.
+        /// The start time, `s`.
         start: f64,
     },
     /// A step size that is not a positive finite number.
@@ -151,17 +115,17 @@ pub enum Failure {
     CommunicationPoint {
         /// The refused value.
         value: f64,
-        /// Where the last step ended in s.
+        /// Where the last step ended, `s`.
         expected: f64,
     },
     /// A step beyond the stop time of the experiment.
     #[error("the step from t = {time} s by {size} s ends beyond stopTime = {stop} s")]
     BeyondStop {
-        /// Communication point in s.
+        /// Communication point, `s`.
         time: f64,
-        /// Step size in s.
+        /// Step size, `s`.
         size: f64,
-        /// Stop time in s.
+        /// Stop time, `s`.
         stop: f64,
     },
     /// A log category that is not declared.
@@ -190,23 +154,15 @@ pub enum Failure {
     /// Bytes that are no serialised state of this instance.
     #[error("the serialized state is refused: {0}")]
     Corrupt(#[from] Corruption),
-    /// A defect of this library.
-    #[error("internal error: {message}; only fmi2SetFMUstate, fmi2Reset and fmi2FreeInstance lead on")]
-    Panic {
-        /// What the panic said.
-        message: String,
-    },
 }
 
 impl Failure {
-    /// The status that follows: a value or a step that stopped half-way is discarded, everything else is an error.
-    pub fn status(&self) -> Status {
+    /// Who is to blame.
+    pub fn blame(&self) -> Blame {
         match self {
-            Failure::HigherOrder { .. } => Status::WARNING,
-            Failure::Value(_) | Failure::Rate { .. } | Failure::StatusKind { .. } | Failure::Interrupted { .. } => {
-                Status::DISCARD
-            }
-            _ => Status::ERROR,
+            Failure::Value(_) => Blame::Value,
+            Failure::Interrupted { .. } => Blame::PartOfStep,
+            _ => Blame::Call,
         }
     }
 }

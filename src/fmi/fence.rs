@@ -1,6 +1,5 @@
 //! No panic crosses the C boundary, and none writes to standard error.
 
-use super::failure::Failure;
 use std::cell::Cell;
 use std::panic::{AssertUnwindSafe, PanicHookInfo, catch_unwind, set_hook, take_hook};
 use std::sync::{Once, OnceLock};
@@ -28,18 +27,27 @@ pub fn quiet_panics() {
     });
 }
 
-/// Runs the body of a call; a panic becomes [`Failure::Panic`].
-pub fn fenced<T>(body: impl FnOnce() -> Result<T, Failure>) -> Result<T, Failure> {
+/// A panic that was caught: a defect of this library.
+#[derive(Debug)]
+pub struct Panic {
+    /// What it said.
+    pub message: String,
+}
+
+/// Runs the body of a call.
+///
+/// # Errors
+/// [`Panic`]. What the body worked on may be half-done then: the caller must not use it.
+pub fn fenced<T>(body: impl FnOnce() -> T) -> Result<T, Panic> {
     let outer = INSIDE.replace(true);
-    // The instance is put into the error state after a panic, and its model dropped: nothing half-done is used.
     let result = catch_unwind(AssertUnwindSafe(body));
     INSIDE.set(outer);
-    result.unwrap_or_else(|payload| {
+    result.map_err(|payload| {
         let message = payload
             .downcast_ref::<&str>()
             .map(|text| (*text).to_owned())
             .or_else(|| payload.downcast_ref::<String>().cloned())
             .unwrap_or_default();
-        Err(Failure::Panic { message })
+        Panic { message }
     })
 }

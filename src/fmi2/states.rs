@@ -1,49 +1,6 @@
-//! The state machine of the standard as one table: functions × states.
+//! Which call the standard allows in which state, as one table: functions × states.
 
-use serde::{Deserialize, Serialize};
-use std::fmt;
-
-/// The states of FMI 2.0 for co-simulation, section 4.2.4. Three of the standard's are never reached: *stepInProgress* and
-/// *stepCanceled*, because steps are not asynchronous, and *fatal*, because one instance cannot harm another.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub enum Mode {
-    /// After fmi2Instantiate or fmi2Reset.
-    Instantiated,
-    /// Between fmi2EnterInitializationMode and fmi2ExitInitializationMode.
-    Initialization,
-    /// At a communication point.
-    StepComplete,
-    /// After a step that came only part of its way (fmi2Discard).
-    StepFailed,
-    /// After fmi2Terminate.
-    Terminated,
-    /// After a call that returned fmi2Error.
-    Error,
-}
-
-impl Mode {
-    const ALL: [Mode; 6] = [
-        Mode::Instantiated,
-        Mode::Initialization,
-        Mode::StepComplete,
-        Mode::StepFailed,
-        Mode::Terminated,
-        Mode::Error,
-    ];
-}
-
-impl fmt::Display for Mode {
-    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        formatter.write_str(match self {
-            Mode::Instantiated => "instantiated",
-            Mode::Initialization => "initializationMode",
-            Mode::StepComplete => "stepComplete",
-            Mode::StepFailed => "stepFailed",
-            Mode::Terminated => "terminated",
-            Mode::Error => "error",
-        })
-    }
-}
+use crate::fmi::modes::Mode;
 
 macro_rules! allowed {
     (x) => {
@@ -65,7 +22,7 @@ macro_rules! table {
             )*
         }
 
-        const TABLE: &[(&str, [bool; 6])] = &[$(($name, [$(allowed!($allowed)),*]),)*];
+        const TABLE: &[(&str, [bool; Mode::ALL.len()])] = &[$(($name, [$(allowed!($allowed)),*]),)*];
     };
 }
 
@@ -126,5 +83,19 @@ impl Function {
         } else {
             names.join(", ")
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_columns_stand_in_the_order_of_the_states() {
+        for (column, mode) in Mode::ALL.into_iter().enumerate() {
+            assert_eq!(mode as usize, column);
+        }
+        assert!(Function::DoStep.is_allowed(Mode::StepComplete) && !Function::DoStep.is_allowed(Mode::StepFailed));
+        assert_eq!(Function::Terminate.allowed_modes(), "stepComplete, stepFailed");
     }
 }

@@ -1,4 +1,4 @@
-//! What a saved state holds, and its serialised form.
+//! The serialised form of a saved state.
 //!
 //! | bytes | content (little endian) |
 //! |---|---|
@@ -11,44 +11,13 @@
 //!
 //! Meshes and tables are not part of it: they follow from the parameters.
 
-use super::modes::Mode;
-use crate::parameters::{Parameters, REAL_PARAMETERS};
-use crate::signals::Inputs;
-use crate::wheel_rail::State;
-use serde::{Deserialize, Serialize};
+use super::snapshot::Snapshot;
+use crate::parameters::Parameters;
 
 const MAGIC: [u8; 8] = *b"WHLRAIL\0";
 const VERSION: u32 = 2;
 const HEADER: usize = 8 + 4 + 8 + 8;
 const CHECKSUM: usize = 4;
-
-/// Times given by fmi2SetupExperiment.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct Experiment {
-    /// Start time in s.
-    pub start: f64,
-    /// Stop time, where one is defined in s.
-    pub stop: Option<f64>,
-}
-
-/// Everything of an instance that changes: fmi2GetFMUstate is a copy of it.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Snapshot {
-    /// State of the state machine.
-    pub mode: Mode,
-    /// Times of the experiment, once they are set.
-    pub experiment: Option<Experiment>,
-    /// All parameters.
-    pub parameters: Parameters,
-    /// The inputs at the communication point.
-    pub inputs: Inputs,
-    /// Their rates of change in the next step.
-    pub rates: Inputs,
-    /// The communication point in s.
-    pub time: f64,
-    /// Rail and contact, once computed.
-    pub state: Option<State>,
-}
 
 /// Why bytes are not a serialised state.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
@@ -81,20 +50,10 @@ pub enum Corruption {
     Content,
 }
 
-/// Hash of the description and of the fixed parameters.
-pub fn parameter_hash(parameters: &Parameters) -> u64 {
-    let fixed = fixed_part(parameters);
-    let bytes = postcard::to_allocvec(&fixed).unwrap_or_default();
-    fnv(super::GUID.bytes().chain(bytes))
-}
-
-/// The parameters with every tunable one at its start value: what a model is built for.
-pub fn fixed_part(parameters: &Parameters) -> Parameters {
-    let mut fixed = parameters.clone();
-    for row in REAL_PARAMETERS.iter().filter(|row| row.tunable) {
-        (row.set)(&mut fixed, row.default);
-    }
-    fixed
+/// Hash of the description's mark and of the fixed parameters.
+fn parameter_hash(description: &str, parameters: &Parameters) -> u64 {
+    let bytes = postcard::to_allocvec(&parameters.fixed_part()).unwrap_or_default();
+    fnv(description.bytes().chain(bytes))
 }
 
 /// FNV-1a, 64 bits (Fowler, Noll and Vo).
@@ -104,24 +63,27 @@ fn fnv(bytes: impl Iterator<Item = u8>) -> u64 {
     })
 }
 
-/// The serialised form.
-pub fn serialize(snapshot: &Snapshot) -> Result<Vec<u8>, Corruption> {
+/// The serialised form of a snapshot. `description` marks the build: two that differ in it do not read each other's states.
+///
+/// # Errors
+/// [`Corruption::Content`], which no snapshot of an instance leads to.
+pub fn serialize(description: &str, snapshot: &Snapshot) -> Result<Vec<u8>, Corruption> {
     let payload = postcard::to_allocvec(snapshot).map_err(|_| Corruption::Content)?;
     let mut bytes = Vec::with_capacity(HEADER + payload.len() + CHECKSUM);
     bytes.extend(MAGIC);
     bytes.extend(VERSION.to_le_bytes());
-    bytes.extend(parameter_hash(&snapshot.parameters).to_le_bytes());
+    bytes.extend(parameter_hash(description, &snapshot.parameters).to_le_bytes());
     bytes.extend((payload.len() as u64).to_le_bytes());
     bytes.extend(payload);
     bytes.extend(crc32fast::hash(&bytes).to_le_bytes());
     Ok(bytes)
 }
 
-/// Reads the serialised form, for an instance with the given parameters.
+/// Reads the serialised form, for an instance with the given parameters, of a build with the given mark.
 ///
 /// # Errors
 /// [`Corruption`] for anything that [`serialize`] did not make under the same fixed parameters.
-pub fn deserialize(bytes: &[u8], parameters: &Parameters) -> Result<Snapshot, Corruption> {
+pub fn deserialize(description: &str, bytes: &[u8], parameters: &Parameters) -> Result<Snapshot, Corruption> {
     let shortest = HEADER + CHECKSUM;
     let too_short = Corruption::Length {
         given: bytes.len(),
@@ -150,11 +112,11 @@ pub fn deserialize(bytes: &[u8], parameters: &Parameters) -> Result<Snapshot, Co
     if u32::from_le_bytes(*checksum) != crc32fast::hash(&bytes[..bytes.len() - CHECKSUM]) {
         return Err(Corruption::Checksum);
     }
-    if u64::from_le_bytes(*hash) != parameter_hash(parameters) {
+    if u64::from_le_bytes(*hash) != parameter_hash(description, parameters) {
         return Err(Corruption::Parameters);
     }
     let (snapshot, rest) = postcard::take_from_bytes::<Snapshot>(payload).map_err(|_| Corruption::Content)?;
-    if !rest.is_empty() || fixed_part(&snapshot.parameters) != fixed_part(parameters) {
+    if !rest.is_empty() || snapshot.parameters.fixed_part() != parameters.fixed_part() {
         return Err(Corruption::Content);
     }
     Ok(snapshot)

@@ -1,6 +1,8 @@
 //! Arguments from C: null and size checks, once for all functions.
 
-use super::failure::Failure;
+#![allow(unsafe_code)]
+
+use super::failures::Failure;
 use std::ffi::{CStr, c_char};
 use std::mem::MaybeUninit;
 

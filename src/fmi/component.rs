@@ -1,0 +1,227 @@
+//! One instance: what it holds, and its way through the states.
+//!
+//! A standard's own layer checks whether a call is allowed in the state, calls a method here, and reports a failure with
+//! [`Component::fail`].
+
+use super::failures::{Blame, Failure};
+use super::logging::{Category, Journal};
+use super::modes::Mode;
+use super::saved_states::SavedStates;
+use super::snapshot::Experiment;
+use crate::error;
+use crate::parameters::Parameters;
+use crate::settings::Settings;
+use crate::signals::Inputs;
+use crate::wheel_rail::{Model, Profiles, State, Workspace};
+
+/// What follows from the parameters, and the scratch that goes with it.
+pub(super) struct Built {
+    pub(super) model: Model,
+    pub(super) workspace: Workspace,
+}
+
+impl Built {
+    /// Computes mesh, compliance and thermal maps.
+    pub(super) fn new(parameters: &Parameters, settings: Settings) -> error::Result<Built> {
+        let model = Model::with_settings(parameters.clone(), settings)?;
+        let workspace = model.workspace();
+        Ok(Built { model, workspace })
+    }
+}
+
+/// An instance of the component.
+pub struct Component {
+    /// Marks the build in serialised states.
+    pub(super) description: &'static str,
+    /// Limits and tolerances of the solvers: the default ones, but in tests.
+    pub(super) settings: Settings,
+    pub(super) mode: Mode,
+    pub(super) experiment: Option<Experiment>,
+    pub(super) parameters: Parameters,
+    pub(super) inputs: Inputs,
+    /// Rates of change of the inputs in the next step, per second.
+    pub(super) rates: Inputs,
+    /// The communication point, `s`.
+    pub(super) time: f64,
+    /// Kept as long as the fixed parameters are the same, over a reset too.
+    pub(super) built: Option<Built>,
+    /// Rail and contact at the communication point. In *initializationMode* computed when it is asked for.
+    pub(super) state: Option<State>,
+    /// Computed from `state` when it is asked for.
+    pub(super) profiles: Option<Profiles>,
+    pub(super) saved: SavedStates,
+    /// Messages that wait for the end of a call.
+    pub journal: Journal,
+}
+
+impl Component {
+    /// A new instance, in *instantiated*. `description` marks the build in serialised states.
+    pub fn new(description: &'static str, journal: Journal) -> Component {
+        Component {
+            description,
+            settings: Settings::default(),
+            mode: Mode::Instantiated,
+            experiment: None,
+            parameters: Parameters::default(),
+            inputs: Inputs::default(),
+            rates: Inputs::ZERO,
+            time: 0.0,
+            built: None,
+            state: None,
+            profiles: None,
+            saved: SavedStates::default(),
+            journal,
+        }
+    }
+
+    /// The state of the instance.
+    pub fn mode(&self) -> Mode {
+        self.mode
+    }
+
+    /// The end of the last step that was committed, whole or in part, `s`.
+    pub fn time(&self) -> f64 {
+        self.time
+    }
+
+    /// What a failed call does to the instance, depending on who is to blame.
+    pub fn fail(&mut self, blame: Blame) {
+        match blame {
+            // The step itself has set its state.
+            Blame::Unused | Blame::Value | Blame::PartOfStep => {}
+            Blame::Call => self.mode = Mode::Error,
+            Blame::Library => {
+                self.mode = Mode::Error;
+                // A panic may have left them half-done. The state is only replaced as a whole.
+                self.built = None;
+                self.profiles = None;
+            }
+        }
+    }
+
+    /// Tells the importer something, where the category is on.
+    pub(super) fn inform(&mut self, category: Category, text: impl FnOnce(&Component) -> String) {
+        if self.journal.hears(category) {
+            let text = text(self);
+            self.journal.inform(category, text);
+        }
+    }
+
+    /// Sets the times of the experiment, `s`. There is no tolerance: the accuracy follows from mesh and passage time.
+    ///
+    /// # Errors
+    /// [`Failure::StartTime`] or [`Failure::StopTime`].
+    pub fn set_experiment(&mut self, start: f64, stop: Option<f64>) -> Result<(), Failure> {
+        if !start.is_finite() {
+            return Err(Failure::StartTime { value: start });
+        }
+        if let Some(value) = stop {
+            // Not a number is not above the start either.
+            if value.is_nan() || value < start {
+                return Err(Failure::StopTime { value, start });
+            }
+        }
+        self.experiment = Some(Experiment { start, stop });
+        self.time = start;
+        Ok(())
+    }
+
+    /// Whether the times of the experiment are set.
+    pub fn has_experiment(&self) -> bool {
+        self.experiment.is_some()
+    }
+
+    /// Begins the initialisation.
+    pub fn enter_initialization(&mut self) {
+        self.mode = Mode::Initialization;
+    }
+
+    /// Ends the initialisation: the parameters must make a model, and the contact must have a solution.
+    ///
+    /// # Errors
+    /// [`Failure::Model`].
+    pub fn exit_initialization(&mut self) -> Result<(), Failure> {
+        self.solution()?;
+        self.mode = Mode::StepComplete;
+        self.inform(Category::Events, |component| {
+            format!("initialized at t = {} s", component.time)
+        });
+        Ok(())
+    }
+
+    /// Ends the simulation.
+    pub fn terminate(&mut self) {
+        self.mode = Mode::Terminated;
+        self.inform(Category::Events, |component| {
+            format!("terminated at t = {} s", component.time)
+        });
+    }
+
+    /// Everything as in a new instance; saved states and the choice of log categories stay.
+    pub fn reset(&mut self) {
+        self.mode = Mode::Instantiated;
+        self.experiment = None;
+        self.parameters = Parameters::default();
+        self.inputs = Inputs::default();
+        self.rates = Inputs::ZERO;
+        self.time = 0.0;
+        self.state = None;
+        self.profiles = None;
+        self.inform(Category::Events, |_| "reset to the start values".to_owned());
+    }
+
+    /// Makes `built` the model of the given parameters; nothing is built anew where only tunable ones differ.
+    pub(super) fn prepare(&mut self, parameters: &Parameters) -> error::Result<&mut Built> {
+        let reusable = self
+            .built
+            .take_if(|built| built.model.parameters().fixed_part() == parameters.fixed_part());
+        let built = match reusable {
+            Some(mut built) => {
+                built.model.retune(parameters)?;
+                built
+            }
+            None => Built::new(parameters, self.settings)?,
+        };
+        Ok(self.built.insert(built))
+    }
+
+    /// The state at the communication point. In *initializationMode* it follows from parameters and inputs.
+    pub(super) fn solution(&mut self) -> Result<&State, Failure> {
+        if self.state.is_none() {
+            if self.mode != Mode::Initialization {
+                return Err(Failure::NothingComputed);
+            }
+            let (parameters, inputs) = (self.parameters.clone(), self.inputs);
+            inputs.check(&parameters).map_err(Failure::Model)?;
+            let Built { model, workspace } = self.prepare(&parameters).map_err(Failure::Model)?;
+            let state = model.initial_state(workspace, &inputs).map_err(Failure::Model)?;
+            self.state = Some(state);
+        }
+        self.state.as_ref().ok_or(Failure::NothingComputed)
+    }
+
+    /// Model and state at the communication point.
+    pub(super) fn solved(&mut self) -> Result<(&mut Built, &State), Failure> {
+        self.solution()?;
+        match (&mut self.built, &self.state) {
+            (Some(built), Some(state)) => Ok((built, state)),
+            _ => Err(Failure::NothingComputed),
+        }
+    }
+
+    /// The profiles at the communication point.
+    pub(super) fn profiles(&mut self) -> Result<&Profiles, Failure> {
+        if self.profiles.is_none() {
+            let (built, state) = self.solved()?;
+            let profiles = built.model.profiles(state);
+            self.profiles = Some(profiles);
+        }
+        self.profiles.as_ref().ok_or(Failure::NothingComputed)
+    }
+
+    /// After a change of what the solution of the initialisation follows from.
+    pub(super) fn forget_solution(&mut self) {
+        self.state = None;
+        self.profiles = None;
+    }
+}

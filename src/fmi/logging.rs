@@ -1,0 +1,176 @@
+//! Messages to the importer: what is told, and when.
+
+use super::failures::{Blame, Failure};
+use std::ffi::CStr;
+
+/// The declared log categories.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Category {
+    /// Why a call failed.
+    StatusError,
+    /// Why a call did less than it was asked for, with the instance going on.
+    StatusWarning,
+    /// Iterations and residuals.
+    Solver,
+    /// What happens in the life of an instance.
+    Events,
+}
+
+impl Category {
+    /// All categories, in the order in which they are declared.
+    pub const ALL: [Category; 4] = [
+        Category::StatusError,
+        Category::StatusWarning,
+        Category::Solver,
+        Category::Events,
+    ];
+
+    /// The declared name.
+    pub fn name(self) -> &'static CStr {
+        match self {
+            Category::StatusError => c"logStatusError",
+            Category::StatusWarning => c"logStatusWarning",
+            Category::Solver => c"logSolver",
+            Category::Events => c"logEvents",
+        }
+    }
+
+    /// The category of this name.
+    ///
+    /// # Errors
+    /// [`Failure::UnknownCategory`].
+    pub fn named(name: &CStr) -> Result<Category, Failure> {
+        Category::ALL
+            .into_iter()
+            .find(|category| category.name() == name)
+            .ok_or_else(|| Failure::UnknownCategory {
+                name: name.to_string_lossy().into_owned(),
+            })
+    }
+
+    /// The category of the message on a failed call.
+    fn of(blame: Blame) -> Category {
+        match blame {
+            Blame::Unused | Blame::Value | Blame::PartOfStep => Category::StatusWarning,
+            Blame::Call | Blame::Library => Category::StatusError,
+        }
+    }
+
+    fn bit(self) -> u8 {
+        1 << self as u8
+    }
+}
+
+/// A message to the importer.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Message {
+    /// Who is to blame; `None` where nothing is wrong.
+    pub blame: Option<Blame>,
+    /// The category.
+    pub category: Category,
+    /// The text.
+    pub text: String,
+}
+
+/// The messages of a call, which wait for its end: the importer's logger may call back into the instance. And the categories
+/// that are on: from the start those of failed calls.
+pub struct Journal {
+    /// Whether anybody listens; if not, no text is put together.
+    heard: bool,
+    enabled: u8,
+    messages: Vec<Message>,
+}
+
+impl Journal {
+    /// A journal with all categories on, or only those of failed calls.
+    pub fn new(heard: bool, all: bool) -> Journal {
+        let mut journal = Journal {
+            heard,
+            enabled: Category::StatusError.bit() | Category::StatusWarning.bit(),
+            messages: Vec::new(),
+        };
+        if all {
+            journal.switch(true, &Category::ALL);
+        }
+        journal
+    }
+
+    /// Switches categories. Switched on, exactly the given ones are; switched off, the given ones are not. An empty list
+    /// stands for all.
+    pub fn switch(&mut self, on: bool, categories: &[Category]) {
+        let all = if categories.is_empty() {
+            &Category::ALL[..]
+        } else {
+            categories
+        };
+        let bits = all.iter().fold(0, |bits, category| bits | category.bit());
+        self.enabled = if on { bits } else { self.enabled & !bits };
+    }
+
+    /// Whether a message of this category would be written; if not, its text need not be put together.
+    pub fn hears(&self, category: Category) -> bool {
+        self.heard && self.enabled & category.bit() != 0
+    }
+
+    /// Tells why a call failed, where the category is on.
+    pub fn failure(&mut self, blame: Blame, text: impl FnOnce() -> String) {
+        let category = Category::of(blame);
+        if self.hears(category) {
+            self.messages.push(Message {
+                blame: Some(blame),
+                category,
+                text: text(),
+            });
+        }
+    }
+
+    /// Tells something else, where the category is on.
+    pub fn inform(&mut self, category: Category, text: String) {
+        if self.hears(category) {
+            self.messages.push(Message {
+                blame: None,
+                category,
+                text,
+            });
+        }
+    }
+
+    /// The messages that wait.
+    pub fn take(&mut self) -> Vec<Message> {
+        std::mem::take(&mut self.messages)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn categories(journal: &mut Journal) -> Vec<Category> {
+        for blame in [Blame::Call, Blame::Value] {
+            journal.failure(blame, String::new);
+        }
+        for category in [Category::Solver, Category::Events] {
+            journal.inform(category, String::new());
+        }
+        journal.take().into_iter().map(|message| message.category).collect()
+    }
+
+    #[test]
+    fn only_what_is_on_and_heard_is_written() {
+        let failures = [Category::StatusError, Category::StatusWarning];
+        assert_eq!(categories(&mut Journal::new(true, false)), failures);
+        assert_eq!(categories(&mut Journal::new(true, true)), Category::ALL);
+        assert_eq!(categories(&mut Journal::new(false, true)), []);
+        let mut journal = Journal::new(true, false);
+        journal.switch(true, &[Category::Solver]);
+        assert_eq!(categories(&mut journal), [Category::Solver]);
+        journal.switch(true, &[]);
+        journal.switch(false, &[Category::Solver]);
+        assert_eq!(
+            categories(&mut journal),
+            [Category::StatusError, Category::StatusWarning, Category::Events]
+        );
+        journal.switch(false, &[]);
+        assert_eq!(categories(&mut journal), []);
+    }
+}

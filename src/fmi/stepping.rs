@@ -1,0 +1,184 @@
+//! The step.
+
+use super::component::{Built, Component};
+use super::failures::Failure;
+use super::logging::Category;
+use super::modes::Mode;
+use crate::signals::Inputs;
+
+/// Room for rounding in times that a master adds up step by step: relative, some 10⁶ roundings.
+const TIME_TOLERANCE: f64 = 1e-9;
+
+impl Component {
+    /// Advances the instance from the communication point `current` by `size`, both in `s`.
+    ///
+    /// # Errors
+    /// [`Failure::StepSize`], [`Failure::CommunicationPoint`] or [`Failure::BeyondStop`] where the step cannot be;
+    /// [`Failure::Interrupted`] where it came only part of its way, [`Failure::Step`] where it could not be begun. The last
+    /// committed state stands.
+    pub fn do_step(&mut self, current: f64, size: f64) -> Result<(), Failure> {
+        let end = current + size;
+        if size.is_nan() || size <= 0.0 || !size.is_finite() {
+            return Err(Failure::StepSize { value: size });
+        }
+        let start = self.experiment.map_or(0.0, |experiment| experiment.start);
+        let room = TIME_TOLERANCE * self.time.abs().max(start.abs()).max(size);
+        // Not a number is not close either.
+        if !((current - self.time).abs() <= room && end.is_finite()) {
+            return Err(Failure::CommunicationPoint {
+                value: current,
+                expected: self.time,
+            });
+        }
+        if let Some(stop) = self.experiment.and_then(|experiment| experiment.stop)
+            && end > stop + TIME_TOLERANCE * stop.abs().max(start.abs()).max(size)
+        {
+            return Err(Failure::BeyondStop {
+                time: current,
+                size,
+                stop,
+            });
+        }
+        let (Some(Built { model, workspace }), Some(state)) = (&mut self.built, &mut self.state) else {
+            return Err(Failure::NothingComputed);
+        };
+        let outcome = model.step(workspace, state, &self.inputs, &self.rates, size);
+        self.profiles = None;
+        match outcome {
+            Ok(()) => {
+                self.time = end;
+                // Derivatives hold from the beginning of one step to its end.
+                self.rates = Inputs::ZERO;
+                self.inform_about_step();
+                Ok(())
+            }
+            Err(interrupted) if interrupted.committed > 0.0 => {
+                self.time = current + interrupted.committed;
+                self.rates = Inputs::ZERO;
+                self.mode = Mode::StepFailed;
+                let (reached, committed) = (self.time, interrupted.committed);
+                Err(Failure::Interrupted {
+                    reached,
+                    committed,
+                    error: interrupted.error,
+                })
+            }
+            Err(interrupted) => Err(Failure::Step {
+                time: self.time,
+                error: interrupted.error,
+            }),
+        }
+    }
+
+    fn inform_about_step(&mut self) {
+        self.inform(Category::Solver, |component| {
+            let convergence = match (&component.built, &component.state) {
+                (Some(built), Some(state)) => built.model.convergence(state),
+                _ => Default::default(),
+            };
+            let (iterations, residual) = (convergence.iterations, convergence.residual);
+            format!(
+                "t = {} s: {iterations} iterations, residual {residual:e}",
+                component.time
+            )
+        });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fmi::failures::Blame;
+    use crate::fmi::logging::Journal;
+    use crate::parameters::WheelHeating;
+    use crate::settings::Settings;
+    use crate::signals::Outputs;
+
+    fn initialize(component: &mut Component) {
+        component.parameters.contact_nodes = 25;
+        component.parameters.depth_nodes = 17;
+        component.parameters.wheel_heating = WheelHeating::On;
+        component.set_experiment(0.0, None).unwrap();
+        component.enter_initialization();
+        component.exit_initialization().unwrap();
+    }
+
+    fn limit(component: &mut Component, settings: Settings) {
+        component.built = Some(Built::new(&component.parameters, settings).unwrap());
+    }
+
+    fn outputs(component: &mut Component) -> Outputs {
+        component.solution().unwrap().outputs
+    }
+
+    /// A solver that gives up, by what its error says, and how its limit is set.
+    type Limit = (&'static str, fn(&mut Settings, usize));
+
+    const LIMITS: [Limit; 3] = [
+        ("thermo-mechanical operator split", |settings, limit| {
+            settings.split.iterations = limit;
+        }),
+        ("surface heat condition", |settings, limit| {
+            settings.heat.surface_newton_steps = limit;
+        }),
+        ("temperature of the wheel", |settings, limit| {
+            settings.heat.rim_iterations = limit;
+        }),
+    ];
+
+    /// A failure before anything was committed is an error, one after a committed sub-step leaves *stepFailed*. In both cases
+    /// the last committed state stands, and a saved state or a reset leads on.
+    #[test]
+    fn a_step_that_fails_leaves_the_last_committed_state() {
+        let mut component = Component::new("test", Journal::new(false, false));
+        let (mut at_once, mut after_a_part) = (0, 0);
+        for (words, set_limit) in LIMITS {
+            initialize(&mut component);
+            component.do_step(0.0, 1e-3).unwrap();
+            let before = outputs(&mut component);
+            let mut handle = std::ptr::null_mut();
+            component.get_state(&mut handle).unwrap();
+            // The jump of the creepage divides the step, so that some solver calls come after a committed sub-step.
+            component.inputs.creepage = 0.01;
+            component.do_step(1e-3, 2e-3).unwrap();
+            let undisturbed = outputs(&mut component);
+            for allowed in 0.. {
+                let mut settings = Settings::default();
+                settings.step.retries = 0;
+                set_limit(&mut settings, allowed);
+                limit(&mut component, settings);
+                component.set_state(handle).unwrap();
+                component.inputs.creepage = 0.01;
+                let Err(failure) = component.do_step(1e-3, 2e-3) else {
+                    assert_eq!(outputs(&mut component), undisturbed);
+                    break;
+                };
+                assert!(failure.to_string().contains(words), "{failure}");
+                component.fail(failure.blame());
+                match failure.blame() {
+                    Blame::Call => {
+                        at_once += 1;
+                        assert_eq!(component.mode(), Mode::Error);
+                        assert_eq!((component.time(), outputs(&mut component)), (1e-3, before));
+                    }
+                    Blame::PartOfStep => {
+                        after_a_part += 1;
+                        assert_eq!(component.mode(), Mode::StepFailed);
+                        assert!(
+                            component.time() > 1e-3 && component.time() < 3e-3,
+                            "{}",
+                            component.time()
+                        );
+                        assert_ne!(outputs(&mut component), before);
+                    }
+                    other => panic!("{other:?}"),
+                }
+            }
+            component.reset();
+            component.built = None;
+        }
+        assert!(at_once > 0 && after_a_part > 0, "{at_once} {after_a_part}");
+        initialize(&mut component);
+        component.do_step(0.0, 1e-3).unwrap();
+    }
+}

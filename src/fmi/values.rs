@@ -1,0 +1,131 @@
+//! Reading and setting the variables of an instance.
+
+use super::component::Component;
+use super::failures::Failure;
+use super::modes::Mode;
+use super::variables::{Integer, IntegerVariable, PROFILES, Real, RealVariable};
+use crate::parameters::{INTEGER_PARAMETERS, REAL_PARAMETERS};
+use crate::signals::{INPUTS, OUTPUTS};
+
+impl Component {
+    /// The value of a real variable. In *initializationMode* the contact is solved where an output asks for it.
+    ///
+    /// # Errors
+    /// [`Failure::NothingComputed`], or [`Failure::Model`] where there is no solution.
+    pub fn real(&mut self, variable: Real) -> Result<f64, Failure> {
+        Ok(match variable.variable {
+            RealVariable::Input(row) => (INPUTS[row].get)(&self.inputs),
+            RealVariable::Parameter(row) => (REAL_PARAMETERS[row].get)(&self.parameters)[variable.element],
+            RealVariable::Output(row) => (OUTPUTS[row].get)(&self.solution()?.outputs),
+            RealVariable::Profile(row) => {
+                let values = (PROFILES[row].values)(self.profiles()?);
+                *values.get(variable.element).ok_or(Failure::NothingComputed)?
+            }
+            RealVariable::Residual => {
+                let (built, state) = self.solved()?;
+                built.model.convergence(state).residual
+            }
+        })
+    }
+
+    /// The value of an integer variable.
+    ///
+    /// # Errors
+    /// As [`Component::real`].
+    pub fn integer(&mut self, variable: Integer) -> Result<i32, Failure> {
+        Ok(match variable.variable {
+            IntegerVariable::Parameter(row) => (INTEGER_PARAMETERS[row].get)(&self.parameters),
+            IntegerVariable::Iterations => {
+                let (built, state) = self.solved()?;
+                i32::try_from(built.model.convergence(state).iterations).unwrap_or(i32::MAX)
+            }
+        })
+    }
+
+    /// Sets real variables, all or none. Inputs are checked after all parameters are known: these narrow their ranges.
+    ///
+    /// # Errors
+    /// What the entries hold; [`Failure::NotSettable`], or [`Failure::Value`] for a value out of its range.
+    pub fn set_reals(
+        &mut self,
+        entries: impl Iterator<Item = Result<(Real, f64), Failure>> + Clone,
+    ) -> Result<(), Failure> {
+        let mut parameters = self.parameters.clone();
+        let mut inputs = self.inputs;
+        for entry in entries.clone() {
+            let (variable, value) = entry?;
+            match variable.variable {
+                RealVariable::Parameter(row) => {
+                    let row = &REAL_PARAMETERS[row];
+                    if self.mode == Mode::StepComplete && !row.tunable {
+                        return Err(self.not_settable(variable.name(), variable.reference));
+                    }
+                    row.check(variable.element, value).map_err(Failure::Value)?;
+                    (row.get_mut)(&mut parameters)[variable.element] = value;
+                }
+                RealVariable::Input(row) => (INPUTS[row].set)(&mut inputs, value),
+                _ => return Err(self.not_settable(variable.name(), variable.reference)),
+            }
+        }
+        for entry in entries {
+            let (variable, value) = entry?;
+            if let RealVariable::Input(row) = variable.variable {
+                INPUTS[row].check(value, &parameters).map_err(Failure::Value)?;
+            }
+        }
+        if inputs != self.inputs {
+            inputs.check_motion(&parameters).map_err(Failure::Value)?;
+        }
+        if self.mode == Mode::StepComplete {
+            if parameters != self.parameters {
+                self.prepare(&parameters).map_err(Failure::Value)?;
+            }
+        } else {
+            self.forget_solution();
+        }
+        self.parameters = parameters;
+        self.inputs = inputs;
+        Ok(())
+    }
+
+    /// Sets integer variables, all or none.
+    ///
+    /// # Errors
+    /// As [`Component::set_reals`].
+    pub fn set_integers(
+        &mut self,
+        entries: impl Iterator<Item = Result<(Integer, i32), Failure>>,
+    ) -> Result<(), Failure> {
+        let mut parameters = self.parameters.clone();
+        let mut any = false;
+        for entry in entries {
+            let (variable, value) = entry?;
+            match variable.variable {
+                IntegerVariable::Parameter(row) if self.mode != Mode::StepComplete => {
+                    let row = &INTEGER_PARAMETERS[row];
+                    row.check(value).map_err(Failure::Value)?;
+                    (row.set)(&mut parameters, value);
+                    any = true;
+                }
+                _ => return Err(self.not_settable(variable.name().to_owned(), variable.reference)),
+            }
+        }
+        if any {
+            self.forget_solution();
+        }
+        self.parameters = parameters;
+        Ok(())
+    }
+
+    fn not_settable(&self, name: String, reference: u32) -> Failure {
+        Failure::NotSettable {
+            name,
+            reference,
+            mode: self.mode,
+            settable: match self.mode {
+                Mode::StepComplete => "inputs and tunable parameters can be",
+                _ => "inputs and parameters can be",
+            },
+        }
+    }
+}

@@ -1,0 +1,323 @@
+//! The one table of variables: inputs, outputs, parameters and locals, in the order of a model description. An array is one
+//! variable; FMI 2.0, which has no arrays, lists its elements ([`crate::fmi2::variables`]).
+
+use crate::parameters::{INTEGER_PARAMETERS, REAL_PARAMETERS};
+use crate::signals::{INPUTS, OUTPUTS};
+use crate::wheel_rail::{DEPTH_POINTS, PROFILE_POINTS, Profiles};
+
+/// Number of a variable, or of an element of an array, in the calls of an importer. Each version of FMI gives its own.
+pub type ValueReference = u32;
+
+/// One plotted profile.
+pub struct ProfileColumn {
+    /// Name.
+    pub name: &'static str,
+    /// Unit.
+    pub unit: &'static str,
+    /// Unit in which a person would read the values.
+    pub display_unit: Option<&'static str>,
+    /// Typical magnitude.
+    pub nominal: f64,
+    /// One sentence.
+    pub description: &'static str,
+    /// Number of points.
+    pub points: usize,
+    /// Reads the points.
+    pub values: fn(&Profiles) -> &[f64],
+}
+
+/// The profiles.
+#[rustfmt::skip]
+pub const PROFILES: [ProfileColumn; 8] = [
+    ProfileColumn { name: "profile.x", unit: "m", display_unit: Some("mm"), nominal: 1e-2, points: PROFILE_POINTS,
+        description: "Position along the rail ahead of the axle", values: |p| &p.x },
+    ProfileColumn { name: "profile.pressure", unit: "Pa", display_unit: Some("MPa"), nominal: 1e9, points: PROFILE_POINTS,
+        description: "Contact pressure", values: |p| &p.pressure },
+    ProfileColumn { name: "profile.shear", unit: "Pa", display_unit: Some("MPa"), nominal: 1e8, points: PROFILE_POINTS,
+        description: "Shear traction on the rail", values: |p| &p.shear },
+    ProfileColumn { name: "profile.slip", unit: "m/s", display_unit: None, nominal: 1e-1, points: PROFILE_POINTS,
+        description: "Slip velocity of the rail relative to the wheel", values: |p| &p.slip },
+    ProfileColumn { name: "profile.temperature", unit: "K", display_unit: Some("degC"), nominal: 300.0, points: PROFILE_POINTS,
+        description: "Absolute temperature of the rail surface", values: |p| &p.temperature },
+    ProfileColumn { name: "profile.wear_depth", unit: "m", display_unit: Some("µm"), nominal: 1e-7, points: PROFILE_POINTS,
+        description: "Depth of wear of the rail surface", values: |p| &p.wear_depth },
+    ProfileColumn { name: "depth.z", unit: "m", display_unit: Some("mm"), nominal: 1e-3, points: DEPTH_POINTS,
+        description: "Depth below the hottest contact point", values: |p| &p.depth },
+    ProfileColumn { name: "depth.temperature", unit: "K", display_unit: Some("degC"), nominal: 300.0, points: DEPTH_POINTS,
+        description: "Absolute temperature below the hottest contact point", values: |p| &p.depth_temperature },
+];
+
+/// Who sets a variable.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Causality {
+    /// Set before the simulation, or during it where tunable.
+    Parameter,
+    /// Set by the importer at communication points.
+    Input,
+    /// Computed, to be connected.
+    Output,
+    /// Computed, to be looked at.
+    Local,
+}
+
+/// When a variable changes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Variability {
+    /// Never after the initialisation.
+    Fixed,
+    /// At communication points, by the importer.
+    Tunable,
+    /// At communication points.
+    Discrete,
+    /// At all times.
+    Continuous,
+}
+
+/// What belongs to a real number, or to an array of them.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RealKind {
+    /// Which one.
+    pub variable: RealVariable,
+    /// Number of elements of an array.
+    pub dimension: Option<usize>,
+    /// Unit.
+    pub unit: &'static str,
+    /// Unit in which a person would read the value.
+    pub display_unit: Option<&'static str>,
+    /// Smallest value.
+    pub minimum: Option<f64>,
+    /// Largest value.
+    pub maximum: Option<f64>,
+    /// Typical magnitude; none of a parameter, where it is that of the start value.
+    pub nominal: Option<f64>,
+    /// Start values of what is set from outside, one for each element; otherwise none.
+    pub start: &'static [f64],
+}
+
+/// Type of a variable and what belongs to it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Kind {
+    /// A real number, or an array of them.
+    Real(RealKind),
+    /// An integer.
+    Integer {
+        /// Which one.
+        variable: IntegerVariable,
+        /// Smallest value.
+        minimum: Option<i32>,
+        /// Largest value.
+        maximum: Option<i32>,
+        /// Start value of what is set from outside.
+        start: Option<i32>,
+    },
+}
+
+/// One row of the table.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Variable {
+    /// Name, by the structured naming convention; of an array without an index.
+    pub name: &'static str,
+    /// One sentence.
+    pub description: &'static str,
+    /// Who sets it.
+    pub causality: Causality,
+    /// When it changes.
+    pub variability: Variability,
+    /// Type, unit and range.
+    pub kind: Kind,
+}
+
+/// What a real variable stands for; rows are those of the tables of the model.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum RealVariable {
+    /// Row of [`INPUTS`].
+    Input(usize),
+    /// Row of [`OUTPUTS`].
+    Output(usize),
+    /// Row of [`REAL_PARAMETERS`].
+    Parameter(usize),
+    /// Row of [`PROFILES`].
+    Profile(usize),
+    /// `solver.residual`.
+    Residual,
+}
+
+/// What an integer variable stands for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum IntegerVariable {
+    /// Row of [`INTEGER_PARAMETERS`].
+    Parameter(usize),
+    /// `solver.iterations`.
+    Iterations,
+}
+
+/// A real variable, or an element of an array, as a call names it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Real {
+    /// Its value reference, for messages.
+    pub reference: ValueReference,
+    /// The variable.
+    pub variable: RealVariable,
+    /// The element; 0 where it is no array.
+    pub element: usize,
+}
+
+/// An integer variable, as a call names it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Integer {
+    /// Its value reference, for messages.
+    pub reference: ValueReference,
+    /// The variable.
+    pub variable: IntegerVariable,
+}
+
+impl Real {
+    /// Its name, with the index of an element counted from 1.
+    pub fn name(&self) -> String {
+        match self.variable {
+            RealVariable::Input(row) => INPUTS[row].name.to_owned(),
+            RealVariable::Output(row) => OUTPUTS[row].name.to_owned(),
+            RealVariable::Parameter(row) => REAL_PARAMETERS[row].elements[self.element].to_owned(),
+            RealVariable::Profile(row) => format!("{}[{}]", PROFILES[row].name, self.element + 1),
+            RealVariable::Residual => RESIDUAL.to_owned(),
+        }
+    }
+}
+
+impl Integer {
+    /// Its name.
+    pub fn name(&self) -> &'static str {
+        match self.variable {
+            IntegerVariable::Parameter(row) => INTEGER_PARAMETERS[row].name,
+            IntegerVariable::Iterations => ITERATIONS,
+        }
+    }
+}
+
+const RESIDUAL: &str = "solver.residual";
+const ITERATIONS: &str = "solver.iterations";
+
+/// The table.
+pub fn variables() -> Vec<Variable> {
+    let inputs = INPUTS.iter().enumerate().map(|(row, signal)| Variable {
+        name: signal.name,
+        description: signal.description,
+        causality: Causality::Input,
+        variability: Variability::Continuous,
+        kind: Kind::Real(RealKind {
+            variable: RealVariable::Input(row),
+            dimension: None,
+            unit: signal.unit,
+            display_unit: signal.display_unit,
+            minimum: Some(signal.minimum),
+            maximum: Some(signal.maximum),
+            nominal: Some(signal.nominal),
+            start: std::slice::from_ref(&signal.default),
+        }),
+    });
+    let outputs = OUTPUTS.iter().enumerate().map(|(row, signal)| Variable {
+        name: signal.name,
+        description: signal.description,
+        causality: Causality::Output,
+        variability: Variability::Continuous,
+        kind: Kind::Real(RealKind {
+            variable: RealVariable::Output(row),
+            dimension: None,
+            unit: signal.unit,
+            display_unit: signal.display_unit,
+            minimum: signal.minimum,
+            maximum: signal.maximum,
+            nominal: Some(signal.nominal),
+            start: &[],
+        }),
+    });
+    let integer_parameters = INTEGER_PARAMETERS.iter().enumerate().map(|(row, entry)| Variable {
+        name: entry.name,
+        description: entry.description,
+        causality: Causality::Parameter,
+        variability: Variability::Fixed,
+        kind: Kind::Integer {
+            variable: IntegerVariable::Parameter(row),
+            minimum: Some(entry.minimum),
+            maximum: Some(entry.maximum),
+            start: Some(entry.start),
+        },
+    });
+    let real_parameters = REAL_PARAMETERS.iter().enumerate().map(|(row, entry)| Variable {
+        name: entry.name,
+        description: entry.description,
+        causality: Causality::Parameter,
+        variability: if entry.tunable {
+            Variability::Tunable
+        } else {
+            Variability::Fixed
+        },
+        kind: Kind::Real(RealKind {
+            variable: RealVariable::Parameter(row),
+            dimension: entry.is_array.then_some(entry.elements.len()),
+            unit: entry.unit,
+            display_unit: entry.display_unit,
+            minimum: Some(entry.minimum),
+            maximum: Some(entry.maximum),
+            nominal: None,
+            start: entry.start,
+        }),
+    });
+    let profiles = PROFILES.iter().enumerate().map(|(row, column)| Variable {
+        name: column.name,
+        description: column.description,
+        causality: Causality::Local,
+        variability: Variability::Continuous,
+        kind: Kind::Real(RealKind {
+            variable: RealVariable::Profile(row),
+            dimension: Some(column.points),
+            unit: column.unit,
+            display_unit: column.display_unit,
+            minimum: None,
+            maximum: None,
+            nominal: Some(column.nominal),
+            start: &[],
+        }),
+    });
+    inputs
+        .chain(outputs)
+        .chain(integer_parameters)
+        .chain(real_parameters)
+        .chain(profiles)
+        .chain(solver())
+        .collect()
+}
+
+/// How the last step converged.
+fn solver() -> [Variable; 2] {
+    [
+        Variable {
+            name: RESIDUAL,
+            description: "Last relative change of the operator split in the last step",
+            causality: Causality::Local,
+            variability: Variability::Continuous,
+            kind: Kind::Real(RealKind {
+                variable: RealVariable::Residual,
+                dimension: None,
+                unit: "1",
+                display_unit: None,
+                minimum: Some(0.0),
+                maximum: None,
+                nominal: Some(1e-9),
+                start: &[],
+            }),
+        },
+        Variable {
+            name: ITERATIONS,
+            description: "Iterations of the operator split in the last step",
+            causality: Causality::Local,
+            variability: Variability::Discrete,
+            kind: Kind::Integer {
+                variable: IntegerVariable::Iterations,
+                minimum: Some(0),
+                maximum: None,
+                start: None,
+            },
+        },
+    ]
+}

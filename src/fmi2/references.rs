@@ -1,0 +1,144 @@
+//! Value references. One is 1000 × (number of the block) + (place in the block); an array takes as many places as it has
+//! elements. Blocks and places keep their numbers once released: new ones go to the end.
+
+use crate::fmi::failures::Failure;
+use crate::fmi::variables::{Integer, IntegerVariable, PROFILES, Real, RealVariable, ValueReference};
+use crate::parameters::{INTEGER_PARAMETERS, REAL_PARAMETERS};
+use crate::signals::{INPUTS, OUTPUTS};
+
+const BLOCK: u32 = 1000;
+const INPUT_BLOCK: u32 = 0;
+const OUTPUT_BLOCK: u32 = 1;
+const REAL_PARAMETER_BLOCK: u32 = 2;
+const INTEGER_PARAMETER_BLOCK: u32 = 3;
+/// One block for each profile.
+const FIRST_PROFILE_BLOCK: u32 = 4;
+const SOLVER_BLOCK: u32 = 12;
+
+const RESIDUAL: ValueReference = SOLVER_BLOCK * BLOCK;
+const ITERATIONS: ValueReference = SOLVER_BLOCK * BLOCK + 1;
+
+/// Number of real parameters, each element of an array counted.
+const REAL_PARAMETER_PLACES: usize = {
+    let (mut row, mut places) = (0, 0);
+    while row < REAL_PARAMETERS.len() {
+        places += REAL_PARAMETERS[row].start.len();
+        row += 1;
+    }
+    places
+};
+
+/// Row and element of the real parameters, by their place in the block.
+const REAL_PARAMETER_ELEMENTS: [(usize, usize); REAL_PARAMETER_PLACES] = {
+    let mut elements = [(0, 0); REAL_PARAMETER_PLACES];
+    let (mut row, mut place) = (0, 0);
+    while row < REAL_PARAMETERS.len() {
+        let mut element = 0;
+        while element < REAL_PARAMETERS[row].start.len() {
+            elements[place] = (row, element);
+            place += 1;
+            element += 1;
+        }
+        row += 1;
+    }
+    elements
+};
+
+/// The value reference of an element of a real variable.
+pub fn of_real(variable: RealVariable, element: usize) -> ValueReference {
+    match variable {
+        RealVariable::Input(row) => INPUT_BLOCK * BLOCK + row as u32,
+        RealVariable::Output(row) => OUTPUT_BLOCK * BLOCK + row as u32,
+        RealVariable::Parameter(row) => {
+            let before: usize = REAL_PARAMETERS[..row].iter().map(|entry| entry.start.len()).sum();
+            REAL_PARAMETER_BLOCK * BLOCK + (before + element) as u32
+        }
+        RealVariable::Profile(row) => (FIRST_PROFILE_BLOCK + row as u32) * BLOCK + element as u32,
+        RealVariable::Residual => RESIDUAL,
+    }
+}
+
+/// The value reference of an integer variable.
+pub fn of_integer(variable: IntegerVariable) -> ValueReference {
+    match variable {
+        IntegerVariable::Parameter(row) => INTEGER_PARAMETER_BLOCK * BLOCK + row as u32,
+        IntegerVariable::Iterations => ITERATIONS,
+    }
+}
+
+/// What a value reference of type Real stands for.
+///
+/// # Errors
+/// [`Failure::UnknownReference`].
+pub fn real(reference: ValueReference) -> Result<Real, Failure> {
+    let (block, place) = (reference / BLOCK, (reference % BLOCK) as usize);
+    let found = match block {
+        INPUT_BLOCK if place < INPUTS.len() => Some((RealVariable::Input(place), 0)),
+        OUTPUT_BLOCK if place < OUTPUTS.len() => Some((RealVariable::Output(place), 0)),
+        REAL_PARAMETER_BLOCK => REAL_PARAMETER_ELEMENTS
+            .get(place)
+            .map(|(row, element)| (RealVariable::Parameter(*row), *element)),
+        SOLVER_BLOCK if reference == RESIDUAL => Some((RealVariable::Residual, 0)),
+        FIRST_PROFILE_BLOCK.. => {
+            let row = (block - FIRST_PROFILE_BLOCK) as usize;
+            let points = PROFILES.get(row).map_or(0, |column| column.points);
+            (place < points).then_some((RealVariable::Profile(row), place))
+        }
+        _ => None,
+    };
+    let unknown = Failure::UnknownReference {
+        reference,
+        expected: "a Real variable",
+    };
+    found.ok_or(unknown).map(|(variable, element)| Real {
+        reference,
+        variable,
+        element,
+    })
+}
+
+/// What a value reference of type Integer stands for.
+///
+/// # Errors
+/// [`Failure::UnknownReference`].
+pub fn integer(reference: ValueReference) -> Result<Integer, Failure> {
+    let (block, row) = (reference / BLOCK, (reference % BLOCK) as usize);
+    let found = match block {
+        INTEGER_PARAMETER_BLOCK if row < INTEGER_PARAMETERS.len() => Some(IntegerVariable::Parameter(row)),
+        SOLVER_BLOCK if reference == ITERATIONS => Some(IntegerVariable::Iterations),
+        _ => None,
+    };
+    let unknown = Failure::UnknownReference {
+        reference,
+        expected: "an Integer variable",
+    };
+    found.ok_or(unknown).map(|variable| Integer { reference, variable })
+}
+
+/// The row of the input that a value reference stands for.
+///
+/// # Errors
+/// [`Failure::UnknownReference`].
+pub fn input(reference: ValueReference) -> Result<usize, Failure> {
+    match real(reference)?.variable {
+        RealVariable::Input(row) => Ok(row),
+        _ => Err(Failure::UnknownReference {
+            reference,
+            expected: "an input",
+        }),
+    }
+}
+
+/// The row of the output that a value reference stands for.
+///
+/// # Errors
+/// [`Failure::UnknownReference`].
+pub fn output(reference: ValueReference) -> Result<usize, Failure> {
+    match real(reference)?.variable {
+        RealVariable::Output(row) => Ok(row),
+        _ => Err(Failure::UnknownReference {
+            reference,
+            expected: "an output",
+        }),
+    }
+}
