@@ -114,7 +114,15 @@ mod tests {
     /// A solver that gives up, by what its error says, and how its limit is set.
     type Limit = (&'static str, fn(&mut Settings, usize));
 
-    const LIMITS: [Limit; 3] = [
+    const LIMITS: [Limit; 5] = [
+        ("normal contact solver (active set)", |settings, limit| {
+            settings.normal.exchanges = limit;
+            settings.normal.descents_per_node = 0;
+        }),
+        ("tangential Newton solver", |settings, limit| {
+            settings.tangential.newton_steps = limit;
+            settings.tangential.continuation = 0;
+        }),
         ("thermo-mechanical operator split", |settings, limit| {
             settings.split.iterations = limit;
         }),
