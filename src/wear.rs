@@ -113,5 +113,19 @@ mod tests {
                 prop_assert!((tangent[column] - difference).abs() < 1e-8, "{column}: {} {difference}", tangent[column]);
             }
         }
+
+    /// The march is a weighted mean: it creates no extremes and keeps what it is given.
+        #[test]
+    fn the_march_without_rate_keeps_within_its_bounds(
+        before in prop::collection::vec(0.0..1.0, 30),
+        speed in -20.0..20.0,
+        duration in 1e-5..1.0,
+    ) {
+        let x: Vec<f64> = (0..30).map(|i| 1e-3 * f64::from(i)).collect();
+        let mut after = vec![0.0; 30];
+        advance(&Upwind::new(&x, speed), duration, 0, &[], &before, &mut after);
+        let largest = before.iter().fold(0.0, |m: f64, w| w.max(m));
+        prop_assert!(after.iter().all(|&w| (0.0..=largest).contains(&w)));
+    }
     }
 }

@@ -1,6 +1,7 @@
 //! The stepped model: inputs in, state advanced, outputs out. It knows nothing of FMI.
 
 use crate::contact::line::fields::Fields;
+use crate::contact::line::profiles;
 use crate::contact::line::rail::Rail;
 use crate::contact::task::{Conditions, Task};
 use crate::contact::{ContactState, ContactWorkspace, Engine};
@@ -11,7 +12,7 @@ use crate::settings::Settings;
 use crate::signals::{Inputs, OUTPUTS, Outputs};
 use serde::{Deserialize, Serialize};
 
-pub use crate::contact::line::profiles::{DEPTH_POINTS, PROFILE_POINTS, Profiles};
+pub use crate::contact::line::profiles::{ContactNode, DEPTH_POINTS, PROFILE_POINTS, Profiles};
 pub use crate::contact::task::Convergence;
 
 /// Everything that does not change after initialisation: the contact engine, the parameters (but for the tunable ones), the
@@ -37,7 +38,7 @@ pub struct State {
     /// Length of the last committed sub-step, `s`; 0 before the first.
     pub duration: f64,
     /// Temperature, wear, tractions.
-    pub contact: ContactState,
+    pub(crate) contact: ContactState,
     /// Outputs at the last committed instant, totals included.
     pub outputs: Outputs,
     /// Rates of change of the outputs over the last committed sub-step, per second.
@@ -48,13 +49,8 @@ pub struct State {
 
 impl State {
     /// The fields of the line engine.
-    pub fn fields(&self) -> &Fields {
+    pub(crate) fn fields(&self) -> &Fields {
         &self.contact.line().fields
-    }
-
-    /// The fields of the line engine.
-    pub fn fields_mut(&mut self) -> &mut Fields {
-        &mut self.contact.line_mut().fields
     }
 }
 
@@ -97,8 +93,13 @@ impl Model {
         &self.parameters
     }
 
+    /// Sizes of the compressed map from temperature to displacement: moments a column, effects, gains.
+    pub fn thermal_map_size(&self) -> (usize, usize, usize) {
+        self.rail().heat.displacement.size()
+    }
+
     /// What the line engine has computed once: mesh, compliance, thermal maps.
-    pub fn rail(&self) -> &Rail {
+    pub(crate) fn rail(&self) -> &Rail {
         self.engine.line().rail()
     }
 
@@ -316,6 +317,11 @@ impl Model {
     /// How the last step converged.
     pub fn convergence(&self, state: &State) -> Convergence {
         state.convergence
+    }
+
+    /// The fields at the nodes of the contact window, from the rear to the front for V > 0.
+    pub fn contact_nodes(&self, state: &State) -> Vec<ContactNode> {
+        profiles::contact_nodes(self.rail(), state.fields())
     }
 
     /// Profiles for plotting.

@@ -51,13 +51,11 @@ fn difference(
     let h = 4e-4 * nominal;
     let (here, ahead, behind) = (run(0.0), run(h), run(-h));
     let (further_ahead, further_behind) = (run(2.0 * h), run(-2.0 * h));
-    let same_set = |a: &State, b: &State| {
-        a.fields()
-            .pressure
-            .iter()
-            .zip(&b.fields().pressure)
-            .all(|(a, b)| (*a > 0.0) == (*b > 0.0))
+    let in_contact = |state: &State| -> Vec<bool> {
+        let nodes = model.contact_nodes(state);
+        nodes.iter().map(|node| node.pressure > 0.0).collect()
     };
+    let same_set = |a: &State, b: &State| in_contact(a) == in_contact(b);
     let smooth_set = [&ahead, &behind, &further_ahead, &further_behind]
         .iter()
         .all(|state| same_set(&here, state));

@@ -87,7 +87,7 @@ impl Braking {
 
     /// Nodes under pressure.
     pub fn nodes_in_contact(&self) -> usize {
-        let pressure = &self.simulation.state.fields().pressure;
-        pressure.iter().filter(|&&p| p > 0.0).count()
+        let nodes = self.simulation.contact_nodes();
+        nodes.iter().filter(|node| node.pressure > 0.0).count()
     }
 }

@@ -31,7 +31,7 @@ mod schedule;
 use crate::error as model;
 use crate::parameters::Parameters;
 use crate::signals::{Inputs, Outputs};
-use crate::wheel_rail::{Model, Profiles, State, Workspace};
+use crate::wheel_rail::{ContactNode, Model, Profiles, State, Workspace};
 use std::sync::Arc;
 
 pub use error::{Error, Result};
@@ -45,21 +45,6 @@ pub struct Simulation {
     pub workspace: Workspace,
     /// Where it stands: time, inputs, outputs and fields.
     pub state: State,
-}
-
-/// The fields at one surface node of the contact window.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ContactNode {
-    /// x₁, `m`.
-    pub position: f64,
-    /// Pressure, `Pa`.
-    pub pressure: f64,
-    /// Shear traction on the rail, `Pa`.
-    pub shear: f64,
-    /// Slip velocity, `m/s`; 0 outside the contact.
-    pub slip: f64,
-    /// Temperature rise over the ambient, `K`.
-    pub temperature: f64,
 }
 
 impl Simulation {
@@ -156,17 +141,7 @@ impl Simulation {
 
     /// The fields at the nodes of the contact window, from the rear to the front for V > 0.
     pub fn contact_nodes(&self) -> Vec<ContactNode> {
-        let (mesh, scale) = (&self.model.rail().mesh, self.model.rail().scales.pressure);
-        let fields = self.state.fields();
-        (0..mesh.contact_nodes)
-            .map(|i| ContactNode {
-                position: mesh.contact_position(i),
-                pressure: fields.pressure[i] * scale,
-                shear: fields.shear[i] * scale,
-                slip: fields.slip[i],
-                temperature: fields.surface_temperature[mesh.contact_column(i)],
-            })
-            .collect()
+        self.model.contact_nodes(&self.state)
     }
 }
 

@@ -81,3 +81,32 @@ impl Profiles {
         }
     }
 }
+
+/// The fields at one surface node of the contact window.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ContactNode {
+    /// x₁, `m`.
+    pub position: f64,
+    /// Pressure, `Pa`.
+    pub pressure: f64,
+    /// Shear traction on the rail, `Pa`.
+    pub shear: f64,
+    /// Slip velocity, `m/s`; 0 outside the contact.
+    pub slip: f64,
+    /// Temperature rise over the ambient, `K`.
+    pub temperature: f64,
+}
+
+/// The fields at the nodes of the contact window, from the rear to the front for V > 0.
+pub fn contact_nodes(rail: &Rail, fields: &Fields) -> Vec<ContactNode> {
+    let (mesh, scale) = (&rail.mesh, rail.scales.pressure);
+    (0..mesh.contact_nodes)
+        .map(|i| ContactNode {
+            position: mesh.contact_position(i),
+            pressure: fields.pressure[i] * scale,
+            shear: fields.shear[i] * scale,
+            slip: fields.slip[i],
+            temperature: fields.surface_temperature[mesh.contact_column(i)],
+        })
+        .collect()
+}
