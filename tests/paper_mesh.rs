@@ -22,8 +22,8 @@ fn peak(run: &Run) -> f64 {
 #[test]
 fn the_papers_cases_run_on_its_mesh_by_its_method() {
     let constant = on_the_papers_mesh(None, 0.04, Control::Load).unwrap();
-    let mesh = &constant.model.rail().mesh;
-    assert_eq!((mesh.triangles().len(), mesh.columns(), mesh.rows()), (192, 13, 9));
+    // Of its 13 surface nodes nine lie in the contact window; the triangles are counted beside the mesh.
+    assert_eq!(constant.contact_nodes().len(), 9);
     // Five nodes in contact: right within a tenth, and in the right order.
     assert!((peak(&constant) / 94.9 - 1.0).abs() < 0.1, "{}", peak(&constant));
     let mut before = peak(&constant);
