@@ -3,7 +3,7 @@
 // Each benchmark uses a part of this.
 #![allow(dead_code)]
 
-#[path = "../../tests/common/mod.rs"]
+#[path = "../../tests/fmi2/importer.rs"]
 pub mod common;
 
 use common::{Api, Client, OK};

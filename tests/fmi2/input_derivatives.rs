@@ -1,0 +1,220 @@
+//! A moving load and a moving creepage: with fmi2SetRealInputDerivatives a step of 10 ms follows the inputs to order 2,
+//! without it holds them and lags behind to order 1. And fmi2GetRealOutputDerivatives against the outputs themselves.
+
+use super::importer::{Api, Client, OK, reference};
+use std::f64::consts::TAU;
+use wheelrail::parameters::Parameters;
+use wheelrail::signals::{Inputs, OUTPUTS, Outputs};
+use wheelrail::wheel_rail::Model;
+
+/// Where the comparison begins: the rail has warmed up, several passages of the contact after the start.
+const FIRST: f64 = 0.05;
+/// Where it ends.
+const LAST: f64 = 0.25;
+/// Spacing of the points that are compared, and the longest step.
+const POINT: f64 = 0.01;
+/// Steps in a point for the solution that all others are compared with.
+const CONVERGED: usize = 400;
+
+const COMPARED: [&str; 6] = [
+    "traction_force",
+    "friction_torque",
+    "peak_pressure",
+    "penetration",
+    "peak_temperature",
+    "friction_power",
+];
+
+/// Inputs and their rates: the load moves by a third at 2 Hz, the creepage between partial slip and sliding at 3 Hz.
+fn moving(time: f64) -> (Inputs, Inputs) {
+    let wave = |mean: f64, amplitude: f64, frequency: f64| {
+        let phase = TAU * frequency * time;
+        (
+            mean + amplitude * phase.sin(),
+            amplitude * TAU * frequency * phase.cos(),
+        )
+    };
+    let (load, load_rate) = wave(60e3, 20e3, 2.0);
+    let (creepage, creepage_rate) = wave(3e-3, 1e-3, 3.0);
+    (
+        Inputs {
+            normal_load: load,
+            creepage,
+            ..Inputs::default()
+        },
+        Inputs {
+            normal_load: load_rate,
+            creepage: creepage_rate,
+            ..Inputs::ZERO
+        },
+    )
+}
+
+/// The outputs and their rates at the compared points, natively, with `divisions` steps in each.
+fn native(model: &Model, divisions: usize, interpolated: bool) -> Vec<(Outputs, Outputs)> {
+    let mut workspace = model.workspace();
+    let mut state = model.initial_state(&mut workspace, &moving(0.0).0).unwrap();
+    let duration = POINT / divisions as f64;
+    let mut points = Vec::new();
+    for step in 0..(LAST / duration).round() as usize {
+        let (inputs, rates) = moving(step as f64 * duration);
+        let rates = if interpolated { rates } else { Inputs::ZERO };
+        model
+            .step(&mut workspace, &mut state, &inputs, &rates, duration)
+            .unwrap();
+        if (step + 1) % divisions == 0 {
+            points.push((state.outputs, model.output_rates(&state)));
+        }
+    }
+    points.split_off((FIRST / POINT).round() as usize)
+}
+
+/// The same through the interface, as bits.
+fn through_the_interface(interpolated: bool) -> Vec<Vec<u64>> {
+    let api = Api::load();
+    let client = Client::new(&api);
+    let set = |inputs: Inputs| client.set(&[("normal_load", inputs.normal_load), ("creepage", inputs.creepage)]);
+    client.expect(OK, client.setup(0.0, None));
+    client.expect(OK, client.enter());
+    client.expect(OK, set(moving(0.0).0));
+    client.expect(OK, client.exit());
+    let mut points = Vec::new();
+    for step in 0..(LAST / POINT).round() as usize {
+        let time = step as f64 * POINT;
+        let (inputs, rates) = moving(time);
+        client.expect(OK, set(inputs));
+        if interpolated {
+            client.expect(
+                OK,
+                client.set_rates(&[("normal_load", 1, rates.normal_load), ("creepage", 1, rates.creepage)]),
+            );
+        }
+        client.expect(OK, client.step(time, POINT));
+        points.push(client.outputs());
+    }
+    points.split_off((FIRST / POINT).round() as usize)
+}
+
+/// Reads a value of a point.
+type Read<'a> = &'a dyn Fn(&(Outputs, Outputs)) -> f64;
+
+/// Largest difference over the points, relative to the largest magnitude.
+fn error(read: Read, points: &[(Outputs, Outputs)], converged: &[(Outputs, Outputs)]) -> f64 {
+    let scale = converged.iter().fold(0.0, |m: f64, point| read(point).abs().max(m));
+    let differences = points.iter().zip(converged).map(|(a, b)| (read(a) - read(b)).abs());
+    differences.fold(0.0, f64::max) / scale
+}
+
+/// Observed order between steps of 10 ms and 2.5 ms.
+fn order(errors: [f64; 3]) -> f64 {
+    0.5 * (errors[0] / errors[2]).log2()
+}
+
+#[test]
+fn input_derivatives_bring_a_long_step_closer_to_the_converged_solution() {
+    let model = Model::new(Parameters::default()).unwrap();
+    let converged = native(&model, CONVERGED, true);
+    let [held, interpolated] =
+        [false, true].map(|interpolated| [1, 2, 4].map(|divisions| native(&model, divisions, interpolated)));
+    println!("| output | held, 10 ms | order | with derivatives, 10 ms | order |\n|---|---|---|---|---|");
+    for name in COMPARED {
+        let output = OUTPUTS.iter().find(|row| row.name == name).unwrap();
+        let errors =
+            |runs: &[Vec<_>; 3]| [0, 1, 2].map(|run| error(&|point| (output.get)(&point.0), &runs[run], &converged));
+        let (held, interpolated) = (errors(&held), errors(&interpolated));
+        println!(
+            "| {name} | {:.2e} | {:.2} | {:.2e} | {:.2} |",
+            held[0],
+            order(held),
+            interpolated[0],
+            order(interpolated)
+        );
+        assert!(interpolated[0] < 0.15 * held[0], "{name}");
+        assert!((order(held) - 1.0).abs() < 0.15, "{name}: {held:?}");
+        assert!((order(interpolated) - 2.0).abs() < 0.15, "{name}: {interpolated:?}");
+    }
+}
+
+/// What a master uses them for: outputs extrapolated over the next step of 10 ms miss it by less than held ones.
+#[test]
+fn output_derivatives_extrapolate_the_outputs() {
+    let model = Model::new(Parameters::default()).unwrap();
+    let points = native(&model, 1, true);
+    println!("| output | held over 10 ms | extrapolated over 10 ms |\n|---|---|---|");
+    for name in COMPARED {
+        let output = OUTPUTS.iter().find(|row| row.name == name).unwrap();
+        let next = &points[1..];
+        let predicted: Vec<_> = points
+            .iter()
+            .map(|(outputs, rates)| {
+                let mut later = *outputs;
+                (output.set)(&mut later, (output.get)(outputs) + (output.get)(rates) * POINT);
+                (later, *rates)
+            })
+            .collect();
+        let miss = |points: &[_]| error(&|point| (output.get)(&point.0), &points[..next.len()], next);
+        let (held, extrapolated) = (miss(&points), miss(&predicted));
+        println!("| {name} | {held:.2e} | {extrapolated:.2e} |");
+        assert!(extrapolated < 0.4 * held, "{name}: {extrapolated} {held}");
+    }
+}
+
+#[test]
+fn output_derivatives_are_differences_of_the_outputs() {
+    let api = Api::load();
+    let client = Client::running(&api, &[("creepage", 3e-3)]);
+    let references: Vec<u32> = OUTPUTS.iter().map(|row| reference(row.name)).collect();
+    let orders = vec![1; references.len()];
+    let read = || client.outputs().into_iter().map(f64::from_bits).collect::<Vec<_>>();
+    let mut before = read();
+    for step in 0..20 {
+        let time = f64::from(step) * 1e-3;
+        let (inputs, rates) = moving(time);
+        client.expect(OK, client.set(&[("normal_load", inputs.normal_load)]));
+        client.expect(OK, client.set_rates(&[("normal_load", 1, rates.normal_load)]));
+        client.expect(OK, client.step(time, 1e-3));
+        let after = read();
+        let mut derivatives = vec![f64::NAN; references.len()];
+        // SAFETY: as many elements as references.
+        let status = unsafe {
+            (api.get_output_derivatives)(
+                client.component,
+                references.as_ptr(),
+                references.len(),
+                orders.as_ptr(),
+                derivatives.as_mut_ptr(),
+            )
+        };
+        client.expect(OK, status);
+        for (row, derivative) in OUTPUTS.iter().zip(&derivatives) {
+            let column = references.iter().position(|r| *r == reference(row.name)).unwrap();
+            let difference = (after[column] - before[column]) / 1e-3;
+            // Round-off of the difference.
+            let tolerance = 1e-12 * (after[column].abs() + before[column].abs()) / 1e-3;
+            assert!(
+                (derivative - difference).abs() <= tolerance,
+                "{}: {derivative} {difference}",
+                row.name
+            );
+        }
+        before = after;
+    }
+}
+
+#[test]
+fn the_interface_gives_the_bits_of_the_model() {
+    let model = Model::new(Parameters::default()).unwrap();
+    for interpolated in [false, true] {
+        let bits = |outputs: &Outputs| {
+            OUTPUTS
+                .iter()
+                .map(|row| (row.get)(outputs).to_bits())
+                .collect::<Vec<_>>()
+        };
+        let points: Vec<_> = native(&model, 1, interpolated)
+            .iter()
+            .map(|point| bits(&point.0))
+            .collect();
+        assert_eq!(through_the_interface(interpolated), points);
+    }
+}

@@ -1,0 +1,843 @@
+//! Probes of the interface, one misuse each, by name. Each runs in a process of its own, so that a crash or a hang is reported
+//! under the probe's name and hides no other. The standard's own reference units fail at some of them: they hang on a step
+//! that is NaN or infinite, accept an initialisation without fmi2SetupExperiment, blank names, fixed parameters after the
+//! initialisation and noise as a state, and crash on null states.
+
+use super::importer::{Api, Client, DISCARD, ERROR, Handle, Journal, OK, WARNING, callbacks, guid, reference};
+use std::ffi::{CStr, CString, c_char, c_int};
+use std::process::{Command, Stdio};
+use std::ptr::{dangling_mut, null, null_mut};
+use std::time::{Duration, Instant};
+use wheelrail::fmi2::types::CallbackFunctions;
+
+/// Names the probe that a child process is to run.
+const CHILD: &str = "WHEELRAIL_PROBE";
+/// A probe takes some hundredths of a second; a machine may be loaded.
+const PATIENCE: Duration = Duration::from_secs(60);
+
+/// fmi2Error with a message; fmi2Reset leads on.
+#[track_caller]
+fn refuse(client: &Client, status: c_int) {
+    client.expect(ERROR, status);
+    assert!(client.last_message().starts_with("fmi2"));
+    client.expect(OK, client.reset());
+    client.expect(OK, client.set_integers(&[("contact_nodes", 25), ("depth_nodes", 17)]));
+    client.expect(OK, client.setup(0.0, None));
+    client.expect(OK, client.enter());
+    client.expect(OK, client.exit());
+    advance(client, 0.0);
+}
+
+/// fmi2Discard with a message; the instance goes on as it is.
+#[track_caller]
+fn discard(client: &Client, status: c_int) {
+    client.expect(DISCARD, status);
+    assert!(client.last_message().contains("allowed is"));
+    advance(client, 0.0);
+}
+
+/// A step, after which all outputs are finite.
+#[track_caller]
+fn advance(client: &Client, time: f64) {
+    client.expect(OK, client.step(time, 0.01));
+    assert!(
+        client
+            .outputs()
+            .into_iter()
+            .all(|bits| f64::from_bits(bits).is_finite())
+    );
+}
+
+/// *stepComplete*, with a wheel that slips.
+fn running(api: &Api) -> Client<'_> {
+    Client::running(api, &[("creepage", 0.004)])
+}
+
+/// Arguments of fmi2Instantiate; what is not given is right.
+struct Arguments<'a> {
+    name: *const c_char,
+    kind: c_int,
+    guid: Option<*const c_char>,
+    location: *const c_char,
+    callbacks: Option<&'a CallbackFunctions>,
+    logging: c_int,
+}
+
+const RIGHT: Arguments = Arguments {
+    name: c"probe".as_ptr(),
+    kind: 1,
+    guid: None,
+    location: c"file:///tmp".as_ptr(),
+    callbacks: None,
+    logging: 0,
+};
+
+/// Whether there is an instance, which is freed.
+fn instantiates(api: &Api, arguments: &Arguments) -> bool {
+    let (guid, journal) = (guid(), Journal::default());
+    let own = callbacks(&journal);
+    // SAFETY: null or valid pointers; the instance is freed once.
+    unsafe {
+        let component = (api.instantiate)(
+            arguments.name,
+            arguments.kind,
+            arguments.guid.unwrap_or(guid.as_ptr()),
+            arguments.location,
+            arguments.callbacks.unwrap_or(&own),
+            7,
+            arguments.logging,
+        );
+        (api.free_instance)(component);
+        !component.is_null()
+    }
+}
+
+/// A state that has been freed.
+fn freed(client: &Client) -> Handle {
+    let handle = client.save();
+    // SAFETY: a state of the instance.
+    client.expect(OK, unsafe {
+        (client.api.free_state)(client.component, &mut handle.clone())
+    });
+    handle
+}
+
+/// fmi2DeSerializeFMUstate; null must remain where nothing was made.
+fn deserialize(client: &Client, bytes: &[u8]) -> c_int {
+    let mut handle = null_mut();
+    let status = client.deserialize(bytes, &mut handle);
+    assert_eq!(status == OK, !handle.is_null());
+    status
+}
+
+fn derivative(client: &Client, unknown: u32, known: u32, direction: f64) -> c_int {
+    let (api, c) = (client.api, client.component);
+    // SAFETY: one element each.
+    unsafe { (api.directional_derivative)(c, &unknown, 1, &known, 1, &direction, &mut 0.0) }
+}
+
+fn output_rate(client: &Client, reference: u32, order: c_int) -> c_int {
+    // SAFETY: one element each.
+    unsafe { (client.api.get_output_derivatives)(client.component, &reference, 1, &order, &mut 0.0) }
+}
+
+/// The five status queries.
+fn statuses(client: &Client, kind: c_int) -> [c_int; 5] {
+    let (api, c) = (client.api, client.component);
+    // SAFETY: valid places.
+    unsafe {
+        [
+            (api.get_status)(c, kind, &mut 0),
+            (api.get_real_status)(c, kind, &mut 0.0),
+            (api.get_integer_status)(c, kind, &mut 0),
+            (api.get_boolean_status)(c, kind, &mut 0),
+            (api.get_string_status)(c, kind, &mut null()),
+        ]
+    }
+}
+
+/// Every function that takes an instance, called with a null pointer instead.
+fn without_instance(api: &Api) -> Vec<c_int> {
+    let (c, n) = (null_mut(), null());
+    // SAFETY: the library follows no pointer without an instance.
+    unsafe {
+        (api.free_instance)(c);
+        vec![
+            (api.set_debug_logging)(c, 1, 1, n),
+            (api.setup_experiment)(c, 0, 0.0, 0.0, 0, 0.0),
+            (api.enter_initialization)(c),
+            (api.exit_initialization)(c),
+            (api.terminate)(c),
+            (api.reset)(c),
+            (api.get_real)(c, null(), 1, null_mut()),
+            (api.get_integer)(c, null(), 1, null_mut()),
+            (api.get_boolean)(c, null(), 1, null_mut()),
+            (api.get_string)(c, null(), 1, null_mut()),
+            (api.set_real)(c, null(), 1, null()),
+            (api.set_integer)(c, null(), 1, null()),
+            (api.set_boolean)(c, null(), 1, null()),
+            (api.set_string)(c, null(), 1, null()),
+            (api.get_state)(c, null_mut()),
+            (api.set_state)(c, null_mut()),
+            (api.free_state)(c, null_mut()),
+            (api.serialized_size)(c, null_mut(), null_mut()),
+            (api.serialize)(c, null_mut(), null_mut(), 1),
+            (api.deserialize)(c, null(), 1, null_mut()),
+            (api.directional_derivative)(c, null(), 1, null(), 1, null(), null_mut()),
+            (api.set_input_derivatives)(c, null(), 1, null(), null()),
+            (api.get_output_derivatives)(c, null(), 1, null(), null_mut()),
+            (api.do_step)(c, 0.0, f64::NAN, 1),
+            (api.cancel_step)(c),
+            (api.get_status)(c, 0, null_mut()),
+            (api.get_real_status)(c, 2, null_mut()),
+            (api.get_integer_status)(c, 0, null_mut()),
+            (api.get_boolean_status)(c, 3, null_mut()),
+            (api.get_string_status)(c, 1, null_mut()),
+        ]
+    }
+}
+
+type Probe = fn(&Api);
+
+macro_rules! probes {
+    ($($name:literal: |$api:ident| $body:block)*) => {
+        const PROBES: &[(&str, Probe)] = &[$(($name, |$api: &Api| {
+            #[allow(unused_unsafe)]
+            // SAFETY: pointers are null, or valid for the counts beside them but where a count cannot be; states are never
+            // followed.
+            unsafe { $body }
+        })),*];
+    };
+}
+
+probes! {
+    // fmi2GetVersion, fmi2GetTypesPlatform
+    "the version is 2.0, without an instance": |api| { assert_eq!(CStr::from_ptr((api.version)()), c"2.0") }
+    "the types platform is default, without an instance": |api| {
+        assert_eq!(CStr::from_ptr((api.types_platform)()), c"default");
+    }
+
+    // fmi2Instantiate
+    "right arguments make an instance": |api| { assert!(instantiates(api, &RIGHT)) }
+    "a null name makes none": |api| { assert!(!instantiates(api, &Arguments { name: null(), ..RIGHT })) }
+    "an empty name makes none": |api| { assert!(!instantiates(api, &Arguments { name: c"".as_ptr(), ..RIGHT })) }
+    "a blank name makes none": |api| { assert!(!instantiates(api, &Arguments { name: c" \t\r\n".as_ptr(), ..RIGHT })) }
+    "a name of a million letters makes one": |api| {
+        let name = CString::new(vec![b'x'; 1_000_000]).unwrap();
+        assert!(instantiates(api, &Arguments { name: name.as_ptr(), ..RIGHT }));
+    }
+    "a name that is not UTF-8 makes one": |api| {
+        assert!(instantiates(api, &Arguments { name: c"\xff\xfe".as_ptr(), ..RIGHT }));
+    }
+    "a null GUID makes none": |api| { assert!(!instantiates(api, &Arguments { guid: Some(null()), ..RIGHT })) }
+    "an empty GUID makes none": |api| { assert!(!instantiates(api, &Arguments { guid: Some(c"".as_ptr()), ..RIGHT })) }
+    "a GUID with a letter more makes none": |api| {
+        let longer = CString::new([guid().as_bytes(), b"}"].concat()).unwrap();
+        assert!(!instantiates(api, &Arguments { guid: Some(longer.as_ptr()), ..RIGHT }));
+    }
+    "a GUID without braces makes none": |api| {
+        let inner = CString::new(guid().to_str().unwrap().trim_matches(['{', '}'])).unwrap();
+        assert!(!instantiates(api, &Arguments { guid: Some(inner.as_ptr()), ..RIGHT }));
+    }
+    "model exchange makes none": |api| { assert!(!instantiates(api, &Arguments { kind: 0, ..RIGHT })) }
+    "a type that the standard does not know makes none": |api| {
+        assert!(!instantiates(api, &Arguments { kind: c_int::MIN, ..RIGHT }));
+    }
+    "null callbacks make none": |api| {
+        let instance = (api.instantiate)(c"probe".as_ptr(), 1, guid().as_ptr(), null(), null(), 0, 1);
+        assert!(instance.is_null());
+    }
+    "callbacks that are all null make one": |api| {
+        let nothing = CallbackFunctions {
+            logger: None,
+            allocate_memory: None,
+            free_memory: None,
+            step_finished: None,
+            component_environment: null_mut(),
+        };
+        assert!(instantiates(api, &Arguments { callbacks: Some(&nothing), logging: 1, ..RIGHT }));
+        assert!(!instantiates(api, &Arguments { callbacks: Some(&nothing), logging: 1, name: null(), ..RIGHT }));
+    }
+    "a null resource location makes one": |api| { assert!(instantiates(api, &Arguments { location: null(), ..RIGHT })) }
+    "a resource location that is none makes one": |api| {
+        for location in [c"", c"%", c"%zz%f", c"file:", c"file://", c"\xff", c"http://a/b"] {
+            assert!(instantiates(api, &Arguments { location: location.as_ptr(), logging: 1, ..RIGHT }));
+        }
+    }
+    "booleans other than 0 and 1 are true": |api| { assert!(instantiates(api, &Arguments { logging: -7, ..RIGHT })) }
+    "a name with % and # is no format": |api| {
+        let journal = Journal::default();
+        let structure = callbacks(&journal);
+        assert!(!instantiates(api, &Arguments { guid: Some(c"%s%n#r1#".as_ptr()), callbacks: Some(&structure), ..RIGHT }));
+        let message = journal.take().pop().unwrap();
+        assert_eq!(message.format, "%s");
+        assert!(message.text.contains("%s%n##r1##"), "{message:?}");
+    }
+    "two instances may have one name": |api| {
+        let (first, second) = (running(api), running(api));
+        advance(&first, 0.0);
+        advance(&second, 0.0);
+        assert_eq!(first.outputs(), second.outputs());
+    }
+
+    // A null instance, fmi2FreeInstance
+    "no function crashes on a null instance": |api| {
+        assert_eq!(without_instance(api), [ERROR; 30]);
+    }
+    "an instance in error can be freed, with states": |api| {
+        let client = running(api);
+        client.save();
+        client.expect(ERROR, client.enter());
+        client.save();
+    }
+
+    // fmi2SetDebugLogging
+    "null log categories are refused": |api| {
+        let client = running(api);
+        refuse(&client, (api.set_debug_logging)(client.component, 1, 1, null()));
+    }
+    "a log category that is null is refused": |api| {
+        let client = running(api);
+        refuse(&client, (api.set_debug_logging)(client.component, 1, 1, [null()].as_ptr()));
+    }
+    "a log category that is not declared is refused": |api| {
+        let client = running(api);
+        refuse(&client, (api.set_debug_logging)(client.component, 1, 1, [c"logAll%n".as_ptr()].as_ptr()));
+    }
+    "no log categories need no pointer": |api| {
+        let client = running(api);
+        client.expect(OK, (api.set_debug_logging)(client.component, 1, 0, null()));
+    }
+
+    // fmi2SetupExperiment
+    "a start time that is NaN is refused": |api| {
+        let client = Client::new(api);
+        refuse(&client, client.setup(f64::NAN, None));
+    }
+    "a start time that is infinite is refused": |api| {
+        let client = Client::new(api);
+        refuse(&client, client.setup(f64::NEG_INFINITY, None));
+    }
+    "a stop time that is NaN is refused": |api| {
+        let client = Client::new(api);
+        refuse(&client, client.setup(0.0, Some(f64::NAN)));
+    }
+    "a stop time before the start time is refused": |api| {
+        let client = Client::new(api);
+        refuse(&client, client.setup(1.0, Some(0.5)));
+    }
+    "a tolerance that is NaN does no harm": |api| {
+        let client = Client::new(api);
+        client.expect(OK, (api.setup_experiment)(client.component, 1, f64::NAN, 0.0, 0, f64::NAN));
+        client.expect(OK, client.enter());
+        client.expect(OK, client.exit());
+        advance(&client, 0.0);
+    }
+    "a start time other than 0 is where the steps begin": |api| {
+        let client = Client::new(api);
+        client.expect(OK, client.setup(-1e3, Some(1e3)));
+        client.expect(OK, client.enter());
+        client.expect(OK, client.exit());
+        advance(&client, -1e3);
+    }
+    "an experiment is not set up twice over the initialisation": |api| {
+        let client = running(api);
+        refuse(&client, client.setup(0.0, None));
+    }
+
+    // fmi2EnterInitializationMode, fmi2ExitInitializationMode
+    "no initialisation without fmi2SetupExperiment": |api| {
+        let client = Client::new(api);
+        refuse(&client, client.enter());
+    }
+    "fmi2Reset forgets the experiment": |api| {
+        let client = Client::initializing(api);
+        client.expect(OK, client.reset());
+        refuse(&client, client.enter());
+    }
+    "the initialisation is not entered twice": |api| {
+        let client = Client::initializing(api);
+        refuse(&client, client.enter());
+    }
+    "the initialisation is not entered after a step": |api| {
+        let client = running(api);
+        advance(&client, 0.0);
+        refuse(&client, client.enter());
+    }
+    "the initialisation does not end before it begins": |api| {
+        let client = Client::new(api);
+        refuse(&client, client.exit());
+    }
+    "the initialisation does not end twice": |api| {
+        let client = running(api);
+        refuse(&client, client.exit());
+    }
+    "parameters that do not fit together end no initialisation": |api| {
+        let client = Client::initializing(api);
+        client.expect(OK, client.set(&[("friction_hot", 0.9)]));
+        refuse(&client, client.exit());
+    }
+
+    // fmi2GetXXX, fmi2SetXXX
+    "nothing is read before the initialisation": |api| {
+        let client = Client::new(api);
+        refuse(&client, client.get_references(&[reference("normal_load")], &mut [0.0]));
+    }
+    "an unknown Real is not read": |api| {
+        let client = running(api);
+        refuse(&client, client.get_references(&[u32::MAX], &mut [0.0]));
+    }
+    "an unknown Real among known ones is not read": |api| {
+        let client = running(api);
+        refuse(&client, client.get_references(&[reference("normal_load"), 999_999], &mut [0.0; 2]));
+    }
+    "an unknown Integer is not read": |api| {
+        let client = running(api);
+        refuse(&client, (api.get_integer)(client.component, &u32::MAX, 1, &mut 0));
+    }
+    "an unknown Boolean is not read": |api| {
+        let client = running(api);
+        refuse(&client, (api.get_boolean)(client.component, &0, 1, &mut 0));
+    }
+    "an unknown String is not read": |api| {
+        let client = running(api);
+        refuse(&client, (api.get_string)(client.component, &0, 1, &mut null()));
+    }
+    "an Integer is not read as a Real": |api| {
+        let client = running(api);
+        refuse(&client, client.get_references(&[reference("control")], &mut [0.0]));
+    }
+    "an unknown Real is not set": |api| {
+        let client = running(api);
+        refuse(&client, (api.set_real)(client.component, &u32::MAX, 1, &0.0));
+    }
+    "an unknown Integer is not set": |api| {
+        let client = Client::initializing(api);
+        refuse(&client, (api.set_integer)(client.component, &u32::MAX, 1, &0));
+    }
+    "an unknown Boolean is not set": |api| {
+        let client = running(api);
+        refuse(&client, (api.set_boolean)(client.component, &0, 1, &1));
+    }
+    "an unknown String is not set": |api| {
+        let client = running(api);
+        refuse(&client, (api.set_string)(client.component, &0, 1, &null()));
+    }
+    "null value references are not read": |api| {
+        let client = running(api);
+        refuse(&client, (api.get_real)(client.component, null(), 1, &mut 0.0));
+    }
+    "nothing is read to a null pointer": |api| {
+        let client = running(api);
+        refuse(&client, (api.get_real)(client.component, &reference("normal_load"), 1, null_mut()));
+    }
+    "null value references are not set": |api| {
+        let client = running(api);
+        refuse(&client, (api.set_real)(client.component, null(), 1, &0.0));
+    }
+    "nothing is set from a null pointer": |api| {
+        let client = running(api);
+        refuse(&client, (api.set_real)(client.component, &reference("normal_load"), 1, null()));
+    }
+    "more values than memory holds are not read": |api| {
+        let client = running(api);
+        refuse(&client, (api.get_real)(client.component, [0].as_ptr(), usize::MAX, [0.0].as_mut_ptr()));
+    }
+    "more values than memory holds are not set": |api| {
+        let client = running(api);
+        refuse(&client, (api.set_integer)(client.component, [0].as_ptr(), usize::MAX, [0].as_ptr()));
+    }
+    "no values need no pointers": |api| {
+        let client = running(api);
+        client.expect(OK, (api.get_real)(client.component, null(), 0, null_mut()));
+        client.expect(OK, (api.set_string)(client.component, null(), 0, null()));
+        advance(&client, 0.0);
+    }
+    "of a variable that is set twice the last value counts": |api| {
+        let client = running(api);
+        client.expect(OK, client.set(&[("normal_load", 3e4), ("normal_load", 4e4)]));
+        assert_eq!(client.get("normal_load"), 4e4);
+    }
+    "an output is not set": |api| {
+        let client = Client::initializing(api);
+        refuse(&client, client.set(&[("traction_force", 0.0)]));
+    }
+    "a local variable is not set": |api| {
+        let client = running(api);
+        refuse(&client, client.set(&[("profile.pressure[31]", 0.0)]));
+    }
+    "a fixed Real parameter is not set after the initialisation": |api| {
+        let client = running(api);
+        refuse(&client, client.set(&[("wheel_radius", 0.46)]));
+    }
+    "a fixed Integer parameter is not set after the initialisation": |api| {
+        let client = running(api);
+        refuse(&client, client.set_integers(&[("control", 1)]));
+    }
+    "a tunable parameter is set after the initialisation": |api| {
+        let client = running(api);
+        client.expect(OK, client.set(&[("friction_cold", 0.4)]));
+        advance(&client, 0.0);
+    }
+    "nothing is set after fmi2Terminate": |api| {
+        let client = running(api);
+        client.expect(OK, client.terminate());
+        refuse(&client, client.set(&[("normal_load", 5e4)]));
+    }
+    "an input that is NaN is discarded": |api| {
+        let client = running(api);
+        discard(&client, client.set(&[("normal_load", f64::NAN)]));
+    }
+    "an input that is infinite is discarded": |api| {
+        let client = running(api);
+        discard(&client, client.set(&[("wheel_speed", f64::INFINITY)]));
+    }
+    "an input beyond its range is discarded": |api| {
+        let client = running(api);
+        discard(&client, client.set(&[("creepage", f64::MAX)]));
+    }
+    "a parameter that is NaN is discarded": |api| {
+        let client = running(api);
+        discard(&client, client.set(&[("friction_cold", f64::NAN)]));
+    }
+    "an Integer beyond its range is discarded": |api| {
+        let client = Client::initializing(api);
+        client.expect(DISCARD, client.set_integers(&[("contact_nodes", c_int::MAX)]));
+        client.expect(OK, client.exit());
+        advance(&client, 0.0);
+    }
+    "of a vector with a value that cannot be nothing is set": |api| {
+        let client = running(api);
+        discard(&client, client.set(&[("normal_load", 1e4), ("creepage", f64::NAN)]));
+        assert_eq!(client.get("normal_load"), 6e4);
+    }
+    "subnormal inputs lead to finite outputs": |api| {
+        let client = running(api);
+        for name in ["creepage", "wheel_speed", "friction_scale", "normal_load"] {
+            client.expect(OK, client.set(&[(name, 5e-324)]));
+        }
+        advance(&client, 0.0);
+    }
+
+    // fmi2DoStep
+    "a step that is NaN is refused": |api| { let client = running(api); refuse(&client, client.step(0.0, f64::NAN)); }
+    "a step that is infinite is refused": |api| {
+        let client = running(api);
+        refuse(&client, client.step(0.0, f64::INFINITY));
+    }
+    "a step that is minus infinity is refused": |api| {
+        let client = running(api);
+        refuse(&client, client.step(0.0, f64::NEG_INFINITY));
+    }
+    "a step of 0 is refused": |api| { let client = running(api); refuse(&client, client.step(0.0, 0.0)); }
+    "a negative step is refused": |api| { let client = running(api); refuse(&client, client.step(0.0, -1e-3)); }
+    "a step of 1e300 s comes to an end": |api| {
+        let client = running(api);
+        client.expect(OK, client.step(0.0, 1e300));
+        assert!(client.outputs().into_iter().all(|bits| f64::from_bits(bits).is_finite()));
+    }
+    "a jump within a subnormal step leaves finite rates and a state that can be kept": |api| {
+        let client = running(api);
+        client.expect(OK, client.set(&[("creepage", -0.1), ("normal_load", 2e4)]));
+        client.expect(OK, client.step(0.0, 5e-324));
+        let mut rate = f64::NAN;
+        let force = reference("traction_force");
+        client.expect(OK, (api.get_output_derivatives)(client.component, &force, 1, &1, &mut rate));
+        assert!(rate.is_finite());
+        client.expect(OK, deserialize(&client, &client.serialize(client.save())));
+        advance(&client, 0.0);
+    }
+    "a communication point that is NaN is refused": |api| {
+        let client = running(api);
+        refuse(&client, client.step(f64::NAN, 0.01));
+    }
+    "a communication point that is infinite is refused": |api| {
+        let client = running(api);
+        refuse(&client, client.step(f64::INFINITY, 0.01));
+    }
+    "a communication point ahead is refused": |api| { let client = running(api); refuse(&client, client.step(0.5, 0.01)); }
+    "a communication point behind is refused": |api| {
+        let client = running(api);
+        advance(&client, 0.0);
+        refuse(&client, client.step(0.0, 0.01));
+    }
+    "a step beyond the stop time is refused": |api| {
+        let client = Client::new(api);
+        client.expect(OK, client.setup(0.0, Some(0.02)));
+        client.expect(OK, client.enter());
+        client.expect(OK, client.exit());
+        refuse(&client, client.step(0.0, 0.03));
+    }
+    "no step before the initialisation": |api| { let client = Client::new(api); refuse(&client, client.step(0.0, 0.01)); }
+    "no step during the initialisation": |api| {
+        let client = Client::initializing(api);
+        refuse(&client, client.step(0.0, 0.01));
+    }
+    "no step after fmi2Terminate": |api| {
+        let client = running(api);
+        client.expect(OK, client.terminate());
+        refuse(&client, client.step(0.0, 0.01));
+    }
+    "no step after an error": |api| {
+        let client = running(api);
+        client.expect(ERROR, client.enter());
+        refuse(&client, client.step(0.0, 0.01));
+    }
+
+    // fmi2GetFMUstate, fmi2SetFMUstate, fmi2FreeFMUstate
+    "nothing is saved to a null pointer": |api| {
+        let client = running(api);
+        refuse(&client, (api.get_state)(client.component, null_mut()));
+    }
+    "nothing is saved to a wild state": |api| {
+        let client = running(api);
+        refuse(&client, (api.get_state)(client.component, &mut dangling_mut::<u64>().cast()));
+    }
+    "a null state is not restored": |api| { let client = running(api); refuse(&client, client.restore(null_mut())); }
+    "a wild state is not restored": |api| {
+        let client = running(api);
+        refuse(&client, client.restore(usize::MAX as Handle));
+    }
+    "a state that was freed is not restored": |api| {
+        let client = running(api);
+        refuse(&client, client.restore(freed(&client)));
+    }
+    "another instance's state is not restored": |api| {
+        let (client, other) = (running(api), running(api));
+        refuse(&client, client.restore(other.save()));
+    }
+    "nothing is freed at a null pointer": |api| {
+        let client = running(api);
+        refuse(&client, (api.free_state)(client.component, null_mut()));
+    }
+    "a null state is freed without effect": |api| {
+        let client = running(api);
+        client.expect(OK, (api.free_state)(client.component, &mut null_mut()));
+        advance(&client, 0.0);
+    }
+    "a state is not freed twice": |api| {
+        let client = running(api);
+        refuse(&client, (api.free_state)(client.component, &mut freed(&client)));
+    }
+    "a wild state is not freed": |api| {
+        let client = running(api);
+        refuse(&client, (api.free_state)(client.component, &mut dangling_mut::<u64>().cast()));
+    }
+    "a state outlives error and reset": |api| {
+        let client = running(api);
+        let handle = client.save();
+        refuse(&client, client.enter());
+        client.expect(OK, client.restore(handle));
+        advance(&client, 0.0);
+    }
+
+    // fmi2SerializedFMUstateSize, fmi2SerializeFMUstate, fmi2DeSerializeFMUstate
+    "a null state has no size": |api| {
+        let client = running(api);
+        refuse(&client, (api.serialized_size)(client.component, null_mut(), &mut 0));
+    }
+    "a size has no place at a null pointer": |api| {
+        let client = running(api);
+        refuse(&client, (api.serialized_size)(client.component, client.save(), null_mut()));
+    }
+    "a null state is not serialized": |api| {
+        let client = running(api);
+        refuse(&client, (api.serialize)(client.component, null_mut(), [0].as_mut_ptr(), 1));
+    }
+    "nothing is serialized to a null pointer": |api| {
+        let client = running(api);
+        refuse(&client, (api.serialize)(client.component, client.save(), null_mut(), 1));
+    }
+    "nothing is serialized to a place that is too small": |api| {
+        let client = running(api);
+        refuse(&client, (api.serialize)(client.component, client.save(), [0].as_mut_ptr(), 1));
+    }
+    "null bytes are no state": |api| {
+        let client = running(api);
+        refuse(&client, (api.deserialize)(client.component, null(), 1, &mut null_mut()));
+    }
+    "bytes are not deserialized to a null pointer": |api| {
+        let client = running(api);
+        let bytes = client.serialize(client.save());
+        refuse(&client, (api.deserialize)(client.component, bytes.as_ptr().cast(), bytes.len(), null_mut()));
+    }
+    "no bytes are no state": |api| { let client = running(api); refuse(&client, deserialize(&client, &[])); }
+    "noise is no state": |api| {
+        let client = running(api);
+        let noise: Vec<u8> = (0..4000_u32).map(|k| (k.wrapping_mul(2_654_435_761) >> 24) as u8).collect();
+        refuse(&client, deserialize(&client, &noise));
+    }
+    "zeros as long as a state are no state": |api| {
+        let client = running(api);
+        let length = client.serialize(client.save()).len();
+        refuse(&client, deserialize(&client, &vec![0; length]));
+    }
+    "a state without its last byte is none": |api| {
+        let client = running(api);
+        let bytes = client.serialize(client.save());
+        refuse(&client, deserialize(&client, &bytes[..bytes.len() - 1]));
+    }
+    "a state with a byte more is none": |api| {
+        let client = running(api);
+        let bytes = client.serialize(client.save());
+        refuse(&client, deserialize(&client, &[&bytes[..], &[0]].concat()));
+    }
+    "a state with a bit flipped is none": |api| {
+        let client = running(api);
+        let mut bytes = client.serialize(client.save());
+        let middle = bytes.len() / 2;
+        bytes[middle] ^= 1;
+        refuse(&client, deserialize(&client, &bytes));
+    }
+    "a state of other fixed parameters is none": |api| {
+        let other = Client::running(api, &[("wheel_radius", 0.45)]);
+        let client = running(api);
+        refuse(&client, deserialize(&client, &other.serialize(other.save())));
+    }
+
+    // fmi2GetDirectionalDerivative
+    "there is no derivative of an input": |api| {
+        let client = running(api);
+        let input = reference("creepage");
+        refuse(&client, derivative(&client, input, input, 1.0));
+    }
+    "there is no derivative with respect to a parameter": |api| {
+        let client = running(api);
+        refuse(&client, derivative(&client, reference("traction_force"), reference("friction_cold"), 1.0));
+    }
+    "a direction that is NaN is refused": |api| {
+        let client = running(api);
+        refuse(&client, derivative(&client, reference("traction_force"), reference("creepage"), f64::NAN));
+    }
+    "a null direction is refused": |api| {
+        let client = running(api);
+        let (output, input) = (reference("traction_force"), reference("creepage"));
+        refuse(&client, (api.directional_derivative)(client.component, &output, 1, &input, 1, null(), &mut 0.0));
+    }
+    "there is no derivative before the initialisation": |api| {
+        let client = Client::new(api);
+        refuse(&client, derivative(&client, reference("traction_force"), reference("creepage"), 1.0));
+    }
+    "a derivative in no direction is 0": |api| {
+        let client = running(api);
+        let mut value = f64::NAN;
+        let output = reference("traction_force");
+        client.expect(OK, (api.directional_derivative)(client.component, &output, 1, null(), 0, null(), &mut value));
+        assert_eq!(value, 0.0);
+    }
+
+    // fmi2SetRealInputDerivatives, fmi2GetRealOutputDerivatives
+    "an input derivative of order 0 is refused": |api| {
+        let client = running(api);
+        refuse(&client, client.set_rates(&[("creepage", 0, 1.0)]));
+    }
+    "an input derivative of order 2 is warned of": |api| {
+        let client = running(api);
+        client.expect(WARNING, client.set_rates(&[("creepage", 2, 1.0)]));
+        advance(&client, 0.0);
+    }
+    "an input derivative that is NaN is discarded": |api| {
+        let client = running(api);
+        discard(&client, client.set_rates(&[("creepage", 1, f64::NAN)]));
+    }
+    "an input derivative that leads out of the range fails the step alone": |api| {
+        let client = running(api);
+        let handle = client.save();
+        client.expect(OK, client.set_rates(&[("normal_load", 1, 1e300)]));
+        client.expect(ERROR, client.step(0.0, 0.01));
+        client.expect(OK, client.restore(handle));
+        advance(&client, 0.0);
+    }
+    "an output has no input derivative": |api| {
+        let client = running(api);
+        refuse(&client, client.set_rates(&[("traction_force", 1, 1.0)]));
+    }
+    "null orders are refused": |api| {
+        let client = running(api);
+        refuse(&client, (api.set_input_derivatives)(client.component, &reference("creepage"), 1, null(), &0.0));
+    }
+    "an output derivative of order 0 is refused": |api| {
+        let client = running(api);
+        refuse(&client, output_rate(&client, reference("traction_force"), 0));
+    }
+    "an input has no output derivative": |api| {
+        let client = running(api);
+        refuse(&client, output_rate(&client, reference("creepage"), 1));
+    }
+    "there are no output derivatives during the initialisation": |api| {
+        let client = Client::initializing(api);
+        refuse(&client, output_rate(&client, reference("traction_force"), 1));
+    }
+
+    // fmi2CancelStep, fmi2GetStatus and relatives
+    "there is no step to cancel": |api| {
+        let client = running(api);
+        refuse(&client, (api.cancel_step)(client.component));
+    }
+    "unknown status kinds are discarded": |api| {
+        let client = running(api);
+        for kind in [c_int::MIN, -1, 4, c_int::MAX] {
+            assert_eq!(statuses(&client, kind), [DISCARD; 5]);
+        }
+        advance(&client, 0.0);
+    }
+    "no step is ever pending": |api| {
+        let client = running(api);
+        assert_eq!(statuses(&client, 0), [DISCARD; 5]);
+        assert_eq!(statuses(&client, 1), [DISCARD; 5]);
+    }
+    "the last successful time is that of the last step": |api| {
+        let client = running(api);
+        advance(&client, 0.0);
+        let mut time = f64::NAN;
+        client.expect(OK, (api.get_real_status)(client.component, 2, &mut time));
+        assert_eq!(time, 0.01);
+    }
+    "a status has no place at a null pointer": |api| {
+        let client = running(api);
+        refuse(&client, (api.get_real_status)(client.component, 2, null_mut()));
+    }
+    "there is no status before the first step is possible": |api| {
+        let client = Client::initializing(api);
+        refuse(&client, (api.get_real_status)(client.component, 2, &mut 0.0));
+    }
+
+    // fmi2Terminate, fmi2Reset
+    "nothing is terminated before the initialisation": |api| {
+        let client = Client::new(api);
+        refuse(&client, client.terminate());
+    }
+    "nothing is terminated twice": |api| {
+        let client = running(api);
+        client.expect(OK, client.terminate());
+        refuse(&client, client.terminate());
+    }
+    "fmi2Reset twice does no harm": |api| {
+        let client = running(api);
+        client.expect(OK, client.reset());
+        client.expect(OK, client.reset());
+        client.expect(OK, client.setup(0.0, None));
+        client.expect(OK, client.enter());
+        client.expect(OK, client.exit());
+        advance(&client, 0.0);
+    }
+}
+
+/// How a probe ended that did not pass.
+fn failure(name: &str) -> Option<String> {
+    let mut child = Command::new(std::env::current_exe().expect("a path"))
+        .args(["--exact", "probes::every_probe_passes", "--nocapture"])
+        .env(CHILD, name)
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("the child runs");
+    let start = Instant::now();
+    while child.try_wait().expect("the child's status").is_none() {
+        if start.elapsed() > PATIENCE {
+            child.kill().expect("the child ends");
+            return Some(format!("{name}: hangs"));
+        }
+        std::thread::sleep(Duration::from_millis(2));
+    }
+    let output = child.wait_with_output().expect("the child's output");
+    let message = String::from_utf8_lossy(&output.stderr);
+    // Were this test renamed, the child would run none and succeed.
+    let ran = String::from_utf8_lossy(&output.stdout).contains("1 passed");
+    (!output.status.success() || !ran).then(|| format!("{name}: {}: {message}", output.status))
+}
+
+#[test]
+fn every_probe_passes() {
+    if let Ok(name) = std::env::var(CHILD) {
+        let (_, probe) = PROBES.iter().find(|probe| probe.0 == name).expect("a probe");
+        return probe(&Api::load());
+    }
+    let mut names: Vec<&str> = PROBES.iter().map(|probe| probe.0).collect();
+    names.sort_unstable();
+    names.dedup();
+    assert_eq!(names.len(), PROBES.len(), "two probes have one name");
+    let failures: Vec<String> = PROBES.iter().filter_map(|(name, _)| failure(name)).collect();
+    println!("{} of {} probes passed", PROBES.len() - failures.len(), PROBES.len());
+    assert!(failures.is_empty(), "{}", failures.join("\n"));
+}

@@ -1,0 +1,102 @@
+//! The library is loaded and unloaded many times in one process, with an instance in between.
+
+use super::importer::{Api, Client, DISCARD, ERROR, OK, is_mapped, reference};
+use super::own_process::in_own_process;
+use std::fs::read_to_string;
+use std::ptr::null;
+use std::sync::Arc;
+use std::sync::mpsc::channel;
+
+fn resident_pages() -> usize {
+    let statm = read_to_string("/proc/self/statm").expect("statm");
+    statm.split(' ').nth(1).expect("resident").parse().expect("a number")
+}
+
+fn threads() -> usize {
+    std::fs::read_dir("/proc/self/task").expect("tasks").count()
+}
+
+/// Everything that an importer may do with an instance, in numbers of contact nodes that go different ways through the
+/// linear algebra.
+fn use_all(api: &Api, contact_nodes: i32) {
+    let client = Client::with_logging(api, true);
+    let (c, n) = (client.component, null());
+    client.expect(OK, client.set_integers(&[("contact_nodes", contact_nodes)]));
+    client.expect(OK, client.setup(0.0, None));
+    client.expect(OK, client.enter());
+    client.expect(OK, client.exit());
+    client.expect(OK, client.set(&[("creepage", 0.01)]));
+    client.expect(OK, client.set_rates(&[("normal_load", 1, 1e4)]));
+    client.expect(OK, client.step(0.0, 0.01));
+    let mut handle = client.save();
+    let bytes = client.serialize(handle);
+    client.expect(OK, client.restore(handle));
+    client.expect(OK, client.deserialize(&bytes, &mut handle));
+    let (force, creepage) = (reference("traction_force"), reference("creepage"));
+    // SAFETY: one element behind each pointer.
+    unsafe {
+        client.expect(OK, (api.set_debug_logging)(c, 1, 0, n));
+        client.expect(
+            OK,
+            (api.directional_derivative)(c, &force, 1, &creepage, 1, &1.0, &mut 0.0),
+        );
+        client.expect(OK, (api.get_output_derivatives)(c, &force, 1, &1, &mut 0.0));
+        client.expect(DISCARD, (api.get_status)(c, 0, &mut 0));
+        client.expect(OK, (api.free_state)(c, &mut handle));
+    }
+    client.expect(ERROR, client.step(0.0, f64::NAN));
+    client.expect(OK, client.reset());
+}
+
+#[test]
+fn a_hundred_loads_leave_nothing_behind() {
+    in_own_process("unload::a_hundred_loads_leave_nothing_behind", load_a_hundred_times);
+}
+
+fn load_a_hundred_times() {
+    let cycle = |contact_nodes: i32| {
+        let api = Api::load();
+        use_all(&api, contact_nodes);
+        assert!(is_mapped());
+        drop(api);
+        assert!(!is_mapped(), "the library is gone");
+    };
+    [121, 181].into_iter().for_each(cycle);
+    (0..10).for_each(|_| cycle(25));
+    let (pages, tasks) = (resident_pages(), threads());
+    (0..100).for_each(|_| cycle(25));
+    // 4 MiB of slack for the allocator; one leaked library or instance would be several hundred.
+    assert!(
+        resident_pages() < pages + 1024,
+        "{} pages before, {} after",
+        pages,
+        resident_pages()
+    );
+    assert_eq!(threads(), tasks, "the library has no threads");
+}
+
+/// A thread that has called the library ends after the library is gone: a destructor of a thread-local value would be called
+/// then, or have kept the library in memory.
+#[test]
+fn threads_outlive_the_library() {
+    in_own_process("unload::threads_outlive_the_library", outlive_the_library);
+}
+
+fn outlive_the_library() {
+    for contact_nodes in [25, 121] {
+        let api = Arc::new(Api::load());
+        let ((called, wait), (unloaded, go)) = (channel(), channel());
+        let shared = Arc::clone(&api);
+        let thread = std::thread::spawn(move || {
+            use_all(&shared, contact_nodes);
+            drop(shared);
+            called.send(()).expect("the test waits");
+            go.recv().expect("the test goes on");
+        });
+        wait.recv().expect("the thread has called");
+        drop(api);
+        assert!(!is_mapped(), "the library is gone, the thread is not");
+        unloaded.send(()).expect("the thread waits");
+        thread.join().expect("the thread ends");
+    }
+}
