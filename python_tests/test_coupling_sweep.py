@@ -76,7 +76,7 @@ def test_killed_sweep_goes_on(tmp_path):
     program = tmp_path / "program.py"
     program.write_text(PROGRAM)
     process = subprocess.Popen(
-        [sys.executable, program, examples, broken, "0.3"], stdout=subprocess.PIPE, text=True, start_new_session=True
+        [sys.executable, program, examples, broken, "1.0"], stdout=subprocess.PIPE, text=True, start_new_session=True
     )
     written = (line for line in process.stdout if line == "written\n")
     for _ in range(4):
