@@ -3,7 +3,8 @@
 #   make fmu     target/WheelRailContact.fmu
 #   make demo    the paper's cases and a braking manoeuvre through FMPy: results/
 #   make couplings  the component in vehicle models, masters and sweeps: results/, one page each in docs/couplings/
-#   make test    formatting, lints, documentation, all Rust tests, `wheelrail verify`, all Python tests
+#   make test    formatting, lints, order of the modules, documentation, all Rust tests, `wheelrail verify`, all Python tests
+#   make description  modelDescription/modelDescription.xml, after a change of a variable
 #   make docs    the generated tables and pictures of README.md and of the documentation
 #   make site    the documentation as a site: target/site/index.html
 #   make bench   run times: a step, a cold start, saving; against the number of contact nodes and the targets
@@ -25,35 +26,49 @@ export MPLBACKEND := Agg
 
 FMU := target/WheelRailContact.fmu
 WHEELRAIL := target/release/wheelrail
-# The shared library of a Linux FMU is linked against the symbols of glibc 2.17 (2012), by zig as the linker.
+# Everything is compiled once, in one profile for one target, and linked by zig against the symbols of glibc 2.17 (2012):
+# the library that the FMU takes along, the command line, and the tests. tools/cargo.py says how.
 PORTABLE := x86_64-unknown-linux-gnu
 GLIBC := 2.17
+CARGO := $(PY) tools/cargo.py --target $(PORTABLE) --glibc $(GLIBC)
+# Two things side by side, unless -j says how many.
+BESIDE = $(MAKE) --no-print-directory $(if $(findstring -j,$(MAKEFLAGS)),,-j2)
 
 say = @printf '\n\033[1m== %s\033[0m\n' '$(1)'
+# uv takes a fifth of pip's time; where it fails, pip may know better what mirror to ask.
+install = $(PY) -m uv pip install --quiet --python $(PY) -r $(1) \
+	|| $(PY) -m pip install --quiet --disable-pip-version-check -r $(1)
 
 COUPLINGS := longitudinal stiff multibody train sweep
 WHEELSET := target/Wheelset.fmu
 
-.PHONY: fmu demo test docs site bench clean lint rust-test verify python-test hosts library command couplings
-.PHONY: couplings-set-up couplings-docs sweep-scaling $(addprefix coupling-,$(COUPLINGS))
+.PHONY: fmu demo test docs site bench clean lint rust-test verify python-test hosts library command couplings packages
+.PHONY: pytest couplings-set-up couplings-docs sweep-scaling description $(addprefix coupling-,$(COUPLINGS))
 
 # ---- set-up -------------------------------------------------------------------------------------------------------
 
-$(VENV)/ready: requirements.txt
+# What cargo needs to link. The rest is installed while it compiles.
+$(VENV)/build: requirements-build.txt
 	$(call say,Python environment $(VENV))
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "Python 3.11 or newer is needed, this is " + sys.version)'
 	$(PYTHON) -m venv $(VENV)
-	$(PY) -m pip install --quiet --disable-pip-version-check -r requirements.txt
+	$(PY) -m pip install --quiet --disable-pip-version-check --no-compile -r requirements-build.txt
+	@touch $@
+
+$(VENV)/ready: requirements.txt $(VENV)/build
+	$(call say,Packages for the examples and the tests)
+	$(call install,requirements.txt)
 	@touch $@
 
 $(VENV)/couplings: requirements-couplings.txt $(VENV)/ready
 	$(call say,Packages for the couplings)
-	$(PY) -m pip install --quiet --disable-pip-version-check -r requirements-couplings.txt
+	$(call install,requirements-couplings.txt)
 	@touch $@
 
-$(VENV)/site: requirements-site.txt $(VENV)/ready
+# After those of the couplings: one environment takes one installation at a time.
+$(VENV)/site: requirements-site.txt $(VENV)/ready | $(VENV)/couplings
 	$(call say,Packages for the documentation site)
-	$(PY) -m pip install --quiet --disable-pip-version-check -r requirements-site.txt
+	$(call install,requirements-site.txt)
 	@touch $@
 
 # Hosts that need more than a Python package: each has a test that is skipped, with the reason, where this fails.
@@ -63,21 +78,26 @@ hosts: $(VENV)/ready
 
 # ---- the component ------------------------------------------------------------------------------------------------
 
-command:
-	$(call say,Command line $(WHEELRAIL))
-	cargo build --release --bin wheelrail
+# Both at once, so that the packages that they share are compiled once.
+library: $(VENV)/build
+	$(call say,Shared library and command line)
+	@$(CARGO) library
 
-library: $(VENV)/ready
-	$(call say,Shared library)
-	@$(PY) tools/build_library.py --target $(PORTABLE) --glibc $(GLIBC)
+command: library
 
-fmu: library command
+fmu: library
 	$(call say,$(FMU))
 	@$(WHEELRAIL) pack --library "$$(cat target/library.path)" --output $(FMU)
 
+# The description that is checked in; a test compares.
+description: command
+	$(WHEELRAIL) describe --xml > target/modelDescription.xml
+	mv target/modelDescription.xml modelDescription/modelDescription.xml
+
 # ---- what it does -------------------------------------------------------------------------------------------------
 
-demo: fmu
+demo:
+	+@$(BESIDE) fmu $(VENV)/ready
 	$(call say,The cases of the paper)
 	@$(PY) examples/paper_cases.py
 	$(call say,A braking manoeuvre)
@@ -90,7 +110,7 @@ demo: fmu
 $(WHEELSET): examples/wheelset.py $(VENV)/couplings
 	@$(PY) -m pythonfmu build -f examples/wheelset.py -d target
 
-couplings-set-up: fmu hosts $(VENV)/couplings $(WHEELSET)
+couplings-set-up: fmu hosts $(WHEELSET)
 
 couplings: $(addprefix coupling-,$(COUPLINGS))
 
@@ -108,39 +128,53 @@ sweep-scaling: couplings-set-up
 
 # ---- checks -------------------------------------------------------------------------------------------------------
 
-test: lint rust-test verify python-test
+# First what the checks need, compiled and downloaded side by side; then the checks, each with its output in one piece.
+test:
+	+@$(BESIDE) verify fmu packages
+	$(call say,Rust tests - Python tests - lints: each is printed as it ends)
+	+@$(BESIDE) --output-sync=target --keep-going rust-test pytest lint
 	$(call say,All checks passed)
+
+packages: couplings-set-up $(VENV)/site
 
 lint: $(VENV)/ready
 	$(call say,Formatting - lints - documentation)
 	cargo fmt --check
-	cargo clippy --quiet --all-targets -- -D warnings
-	RUSTDOCFLAGS='-D warnings' cargo doc --quiet --no-deps
+	$(PY) tools/layers.py
+	$(CARGO) clippy --quiet --all-targets -- -D warnings
+	RUSTDOCFLAGS='-D warnings' $(CARGO) doc --quiet --no-deps
 	$(VENV)/bin/ruff check .
 	$(VENV)/bin/ruff format --check .
 
-rust-test:
+rust-test: $(VENV)/build
 	$(call say,Rust tests)
-	cargo test --no-fail-fast
+	$(CARGO) test --no-fail-fast
 
+# target/verification.txt is what the tables of the documentation are made of and compared with.
 verify: command
 	$(call say,Verification against closed forms and the paper)
-	$(WHEELRAIL) verify
+	@rm -f target/verification.txt
+	$(WHEELRAIL) verify | tee target/verification.part
+	@mv target/verification.part target/verification.txt
 
-python-test: fmu hosts couplings-set-up $(VENV)/site
+python-test: fmu verify packages
+	@$(MAKE) --no-print-directory pytest
+
+# Alone it takes what is built for granted: rust-test, beside it, has locked the build folder.
+pytest:
 	$(call say,Python tests)
-	$(PY) -m pytest
+	$(PY) -m pytest --numprocesses 2 --dist loadfile
 
 # README's and the documentation page's generated tables, README's pictures and those of the verification; commit what
 # changes.
-docs: demo
+docs: demo verify
 	@$(PY) tools/update_docs.py
 	@$(PY) tools/verification_figures.py
 	@cp results/paper_temperature.png results/braking.png docs/
 	@cp results/verification/*.png docs/verification/
 
 # The site needs no network when it is read; warnings are errors.
-site: command $(VENV)/site
+site: verify $(VENV)/site
 	$(call say,Documentation)
 	@$(PY) tools/build_site.py
 

@@ -1,7 +1,11 @@
-"""Build the FMU's shared library and say where it lies, in target/library.path.
+"""Call cargo so that the library of the FMU, the command line and the tests share everything that is compiled.
 
-On x86-64 Linux the library is linked by zig against the symbols of an old glibc, so that it loads on every
+    tools/cargo.py library              the shared library and the command line
+    tools/cargo.py test --no-fail-fast  any other command of cargo, with its options
+
+On x86-64 Linux all is linked by zig against the symbols of an old glibc, so that the library loads on every
 distribution of the last ten years. Where that is not possible it is built for this machine alone, with a warning.
+`library` says where the library lies, in target/library.path, and puts the command line into target/release.
 """
 
 import argparse
@@ -15,7 +19,8 @@ from pathlib import Path
 
 REPOSITORY = Path(__file__).resolve().parent.parent
 TARGET = Path(os.environ.get("CARGO_TARGET_DIR", REPOSITORY / "target"))
-OPTIONS = ["--release", "--lib", "--no-default-features", "--features", "fmi"]
+# Commands that cargo-zigbuild has under other names than cargo.
+ZIG = {"build": "zigbuild"}
 
 
 def why_not_portable(target):
@@ -32,37 +37,60 @@ def why_not_portable(target):
     return None
 
 
-def library_name():
-    """What cargo calls the library on this platform."""
-    return {"win32": "wheelrail.dll", "darwin": "libwheelrail.dylib"}.get(sys.platform, "libwheelrail.so")
+def file_names():
+    """What cargo calls the library and the command on this platform."""
+    library = {"win32": "wheelrail.dll", "darwin": "libwheelrail.dylib"}.get(sys.platform, "libwheelrail.so")
+    return library, "wheelrail.exe" if sys.platform == "win32" else "wheelrail"
+
+
+def call(command, options, portable, target, glibc):
+    """Return cargo's exit status."""
+    flags = ["--release", "--locked", *(["--target", f"{target}.{glibc}"] if portable else [])]
+    line = ["cargo-zigbuild", ZIG.get(command, command)] if portable else ["cargo", command]
+    code = subprocess.run([*line, *flags, *options], cwd=REPOSITORY).returncode
+    if "--features" in options:
+        # cargo gives the library one name, whatever its features, and would take this one for that of the FMU.
+        for path in (TARGET / (target if portable else "") / "release").rglob(file_names()[0]):
+            path.unlink()
+    return code
+
+
+def library(portable, target, glibc):
+    """Build the library and the command line; return cargo's exit status."""
+    code = call("build", ["--lib", "--bin", "wheelrail"], portable, target, glibc)
+    if code == 0:
+        folder = TARGET / target / "release" if portable else TARGET / "release"
+        # Copies that no other build writes to; replaced, not written into: they may be in use.
+        built, command = TARGET / "library" / file_names()[0], TARGET / "release" / file_names()[1]
+        for copy in (built, command):
+            copy.parent.mkdir(parents=True, exist_ok=True)
+            part = copy.with_suffix(".part")
+            shutil.copy2(folder / copy.name, part)
+            part.replace(copy)
+        (TARGET / "library.path").write_text(f"{built}\n")
+        (TARGET / "library.portable").write_text(f"{portable}\n")
+        print(f"{built} ({built.stat().st_size / 1e6:.1f} MB)")
+    return code
 
 
 def main():
-    """Build the library one way or the other."""
+    """Choose the linker, call cargo."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--target", default="x86_64-unknown-linux-gnu", help="the portable build's target")
     parser.add_argument("--glibc", default="2.17", help="the oldest glibc that it should load on")
     parser.add_argument("--native", action="store_true", help="for this machine alone")
-    arguments = parser.parse_args()
+    parser.add_argument("command", help="`library`, or a command of cargo")
+    parser.add_argument("options", nargs=argparse.REMAINDER, help="of cargo")
+    given = parser.parse_args()
 
     # cargo finds cargo-zigbuild, and cargo-zigbuild finds zig, in this Python's environment.
     os.environ["PATH"] = os.pathsep.join([str(Path(sys.executable).parent), os.environ["PATH"]])
-    reason = "--native was given" if arguments.native else why_not_portable(arguments.target)
-    folder = TARGET / "release"
-    if reason is None:
-        command = ["cargo", "zigbuild", *OPTIONS, "--target", f"{arguments.target}.{arguments.glibc}"]
-        if subprocess.run(command, cwd=REPOSITORY).returncode == 0:
-            folder = TARGET / arguments.target / "release"
-        else:
-            reason = "cargo zigbuild failed, see above"
-    if reason is not None:
+    reason = "--native was given" if given.native else why_not_portable(given.target)
+    if reason is not None and given.command == "library":
         print(f"WARNING: not the portable build: {reason}.", file=sys.stderr)
         print("WARNING: this library loads only where the C library is as new as here.", file=sys.stderr)
-        subprocess.run(["cargo", "build", *OPTIONS], cwd=REPOSITORY, check=True)
-    library = folder / library_name()
-    (TARGET / "library.path").write_text(f"{library}\n")
-    (TARGET / "library.portable").write_text(f"{reason is None}\n")
-    print(f"{library} ({library.stat().st_size / 1e6:.1f} MB)")
+    where = (reason is None, given.target, given.glibc)
+    sys.exit(library(*where) if given.command == "library" else call(given.command, given.options, *where))
 
 
 if __name__ == "__main__":

@@ -57,8 +57,13 @@ def cofmupy():
     if ready.exists() and ready.stat().st_mtime >= COFMUPY_REQUIREMENTS.stat().st_mtime:
         return f"CoFmuPy is in {COFMUPY}"
     python = COFMUPY / "bin" / "python"
-    install = [python, "-m", "pip", "install", "--quiet", "--disable-pip-version-check", "--no-deps"]
-    done = run(sys.executable, "-m", "venv", COFMUPY) and run(*install, "-r", COFMUPY_REQUIREMENTS)
+    # It needs no installer of its own; uv takes a fifth of pip's time.
+    made = run(sys.executable, "-m", "venv", "--without-pip", COFMUPY)
+    options = ["--quiet", "--no-deps", "-r", COFMUPY_REQUIREMENTS]
+    done = made and (
+        run(sys.executable, "-m", "uv", "pip", "install", "--python", python, *options)
+        or run(sys.executable, "-m", "pip", "--python", python, "install", *options)
+    )
     if not done or not run(python, "-c", "import cofmupy"):
         shutil.rmtree(COFMUPY, ignore_errors=True)
         return "CoFmuPy cannot be installed: its test will be skipped"

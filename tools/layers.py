@@ -32,11 +32,10 @@ ONLY = {"numerics": {"numerics", "error"}}
 
 # Exceptions that are to go: (file, the file that it uses), and files beside the folders. One without need is an error.
 KNOWN_IMPORTS = {
-    ("body/compliance.rs", "body/elastic_wheel.rs"),
     ("fmi2/instance.rs", "fmi2/saving.rs"),
     ("parameters/table.rs", "parameters/validation.rs"),
 }
-KNOWN_FILES = {"injection", "description"}
+KNOWN_FILES = {"description"}
 
 
 def code(text):
