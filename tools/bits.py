@@ -2,8 +2,8 @@
 
 For a change that is to leave the results as they are: record the FMU built before it, record the one built after it,
 compare. The scenarios are the braking manoeuvre, the paper's cases, and fifty with random parameters and inputs (the
-same ones each time). Of each, all outputs at every step, and at its end the profiles, the derivatives of all outputs with
-respect to all inputs, and the serialized state.
+same ones each time). Of each, all outputs at every step, and at its end the profiles, the derivatives of all outputs
+with respect to all inputs, and the serialized state.
 """
 
 import argparse
@@ -25,6 +25,7 @@ class Component:
     """One instance, its variables by name."""
 
     def __init__(self, folder, description, parameters):
+        """Instantiate and set the parameters."""
         self.references = {variable.name: variable.valueReference for variable in description.modelVariables}
         self.integers = {variable.name for variable in description.modelVariables if variable.type == "Integer"}
         self.fmu = FMU2Slave(
@@ -40,15 +41,18 @@ class Component:
         self.time = 0.0
 
     def set(self, values):
+        """Set values by name."""
         for name, value in values.items():
             setter = self.fmu.setInteger if name in self.integers else self.fmu.setReal
             setter([self.references[name]], [value])
 
     def step(self, duration):
+        """Step, and remember the time."""
         self.fmu.doStep(currentCommunicationPoint=self.time, communicationStepSize=duration)
         self.time += duration
 
     def state(self):
+        """Return the serialized state."""
         handle = self.fmu.getFMUstate()
         serialized = self.fmu.serializeFMUstate(handle)
         self.fmu.freeFMUstate(handle)
@@ -181,7 +185,8 @@ def difference(one, other):
         return f"{np.count_nonzero(one != other)} bytes differ"
     scale = np.maximum(np.abs(one), np.abs(other)).max(axis=0)
     change = np.abs(one - other).max(axis=0)
-    return f"up to {np.max(np.divide(change, scale, out=np.zeros_like(change), where=scale > 0)):.1e} of the largest value"
+    relative = np.divide(change, scale, out=np.zeros_like(change), where=scale > 0)
+    return f"up to {np.max(relative):.1e} of the largest value"
 
 
 def compare(before, after):
