@@ -1,12 +1,11 @@
 //! How the stepped model behaves, natively: what it bears, what it refuses, and what must not depend on how it is driven.
 
 mod bad_input;
-mod difference;
 mod lift_off;
 mod paper_mesh;
 mod robustness;
 mod sensitivity;
 mod shared_model;
-mod solvers_agree;
 mod time_step;
+mod wear;
 mod wheel_heat;

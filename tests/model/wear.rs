@@ -1,5 +1,4 @@
-//! Archard wear (24): the volume worn is the wear depth on the rail and what it took out of the window, and each
-//! field of the contact has the sign that it must have.
+//! Archard wear (24): what a passage leaves behind, and what wear does to the contact.
 
 use wheelrail::parameters::{Parameters, SlipSource};
 use wheelrail::signals::Inputs;
