@@ -85,6 +85,8 @@ def main():
 
     # cargo finds cargo-zigbuild, and cargo-zigbuild finds zig, in this Python's environment.
     os.environ["PATH"] = os.pathsep.join([str(Path(sys.executable).parent), os.environ["PATH"]])
+    # cargo would look for make's jobserver, whose files Python does not hand on.
+    os.environ.pop("MAKEFLAGS", None)
     reason = "--native was given" if given.native else why_not_portable(given.target)
     if reason is not None and given.command == "library":
         print(f"WARNING: not the portable build: {reason}.", file=sys.stderr)
