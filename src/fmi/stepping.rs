@@ -146,8 +146,8 @@ mod tests {
             let before = outputs(&mut component);
             let mut handle = std::ptr::null_mut();
             component.get_state(&mut handle).unwrap();
-            // The jump of the creepage divides the step, so that some solver calls come after a committed sub-step.
-            component.inputs.creepage = 0.01;
+            // The ramp divides the step. Its end slides more than its beginning, and asks more of the solvers.
+            component.rates.creepage = 25.0;
             component.do_step(1e-3, 2e-3).unwrap();
             let undisturbed = outputs(&mut component);
             for allowed in 0.. {
@@ -156,7 +156,7 @@ mod tests {
                 set_limit(&mut settings, allowed);
                 limit(&mut component, settings);
                 component.set_state(handle).unwrap();
-                component.inputs.creepage = 0.01;
+                component.rates.creepage = 25.0;
                 let Err(failure) = component.do_step(1e-3, 2e-3) else {
                     assert_eq!(outputs(&mut component), undisturbed);
                     break;
