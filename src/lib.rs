@@ -87,7 +87,7 @@
 
 // What is public below without standing in the face is what tests and benchmarks reach into.
 mod body;
-pub mod contact;
+mod contact;
 pub mod error;
 #[cfg(feature = "fmi")]
 pub mod fmi;
@@ -101,10 +101,10 @@ pub mod parameters;
 pub mod settings;
 pub mod signals;
 pub mod simulation;
-pub mod transport;
+mod transport;
 #[cfg(feature = "verification")]
 pub mod verification;
-pub mod wear;
+mod wear;
 pub mod wheel_rail;
 
 pub use error::Error;

@@ -296,7 +296,7 @@ impl Model {
     }
 
     /// Derivatives of the outputs with respect to inputs at the communication point, from the linearised discrete equations
-    /// of the last sub-step ([`crate::contact::line::sensitivity`]): one entry for each of the given rows of [`crate::signals::INPUTS`].
+    /// of the last sub-step: one entry for each of the given rows of [`crate::signals::INPUTS`].
     ///
     /// Held fixed are temperature, wear and totals at the beginning of that sub-step and its length; after
     /// initialisation, where no time has passed yet, temperature and wear themselves.

@@ -142,7 +142,8 @@ impl ContactState {
         state
     }
 
-    /// The state of the line engine.
+    /// The state of the line engine, for tests that prepare one.
+    #[cfg(test)]
     pub fn line_mut(&mut self) -> &mut LineState {
         let ContactState::Line(state) = self;
         state

@@ -75,7 +75,7 @@ choices! {
     WheelHeating {
         /// The wheel stays at the ambient temperature: the paper's.
         Off,
-        /// The contact warms the wheel's rim ([`crate::contact::rim`]).
+        /// The contact warms the wheel's rim.
         On,
     }
 }

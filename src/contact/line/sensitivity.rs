@@ -21,7 +21,7 @@ use crate::mechanics::problem::{ProblemTangent, Tractions};
 use crate::numerics::anderson::Anderson;
 use crate::numerics::dense::{largest, largest_change};
 use crate::parameters::WheelHeating;
-use crate::signals::{INPUTS, Inputs, Motion, OUTPUTS, Outputs};
+use crate::signals::{INPUTS, Inputs, Motion, OUTPUTS, OutputKind, Outputs};
 use crate::wear;
 
 /// The linearised step.
@@ -284,14 +284,13 @@ impl<'a> Linearisation<'a> {
         };
         let (ahead, behind) = (moved(step), moved(-step));
         let mut derivative = Outputs::default();
-        for signal in OUTPUTS {
+        // What is counted is constant but for jumps.
+        for signal in OUTPUTS.iter().filter(|signal| signal.kind != OutputKind::Counted) {
             let difference = (signal.get)(&ahead) - (signal.get)(&behind);
             (signal.set)(&mut derivative, difference / (2.0 * step));
         }
         // It follows from the motion alone, whose tangent is exact.
         derivative.distance = direction.speed * conditions.duration;
-        // Counted in nodes: constant but for jumps.
-        derivative.stick_fraction = 0.0;
         if problem.constraint() == Constraint::Total(0.0) {
             derivative.penetration = 0.0;
         }
