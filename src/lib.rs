@@ -85,7 +85,6 @@
 //!
 //! `numerics` holds methods that know nothing of contact, `error` what can go wrong.
 
-// What is public below without standing in the face is what tests and benchmarks reach into.
 mod body;
 mod contact;
 pub mod error;

@@ -97,7 +97,7 @@ pub fn rolling_compliance(
 fn surface_displacement(mesh: &Mesh, fields: &Fields) -> DMatrix<f64> {
     let n = mesh.contact_nodes;
     let dof = |i: usize| 2 * mesh.node(mesh.contact_column(i % n), 0) + i / n;
-    // Reciprocity holds to round-off; the mean makes it exact.
+    // By reciprocity the two are equal but for round-off; their mean makes the matrix exactly symmetric.
     DMatrix::from_fn(2 * n, 2 * n, |i, j| 0.5 * (fields[(dof(i), j)] + fields[(dof(j), i)]))
 }
 

@@ -48,7 +48,8 @@ impl Mesh {
                 let first = FIRST_CELL * 40.0 / cells as f64;
                 Mesh::graded(half_width, n, length, outer, height, cells, first)
             }
-            // So coarse a rail is stiff, and the contact at a given penetration wide.
+            // Eight cells in depth make the strip too stiff: at a given penetration the load, and with it the contact, is larger
+            // than on a fine mesh, and needs a wider window.
             MeshKind::Paper => Mesh {
                 mean_diagonals: false,
                 ..Mesh::graded(1.5 * half_width, 9, length, 2, height, 8, 2.0 * FIRST_CELL)

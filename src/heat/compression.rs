@@ -83,7 +83,7 @@ impl Moments {
             .collect();
         let matters = |&moment: &usize| images.iter().any(|image| image.column(moment).amax() > tolerance);
         let used = (0..candidates).rev().find(matters).map_or(0, |last| last + 1);
-        // Padding has no weight and no gain.
+        // The moments are padded with zeros to a multiple of LANES.
         let padded = used.next_multiple_of(LANES);
         let pad = |matrix: DMatrix<f64>| matrix.resize_horizontally(used, 0.0).resize_horizontally(padded, 0.0);
         Moments {
@@ -226,7 +226,7 @@ pub fn pieces(mesh: &Mesh, moments: &Moments, tolerance: f64) -> Vec<Piece> {
         .map(|piece| piece.mirrored(columns, n, moments.images[0].ncols()))
         .collect();
     left.reverse();
-    // Its own mirror image: all nodes are next to it.
+    // The middle column is its own mirror image; it is one column, so all its gains are kept (all nodes count as near).
     let middle = (columns % 2 == 1).then(|| Piece::new(moments, half..half + 1, 0..n, tolerance));
     left.into_iter().chain(middle).chain(right).collect()
 }

@@ -97,7 +97,7 @@ impl HeatMarch<'_> {
             let old = &before[column.index * m..][..m];
             let contact = column.index.wrapping_sub(self.first_contact);
             let heating = exchange.get(contact).filter(|exchange| !exchange.is_open());
-            // Rail that has not been heated since it entered.
+            // Nothing heats this column and nothing warm is carried into it.
             if heating.is_none() && old[0] == 0.0 && upstream[0] == 0.0 {
                 own.fill(0.0);
                 after.surface[column.index] = 0.0;

@@ -126,12 +126,12 @@ impl ThermalMap {
     #[inline(always)]
     fn apply_kernel(&self, arithmetic: Arithmetic, amplitudes: &[f64], scratch: &mut [f64], displacement: &mut [f64]) {
         displacement.fill(0.0);
-        // Upstream, the rail has not been heated since it entered.
+        // Columns upstream of the contact hold no heat unless rail came in warm: their blocks are left out.
         let is_warm = |block: &&Block| {
             let columns = &amplitudes[block.columns.start * self.modes..block.columns.end * self.modes];
             columns.chunks_exact(self.modes).any(|column| column[0] != 0.0)
         };
-        // A rail that does not expand has no moments.
+        // Without thermal expansion there are no moments, and no displacement.
         let (Some(first), Some(last)) = (
             self.blocks.iter().position(|block| self.moments > 0 && is_warm(&block)),
             self.blocks.iter().rposition(|block| is_warm(&block)),
@@ -174,7 +174,7 @@ impl ThermalMap {
             .chunks_exact_mut(LANES)
             .zip(self.weights.chunks_exact(self.modes))
         {
-            // Even and odd modes apart: twice the sums that do not wait for each other.
+            // Even and odd modes have sums of their own, so that each addition waits for every other one only.
             let (mut even, mut odd) = ([0.0; LANES], [0.0; LANES]);
             for (amplitudes, weights) in column.chunks(2).zip(weights.chunks(2)) {
                 for lane in 0..LANES {
@@ -214,7 +214,7 @@ fn dot(arithmetic: Arithmetic, gains: &[f32], x: &[f64]) -> f64 {
             sums[lane] = arithmetic.multiply_add(f64::from(gains[lane]), x[lane], sums[lane]);
         }
     }
-    // Not in pairs: the compiler then takes registers of half the width.
+    // One after the other: summed in pairs, the compiler chose vector registers of half the width for the whole loop.
     sums.iter().sum()
 }
 

@@ -207,7 +207,7 @@ impl Tangential {
                     if fresh {
                         return Newton::Stalled(steps);
                     }
-                    // The step of an old matrix may point uphill: back, and factorise there.
+                    // The step of a matrix that was factorised elsewhere may raise the residual: go back, and factorise here.
                     self.change[..m].copy_from_slice(&self.before[..m]);
                     norm = self.update_residual(problem, regularisation, shear);
                     self.factored = false;

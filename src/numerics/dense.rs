@@ -114,12 +114,12 @@ fn add_columns(arithmetic: Arithmetic, columns: &[f64], x: &[f64], factor: f64, 
     arithmetic.add_quad([column(0), column(1), column(2), column(3)], x.map(|x| factor * x), out);
 }
 
-/// [`Arithmetic::add_multiple`] where no time is spent.
+/// [`Arithmetic::add_multiple`] without the run-time choice of instructions, for code outside the hot loops.
 pub fn add_multiple(x: &[f64], factor: f64, out: &mut [f64]) {
     Arithmetic::SEPARATE.add_multiple(x, factor, out);
 }
 
-/// [`Arithmetic::dot`] where no time is spent.
+/// [`Arithmetic::dot`] without the run-time choice of instructions, for code outside the hot loops.
 pub fn dot(x: &[f64], y: &[f64]) -> f64 {
     Arithmetic::SEPARATE.dot(x, y)
 }

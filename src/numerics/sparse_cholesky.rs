@@ -73,7 +73,7 @@ impl SparseCholesky {
                     let node = factor.supernode(node);
                     let (start, block) = (node.start(), node.val());
                     let columns = block.ncols();
-                    // Loads at a few nodes reach few of the supernodes.
+                    // A load at a few nodes leaves most rows zero; a supernode whose own rows are zero changes no others.
                     if rows[start..start + columns].iter().flatten().all(|value| *value == 0.0) {
                         continue;
                     }

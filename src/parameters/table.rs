@@ -165,7 +165,7 @@ macro_rules! count {
             maximum: $maximum,
             description: $description,
             get: |parameters| parameters.$field as i32,
-            // Negative counts do not pass `check`.
+            // `check` has refused negative counts.
             set: |parameters, value| parameters.$field = value.unsigned_abs() as usize,
         })
     };

@@ -135,7 +135,7 @@ fn flash_scale(parameters: &Parameters) -> f64 {
 
 /// Largest value of the integral over the contact.
 fn largest_flash_temperature(parameters: &Parameters) -> f64 {
-    // Ternary search: F has one crest.
+    // F rises to one maximum and falls again: ternary search.
     let (mut left, mut right) = (-1.0, 1.0);
     for _ in 0..100 {
         let third = (right - left) / 3.0;

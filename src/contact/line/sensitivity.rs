@@ -279,7 +279,7 @@ impl<'a> Linearisation<'a> {
             fields.add_multiple(step, tangent);
             let inputs = conditions.inputs.advanced(&direction.inputs, step);
             let problem = problem.under(inputs);
-            // The totals before the step are no function of the inputs: 0 does as well.
+            // The totals before the step do not depend on the inputs of the step, so that the derivative is the same from 0.
             readings(&problem, &fields).outputs_after(problem.parameters, &problem.conditions, &Outputs::default())
         };
         let (ahead, behind) = (moved(step), moved(-step));
