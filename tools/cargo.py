@@ -47,12 +47,7 @@ def call(command, options, portable, target, glibc):
     """Return cargo's exit status."""
     flags = ["--release", "--locked", *(["--target", f"{target}.{glibc}"] if portable else [])]
     line = ["cargo-zigbuild", ZIG.get(command, command)] if portable else ["cargo", command]
-    code = subprocess.run([*line, *flags, *options], cwd=REPOSITORY).returncode
-    if "--features" in options:
-        # cargo gives the library one name, whatever its features, and would take this one for that of the FMU.
-        for path in (TARGET / (target if portable else "") / "release").rglob(file_names()[0]):
-            path.unlink()
-    return code
+    return subprocess.run([*line, *flags, *options], cwd=REPOSITORY).returncode
 
 
 def library(portable, target, glibc):
@@ -86,7 +81,8 @@ def main():
     # cargo finds cargo-zigbuild, and cargo-zigbuild finds zig, in this Python's environment.
     os.environ["PATH"] = os.pathsep.join([str(Path(sys.executable).parent), os.environ["PATH"]])
     # cargo would look for make's jobserver, whose files Python does not hand on.
-    os.environ.pop("MAKEFLAGS", None)
+    for name in ("MAKEFLAGS", "MFLAGS", "CARGO_MAKEFLAGS"):
+        os.environ.pop(name, None)
     reason = "--native was given" if given.native else why_not_portable(given.target)
     if reason is not None and given.command == "library":
         print(f"WARNING: not the portable build: {reason}.", file=sys.stderr)
