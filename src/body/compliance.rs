@@ -11,7 +11,6 @@
 
 use crate::body::elasticity::{Elasticity, Fields};
 use crate::body::mesh::Mesh;
-use crate::numerics::dense;
 use crate::parameters::Parameters;
 use nalgebra::DMatrix;
 
@@ -101,48 +100,31 @@ fn surface_displacement(mesh: &Mesh, fields: &Fields) -> DMatrix<f64> {
     DMatrix::from_fn(2 * n, 2 * n, |i, j| 0.5 * (fields[(dof(i), j)] + fields[(dof(j), i)]))
 }
 
-/// Nodes whose rows of the fields are multiplied together: a block of all of them stays in the level-2 cache.
-const BLOCK: usize = 128;
-
-/// Zᵀ K₁ Z of the fields Z: 2n × 2n, symmetric, and mirrored fields give mirrored entries: of the four that are equal but
-/// for their sign one is computed.
+/// Zᵀ K₁ Z of the fields Z: 2n × 2n, symmetric.
 fn inertia_form(rail: &Elasticity, fields: &Fields) -> DMatrix<f64> {
     let n = fields.ncols() / 2;
+    // Mirrored fields give mirrored entries: only the images of the left half are computed.
     let half = n.div_ceil(2);
-    let mut image = vec![[0.0; 2 * BLOCK]; 2 * half];
-    let mut form: DMatrix<f64> = DMatrix::zeros(2 * n, 2 * n);
-    let nodes = fields.nrows() / 2;
-    for first in (0..nodes).step_by(BLOCK) {
-        let block = first..nodes.min(first + BLOCK);
-        for (field, image) in image.iter_mut().enumerate() {
-            let displacement = fields.col_as_slice(field / half * n + field % half);
-            for (node, image) in block.clone().zip(image.chunks_exact_mut(2)) {
-                image.fill(0.0);
-                for (other, value) in rail.inertia.row(node) {
-                    image[0] += value * displacement[2 * other];
-                    image[1] += value * displacement[2 * other + 1];
-                }
+    let left = |field: usize| field / half * n + field % half;
+    let mut image = Fields::zeros(fields.nrows(), 2 * half);
+    for field in 0..2 * half {
+        let displacement = fields.column(left(field));
+        for node in 0..fields.nrows() / 2 {
+            for (other, value) in rail.inertia.row(node) {
+                image[(2 * node, field)] += value * displacement[2 * other];
+                image[(2 * node + 1, field)] += value * displacement[2 * other + 1];
             }
         }
-        // With j the outer one of two contact nodes, on the left. By dot products of columns: faer's product does not look
-        // for the vector instructions of the machine without faer's feature `std`.
-        dense::vectorised(
-            #[inline(always)]
-            |arithmetic| {
-                for (field, image) in image.iter().enumerate() {
-                    let (direction, j) = (field / half, field % half);
-                    for i in (j..n - j).chain(n + j..2 * n - j) {
-                        let displacement = &fields.col_as_slice(i)[2 * block.start..2 * block.end];
-                        form[(i, direction * n + j)] += arithmetic.dot(displacement, &image[..displacement.len()]);
-                    }
-                }
-            },
-        );
     }
-    for (direction, j) in (0..2 * half).map(|field| (field / half, field % half)) {
+    let product = fields.transpose() * &image;
+    let mut form: DMatrix<f64> = DMatrix::zeros(2 * n, 2 * n);
+    for field in 0..2 * half {
+        let (direction, j) = (field / half, field % half);
+        // With j the outer one of two contact nodes: of the four entries that are equal but for their sign, one is taken.
         for (other, i) in (j..n - j).flat_map(|i| [(0, i), (1, i)]) {
-            let value = form[(other * n + i, direction * n + j)];
+            let value = product[(other * n + i, field)];
             let image = if direction == other { value } else { -value };
+            form[(other * n + i, direction * n + j)] = value;
             form[(direction * n + j, other * n + i)] = value;
             form[(other * n + n - 1 - i, direction * n + n - 1 - j)] = image;
             form[(direction * n + n - 1 - j, other * n + n - 1 - i)] = image;
@@ -161,7 +143,7 @@ pub fn thermal_displacement(mesh: &Mesh, rail: &Elasticity, fields: &Fields) -> 
         for i in 0..n.div_ceil(2) {
             let (left, right) = (direction * n + i, direction * n + n - 1 - i);
             let (own, rest) = map.as_mut_slice()[nodes * left..nodes * (right + 1)].split_at_mut(nodes);
-            for (node, displacement) in fields.col_as_slice(left).chunks_exact(2).enumerate() {
+            for (node, displacement) in fields.column(left).as_slice().chunks_exact(2).enumerate() {
                 for (heated, load) in rail.thermal_load.row(node) {
                     own[heated] += load.x * displacement[0] + load.y * displacement[1];
                 }

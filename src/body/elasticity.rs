@@ -6,13 +6,12 @@
 use crate::body::mesh::Mesh;
 use crate::error::{Error, Result};
 use crate::numerics::sparse_cholesky::{SparseCholesky, WIDTH};
-use faer::Mat;
 use faer::sparse::{SparseColMat, SymbolicSparseColMat};
-use nalgebra::Vector2;
+use nalgebra::{DMatrix, Vector2};
 use std::ops::AddAssign;
 
 /// Displacement fields, one to a column: entry `(2 * node + direction, field)` in `m` (0 along x₁, 1 along x₂).
-pub type Fields = Mat<f64>;
+pub type Fields = DMatrix<f64>;
 
 /// A sparse matrix between nodes (or unknowns), by rows.
 #[derive(Debug, Clone)]
@@ -158,10 +157,10 @@ impl Elasticity {
     /// Displacements under nodal loads, [N/m per metre of width]: `loads` and result are [`Fields`].
     #[cfg(any(test, feature = "verification"))]
     pub fn solve(&self, loads: &Fields) -> Fields {
-        let mut displacements = Mat::zeros(loads.nrows(), loads.ncols());
+        let mut displacements = Fields::zeros(loads.nrows(), loads.ncols());
         self.solve_each(
             loads.ncols(),
-            |field| loads.col_as_slice(field).iter().copied().enumerate(),
+            |field| (0..loads.nrows()).map(move |place| (place, loads[(place, field)])),
             |place, first, values| {
                 for (lane, value) in values.iter().enumerate() {
                     displacements[(place, first + lane)] = *value;
@@ -176,7 +175,7 @@ impl Elasticity {
     pub fn unit_load_fields(&self, mesh: &Mesh) -> Fields {
         let (n, rows) = (mesh.contact_nodes, mesh.rows());
         let half = n.div_ceil(2);
-        let mut fields = Mat::zeros(2 * mesh.nodes(), 2 * n);
+        let mut fields = Fields::zeros(2 * mesh.nodes(), 2 * n);
         self.solve_each(
             2 * half,
             |field| {
@@ -243,7 +242,7 @@ mod tests {
             let mesh = Mesh::new(&parameters);
             let body = Elasticity::new(&mesh, parameters.lame_lambda, parameters.shear_modulus, 0.0).unwrap();
             let fields = body.unit_load_fields(&mesh);
-            let mut loads = Mat::zeros(2 * mesh.nodes(), 2 * contact_nodes);
+            let mut loads = Fields::zeros(2 * mesh.nodes(), 2 * contact_nodes);
             for (i, column) in mesh.window().enumerate() {
                 let node = mesh.node(column, 0);
                 loads[(2 * node, i)] = 1.0;
@@ -251,7 +250,8 @@ mod tests {
             }
             let solved = body.solve(&loads);
             for field in 0..2 * contact_nodes {
-                let (mirrored, solved) = (fields.col_as_slice(field), solved.col_as_slice(field));
+                let (mirrored, solved) = (fields.column(field), solved.column(field));
+                let (mirrored, solved) = (mirrored.as_slice(), solved.as_slice());
                 let size = crate::numerics::dense::largest(solved);
                 // Round-off times the condition of a strip of some thousand nodes.
                 assert!(

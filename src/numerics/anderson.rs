@@ -5,6 +5,7 @@
 //! iterations to rest that diverge in a few directions.
 
 use crate::numerics::dense;
+use nalgebra::{SMatrix, SVector};
 
 /// Differences that are kept.
 const DEPTH: usize = 8;
@@ -23,8 +24,6 @@ pub struct Anderson {
     /// ΔF and ΔG, difference by difference, DEPTH × size.
     residual_changes: Vec<f64>,
     image_changes: Vec<f64>,
-    gram: [f64; DEPTH * DEPTH],
-    weights: [f64; DEPTH],
 }
 
 impl Anderson {
@@ -39,8 +38,6 @@ impl Anderson {
             residual: vec![0.0; size],
             residual_changes: vec![0.0; DEPTH * size],
             image_changes: vec![0.0; DEPTH * size],
-            gram: [0.0; DEPTH * DEPTH],
-            weights: [0.0; DEPTH],
         }
     }
 
@@ -78,18 +75,21 @@ impl Anderson {
 
         let k = self.stored;
         let change = |j: usize| &self.residual_changes[j * size..(j + 1) * size];
+        // Differences that are not stored yet have a row of the identity and no weight.
+        let mut gram = SMatrix::<f64, DEPTH, DEPTH>::identity();
+        let mut weights = SVector::<f64, DEPTH>::zeros();
         for j in 0..k {
             for i in j..k {
-                self.gram[j * k + i] = dense::dot(change(i), change(j));
+                gram[(i, j)] = dense::dot(change(i), change(j));
             }
-            self.gram[j * k + j] *= 1.0 + RIDGE;
-            self.weights[j] = dense::dot(change(j), &self.residual);
+            gram[(j, j)] *= 1.0 + RIDGE;
+            weights[j] = dense::dot(change(j), &self.residual);
         }
-        if k == 0 || !dense::cholesky(&mut self.gram[..k * k], k) {
+        let Some(cholesky) = gram.cholesky() else {
             return;
-        }
-        dense::cholesky_solve(&self.gram[..k * k], k, &mut self.weights[..k]);
-        for (j, weight) in self.weights[..k].iter().enumerate() {
+        };
+        cholesky.solve_mut(&mut weights);
+        for (j, weight) in weights.iter().take(k).enumerate() {
             dense::add_multiple(&self.image_changes[j * size..(j + 1) * size], -weight, image);
         }
     }

@@ -134,59 +134,6 @@ pub fn largest_change(now: &[f64], last: &[f64]) -> f64 {
     now.iter().zip(last).fold(0.0, |m: f64, (a, b)| (a - b).abs().max(m))
 }
 
-/// Cholesky factor L of a symmetric positive definite n × n matrix whose lower triangle is in `a`; L replaces it.
-/// False where the matrix is not positive definite.
-pub fn cholesky(a: &mut [f64], n: usize) -> bool {
-    vectorised(
-        #[inline(always)]
-        |arithmetic| cholesky_kernel(arithmetic, a, n),
-    )
-}
-
-#[inline(always)]
-fn cholesky_kernel(arithmetic: Arithmetic, a: &mut [f64], n: usize) -> bool {
-    for j in 0..n {
-        // Left-looking by columns: the inner loop runs down a contiguous column.
-        for k in 0..j {
-            let factor = a[k * n + j];
-            let (left, right) = a.split_at_mut(j * n);
-            let source = &left[k * n + j..k * n + n];
-            arithmetic.add_multiple(source, -factor, &mut right[j..n]);
-        }
-        let pivot = a[j * n + j];
-        if pivot.is_nan() || pivot <= 0.0 {
-            return false;
-        }
-        let scale = 1.0 / pivot.sqrt();
-        for value in &mut a[j * n + j..j * n + n] {
-            *value *= scale;
-        }
-    }
-    true
-}
-
-/// Solves L Lᵀ x = b in place.
-pub fn cholesky_solve(l: &[f64], n: usize, b: &mut [f64]) {
-    vectorised(
-        #[inline(always)]
-        |arithmetic| cholesky_solve_kernel(arithmetic, l, n, b),
-    )
-}
-
-#[inline(always)]
-fn cholesky_solve_kernel(arithmetic: Arithmetic, l: &[f64], n: usize, b: &mut [f64]) {
-    for j in 0..n {
-        let column = &l[j * n + j..j * n + n];
-        let (head, tail) = b[j..n].split_at_mut(1);
-        head[0] /= column[0];
-        arithmetic.add_multiple(&column[1..], -head[0], tail);
-    }
-    for j in (0..n).rev() {
-        let column = &l[j * n + j..j * n + n];
-        b[j] = (b[j] - arithmetic.dot(&column[1..], &b[j + 1..n])) / column[0];
-    }
-}
-
 /// `out = A x` for the n × n matrix in `a`, skipping where `x` is zero.
 pub fn multiply(a: &[f64], n: usize, x: &[f64], out: &mut [f64]) {
     vectorised(
@@ -330,14 +277,6 @@ mod tests {
         fn factorisations_solve(entries in prop::collection::vec(-1.0..1.0, 144), b in prop::collection::vec(-1.0..1.0, 12)) {
             let n = 12;
             let a: DMatrix<f64> = DMatrix::from_vec(n, n, entries);
-            let spd: DMatrix<f64> = &a * a.transpose() + DMatrix::identity(n, n);
-            let mut factor = spd.as_slice().to_vec();
-            prop_assert!(cholesky(&mut factor, n));
-            let mut x = b.clone();
-            cholesky_solve(&factor, n, &mut x);
-            // Condition number at most 1 + ‖A‖² ≤ 145.
-            prop_assert!(residual(&spd, &x, &b) < 1e-12);
-
             let general: DMatrix<f64> = a + DMatrix::identity(n, n) * 4.0;
             let mut factor = general.as_slice().to_vec();
             let mut pivots = vec![0; n];
@@ -351,9 +290,8 @@ mod tests {
     }
 
     #[test]
-    fn indefinite_and_singular_matrices_are_reported() {
-        assert!(!cholesky(&mut [1.0, 2.0, 2.0, 1.0], 2));
-        assert!(!cholesky(&mut [f64::NAN], 1));
+    fn singular_matrices_are_reported() {
         assert!(!lu(&mut [1.0, 2.0, 2.0, 4.0], 2, &mut [0; 2]));
+        assert!(!lu(&mut [f64::NAN], 1, &mut [0; 1]));
     }
 }
