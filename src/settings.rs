@@ -264,3 +264,39 @@ impl Default for SensitivitySettings {
         }
     }
 }
+
+/// Limits for the tests of what a failed step leaves behind.
+#[cfg(test)]
+pub(crate) mod limits {
+    use super::Settings;
+
+    /// A solver by what its error says, and how its limit is set.
+    pub type Limit = (&'static str, fn(&mut Settings, usize));
+
+    /// Every solver.
+    pub const LIMITS: [Limit; 7] = [
+        ("normal contact solver (active set)", |settings, limit| {
+            settings.normal.exchanges = limit;
+            settings.normal.descents_per_node = 0;
+        }),
+        ("normal contact solver (Pschenichnyj)", |settings, limit| {
+            settings.normal.linearisations = limit;
+        }),
+        ("tangential Newton solver", |settings, limit| {
+            settings.tangential.newton_steps = limit;
+            settings.tangential.continuation = 0;
+        }),
+        ("coupling of normal and tangential contact", |settings, limit| {
+            settings.split.iterations = limit;
+        }),
+        ("thermo-mechanical operator split", |settings, limit| {
+            settings.split.iterations = limit;
+        }),
+        ("surface heat condition", |settings, limit| {
+            settings.heat.surface_newton_steps = limit;
+        }),
+        ("temperature of the wheel", |settings, limit| {
+            settings.heat.rim_iterations = limit;
+        }),
+    ];
+}

@@ -334,35 +334,7 @@ impl Model {
 mod tests {
     use super::*;
     use crate::parameters::{NormalSolver, WheelHeating};
-
-    /// A solver by what its error says, and how its limit is set.
-    type Limit = (&'static str, fn(&mut Settings, usize));
-
-    const LIMITS: [Limit; 7] = [
-        ("normal contact solver (active set)", |settings, limit| {
-            settings.normal.exchanges = limit;
-            settings.normal.descents_per_node = 0;
-        }),
-        ("normal contact solver (Pschenichnyj)", |settings, limit| {
-            settings.normal.linearisations = limit;
-        }),
-        ("tangential Newton solver", |settings, limit| {
-            settings.tangential.newton_steps = limit;
-            settings.tangential.continuation = 0;
-        }),
-        ("coupling of normal and tangential contact", |settings, limit| {
-            settings.split.iterations = limit;
-        }),
-        ("thermo-mechanical operator split", |settings, limit| {
-            settings.split.iterations = limit;
-        }),
-        ("surface heat condition", |settings, limit| {
-            settings.heat.surface_newton_steps = limit;
-        }),
-        ("temperature of the wheel", |settings, limit| {
-            settings.heat.rim_iterations = limit;
-        }),
-    ];
+    use crate::settings::limits::LIMITS;
 
     /// A small model that heats its wheel, and a state from which a jump of the creepage divides the next step.
     fn model(normal_solver: NormalSolver, settings: Settings) -> Model {

@@ -92,6 +92,7 @@ mod tests {
     use crate::fmi::logging::Journal;
     use crate::parameters::WheelHeating;
     use crate::settings::Settings;
+    use crate::settings::limits::{LIMITS, Limit};
     use crate::signals::Outputs;
 
     fn initialize(component: &mut Component) {
@@ -111,36 +112,15 @@ mod tests {
         component.solution().unwrap().outputs
     }
 
-    /// A solver that gives up, by what its error says, and how its limit is set.
-    type Limit = (&'static str, fn(&mut Settings, usize));
-
-    const LIMITS: [Limit; 5] = [
-        ("normal contact solver (active set)", |settings, limit| {
-            settings.normal.exchanges = limit;
-            settings.normal.descents_per_node = 0;
-        }),
-        ("tangential Newton solver", |settings, limit| {
-            settings.tangential.newton_steps = limit;
-            settings.tangential.continuation = 0;
-        }),
-        ("thermo-mechanical operator split", |settings, limit| {
-            settings.split.iterations = limit;
-        }),
-        ("surface heat condition", |settings, limit| {
-            settings.heat.surface_newton_steps = limit;
-        }),
-        ("temperature of the wheel", |settings, limit| {
-            settings.heat.rim_iterations = limit;
-        }),
-    ];
-
     /// A failure before anything was committed is an error, one after a committed sub-step leaves *stepFailed*. In both cases
     /// the last committed state stands, and a saved state or a reset leads on.
     #[test]
     fn a_step_that_fails_leaves_the_last_committed_state() {
         let mut component = Component::new("test", Journal::new(false, false));
         let (mut at_once, mut after_a_part) = (0, 0);
-        for (words, set_limit) in LIMITS {
+        // A step solves the mechanics together with the heat, never alone, and by the active set here.
+        let of_a_step = |(words, _): &&Limit| !words.starts_with("coupling") && !words.contains("Pschenichnyj");
+        for (words, set_limit) in LIMITS.iter().filter(of_a_step) {
             initialize(&mut component);
             component.do_step(0.0, 1e-3).unwrap();
             let before = outputs(&mut component);
