@@ -130,22 +130,25 @@ mod tests {
 
     #[test]
     fn slopes_are_the_derivatives() {
-        for kind in [
-            FrictionLaw::Constant,
-            FrictionLaw::PiecewiseLinear,
-            FrictionLaw::FlowStress,
-            FrictionLaw::Table,
-        ] {
-            let law = law(kind);
-            for temperature in [300.0, 340.0, 400.0, 660.0, 700.0, 1000.0] {
+        for kind in FrictionLaw::ALL {
+            let law = law(*kind);
+            // Between the corners of the laws.
+            for temperature in (0..60).map(|point| 110.0 + 25.0 * f64::from(point)) {
                 let h = 1e-3;
                 let difference =
                     (coefficient(&law, temperature + h).0 - coefficient(&law, temperature - h).0) / (2.0 * h);
+                let (mu, slope) = coefficient(&law, temperature);
                 assert!(
-                    (coefficient(&law, temperature).1 - difference).abs() < 1e-9,
-                    "{kind:?} {temperature}"
+                    (slope - difference).abs() < 1e-9,
+                    "{kind:?} at {temperature} K: dμ/dθ = {slope} beside μ in `coefficient` of src/friction/mod.rs, \
+                     {difference} by differences"
                 );
-                assert!(coefficient(&law, temperature).0 <= largest_coefficient(&law));
+                let largest = largest_coefficient(&law);
+                assert!(
+                    mu <= largest,
+                    "{kind:?} at {temperature} K: μ = {mu} is above {largest} of `largest_coefficient` in \
+                     src/friction/mod.rs"
+                );
             }
         }
     }

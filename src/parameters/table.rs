@@ -469,6 +469,50 @@ mod tests {
         }
     }
 
+    /// The numbers and names of a choice as its row's description has them, `2 piecewise_linear`.
+    fn numbered<T: std::fmt::Debug>(values: &[T]) -> Vec<String> {
+        let lower = |name: String| {
+            let mut words = String::new();
+            for (place, letter) in name.char_indices() {
+                if letter.is_uppercase() && place > 0 {
+                    words.push('_');
+                }
+                words.extend(letter.to_lowercase());
+            }
+            words
+        };
+        let names = values.iter().map(|value| lower(format!("{value:?}")));
+        (1..)
+            .zip(names)
+            .map(|(number, name)| format!("{number} {name}"))
+            .collect()
+    }
+
+    #[test]
+    fn every_choice_is_in_the_description_of_its_row() {
+        let choices = [
+            ("control", numbered(Control::ALL)),
+            ("slip_source", numbered(SlipSource::ALL)),
+            ("normal_solver", numbered(NormalSolver::ALL)),
+            ("mesh", numbered(MeshKind::ALL)),
+            ("friction_law", numbered(FrictionLaw::ALL)),
+            ("wheel", numbered(Wheel::ALL)),
+            ("wheel_heating", numbered(WheelHeating::ALL)),
+        ];
+        // Counts begin above 1.
+        for row in INTEGER_PARAMETERS.iter().filter(|row| row.minimum == 1) {
+            let choice = choices.iter().find(|choice| choice.0 == row.name);
+            let (_, values) = choice.unwrap_or_else(|| panic!("add {} to the list of this test", row.name));
+            for value in values {
+                assert!(
+                    row.description.contains(value.as_str()),
+                    "src/parameters/table.rs: the description of {} lacks \"{value}\"",
+                    row.name
+                );
+            }
+        }
+    }
+
     #[test]
     fn elements_of_an_array_are_set_by_their_names() {
         let mut parameters = Parameters::default();
