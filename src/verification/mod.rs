@@ -113,3 +113,36 @@ pub const CHECKS: &[Check] = &[
         rows: locked_wheel::rows,
     },
 ];
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    /// A file that nothing declares is not compiled, and a check that no table lists is never asked.
+    #[test]
+    fn every_file_is_declared_and_listed() {
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/verification");
+        let here = std::fs::read_to_string(folder.join("mod.rs")).unwrap();
+        for entry in std::fs::read_dir(&folder).unwrap() {
+            let path = entry.unwrap().path();
+            let name = path.file_stem().unwrap().to_str().unwrap();
+            let text = std::fs::read_to_string(&path).unwrap();
+            let requires = |line: &str| {
+                assert!(
+                    here.contains(line),
+                    "src/verification/mod.rs lacks `{line}` for src/verification/{name}.rs"
+                );
+            };
+            if name == "mod" {
+                continue;
+            }
+            requires(&format!("mod {name};"));
+            if text.contains("\npub fn rows(") {
+                requires(&format!("rows: {name}::rows"));
+            }
+            if text.contains("\npub fn curve(") {
+                requires(&format!("points: {name}::curve"));
+            }
+        }
+    }
+}
