@@ -3,7 +3,7 @@
 
 use proptest::prelude::*;
 use wheelrail::parameters::{FrictionLaw, Parameters, SlipSource, Wheel, WheelHeating};
-use wheelrail::signals::{INPUTS, Inputs, OUTPUTS};
+use wheelrail::signals::{INPUTS, Inputs, OUTPUTS, OutputKind};
 use wheelrail::wheel_rail::{Model, State, Workspace};
 
 /// Relative change of the inputs in the step that is differentiated. Without it the operator split would rest after two
@@ -120,9 +120,15 @@ fn check(parameters: Parameters, inputs: Inputs, step: f64) -> usize {
             // 1e-4 of the derivative; below, the split's tolerance of 1e-9 over the relative step of a difference.
             let tolerance = 1e-4 * exact.abs() + 4e-6 * scale;
             compared += 1;
+            let place = if output.kind == OutputKind::Counted {
+                "src/signals.rs has the output as Counted, and it is not"
+            } else {
+                "A tangent stands beside its primal: where the input is used, or in src/contact/line/sensitivity.rs, \
+                 which puts the tangents together"
+            };
             assert!(
                 (exact - differences[index]).abs() <= tolerance,
-                "d {} / d {}: {exact} against {} at {inputs:?}",
+                "d {} / d {}: {exact} against {} by differences of the step, at {inputs:?}. {place}",
                 output.name,
                 input.name,
                 differences[index]

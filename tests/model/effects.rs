@@ -1,0 +1,182 @@
+//! Nothing is declared in vain: every input and every parameter moves an output, and every output leaves 0, in one of a few
+//! scenarios that switch everything on. What fails names the file in which something was forgotten.
+
+use wheelrail::parameters::{
+    Control, FrictionLaw, INTEGER_PARAMETERS, Parameters, REAL_PARAMETERS, SlipSource, TABLE_POINTS, Wheel,
+    WheelHeating,
+};
+use wheelrail::signals::{INPUTS, Inputs, OUTPUTS, Outputs};
+use wheelrail::simulation::Simulation;
+use wheelrail::wheel_rail::Model;
+
+/// Parameters, and inputs that are held under them.
+type Scenario = (Parameters, Inputs);
+
+/// Sliding under each law of friction, and stick under a prescribed penetration and the vehicle's speed.
+fn scenarios() -> Vec<Scenario> {
+    let inputs = Inputs {
+        wheel_speed: 40.0,
+        creepage: 0.02,
+        incoming_temperature: 310.0,
+        incoming_wear_depth: 1e-7,
+        ..Inputs::default()
+    };
+    let parameters = |friction_law| Parameters {
+        friction_law,
+        contact_nodes: 21,
+        depth_nodes: 11,
+        // So short that what comes in leaves in the scenario.
+        strip_half_length: 0.3,
+        // Points between the temperatures that the contact runs through.
+        friction_table_points: TABLE_POINTS,
+        friction_table_temperature: std::array::from_fn(|point| 300.0 + 10.0 * point as f64),
+        friction_table_coefficient: std::array::from_fn(|point| 0.45 - 0.01 * point as f64),
+        wheel: Wheel::Elastic,
+        wheel_shear_modulus: 4e10,
+        wheel_heating: WheelHeating::On,
+        wheel_wear_coefficient: 1e-12,
+        ..Parameters::default()
+    };
+    let mut scenarios: Vec<Scenario> = FrictionLaw::ALL.iter().map(|law| (parameters(*law), inputs)).collect();
+    let stick = Parameters {
+        control: Control::Penetration,
+        slip_source: SlipSource::VehicleSpeed,
+        ..parameters(FrictionLaw::PiecewiseLinear)
+    };
+    let rolling = Inputs {
+        vehicle_speed: inputs.wheel_speed * stick.wheel_radius * (1.0 - 1e-4),
+        ..inputs
+    };
+    scenarios.push((stick, rolling));
+    scenarios
+}
+
+/// The outputs after `inputs` have followed the scenario's for as long again.
+fn outputs((parameters, held): &Scenario, inputs: &Inputs) -> Outputs {
+    let mut run = Simulation::new(parameters, held).unwrap();
+    run.hold(held, 5e-3, 4).unwrap();
+    *run.hold(inputs, 5e-3, 4).unwrap()
+}
+
+/// Slightly more than a value, or a small one for 0.
+fn more(value: f64, maximum: f64) -> f64 {
+    if value == 0.0 { 1e-3 * maximum } else { 1.01 * value }
+}
+
+#[test]
+fn every_output_leaves_zero() {
+    let seen: Vec<Outputs> = scenarios()
+        .iter()
+        .map(|scenario| outputs(scenario, &scenario.1))
+        .collect();
+    let idle = OUTPUTS
+        .iter()
+        .filter(|output| seen.iter().all(|outputs| (output.get)(outputs) == 0.0));
+    let idle: Vec<_> = idle.map(|output| output.name).collect();
+    assert!(
+        idle.is_empty(),
+        "outputs that are always 0: {idle:?}. Give them values in src/contact/outputs.rs: in `total_rates` if \
+         src/signals.rs has them as Total, in `outputs` if not"
+    );
+}
+
+#[test]
+fn every_input_moves_an_output() {
+    let scenarios = scenarios();
+    let before: Vec<Outputs> = scenarios
+        .iter()
+        .map(|scenario| outputs(scenario, &scenario.1))
+        .collect();
+    let moves = |set: fn(&mut Inputs, f64), value: f64, maximum: f64| {
+        scenarios.iter().zip(&before).any(|(scenario, before)| {
+            let mut inputs = scenario.1;
+            set(&mut inputs, more(value, maximum));
+            outputs(scenario, &inputs) != *before
+        })
+    };
+    let idle = INPUTS
+        .iter()
+        .filter(|input| !moves(input.set, (input.get)(&scenarios[0].1), input.maximum));
+    let idle: Vec<_> = idle.map(|input| input.name).collect();
+    assert!(
+        idle.is_empty(),
+        "inputs that move no output: {idle:?}. Use them where they act: `motion` of src/signals.rs, \
+         src/contact/line/problem.rs for mechanics and heat, src/contact/line/split.rs for what enters with the rail"
+    );
+}
+
+#[test]
+fn every_parameter_moves_an_output() {
+    let scenarios = scenarios();
+    let before: Vec<Outputs> = scenarios
+        .iter()
+        .map(|scenario| outputs(scenario, &scenario.1))
+        .collect();
+    let moves = |change: &dyn Fn(&mut Parameters)| {
+        scenarios.iter().zip(&before).any(|(scenario, before)| {
+            let mut changed = scenario.clone();
+            change(&mut changed.0);
+            changed.0.validate().is_ok() && outputs(&changed, &changed.1) != *before
+        })
+    };
+    let mut idle = Vec::new();
+    for entry in REAL_PARAMETERS {
+        for (element, name) in entry.elements.iter().enumerate() {
+            let change = |parameters: &mut Parameters| {
+                let value = &mut (entry.get_mut)(parameters)[element];
+                *value = more(*value, entry.maximum);
+            };
+            if !moves(&change) {
+                idle.push(*name);
+            }
+        }
+    }
+    for entry in INTEGER_PARAMETERS {
+        let change = |parameters: &mut Parameters| {
+            let value = (entry.get)(parameters);
+            let other = if value < entry.maximum { value + 1 } else { value - 1 };
+            (entry.set)(parameters, other);
+        };
+        if !moves(&change) {
+            idle.push(entry.name);
+        }
+    }
+    assert!(
+        idle.is_empty(),
+        "parameters that move no output: {idle:?}. Either nothing reads these rows of src/parameters/table.rs, or no \
+         scenario of tests/model/effects.rs switches on what does"
+    );
+}
+
+/// A tunable parameter may change nothing that the model computes once.
+#[test]
+fn a_retuned_model_is_the_one_built_with_the_values() {
+    let mut differ = Vec::new();
+    for entry in REAL_PARAMETERS.iter().filter(|entry| entry.tunable) {
+        let differs = scenarios().into_iter().any(|(parameters, inputs)| {
+            let mut changed = parameters.clone();
+            for value in (entry.get_mut)(&mut changed) {
+                *value = more(*value, entry.maximum);
+            }
+            let outputs = |model: &Model| {
+                let mut workspace = model.workspace();
+                let mut state = model.initial_state(&mut workspace, &inputs).unwrap();
+                model
+                    .step(&mut workspace, &mut state, &inputs, &Inputs::ZERO, 5e-3)
+                    .unwrap();
+                state.outputs
+            };
+            let mut retuned = Model::new(parameters).unwrap();
+            retuned.retune(&changed).unwrap();
+            outputs(&retuned) != outputs(&Model::new(changed).unwrap())
+        });
+        if differs {
+            differ.push(entry.name);
+        }
+    }
+    assert!(
+        differ.is_empty(),
+        "parameters that act on what the model computes once: {differ:?}. Their rows of src/parameters/table.rs must \
+         not say tunable"
+    );
+}
