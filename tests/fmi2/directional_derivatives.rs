@@ -19,7 +19,7 @@ struct Point<'a> {
     client: &'a Client<'a>,
     before: Handle,
     time: f64,
-    inputs: [(&'static str, f64); 8],
+    inputs: [(&'static str, f64); INPUTS.len()],
     references: Vec<u32>,
 }
 
@@ -105,7 +105,7 @@ fn directional_derivatives_are_the_differences_of_a_rolled_back_step() {
         };
         let direction = if point % 5 == 4 { -1.0 } else { 1.0 };
         let speed = direction * random.between(2.0, 40.0);
-        let start = [
+        let chosen = [
             (
                 "wheel_speed",
                 speed * (1.0 + creepage) / Parameters::default().wheel_radius,
@@ -118,6 +118,12 @@ fn directional_derivatives_are_the_differences_of_a_rolled_back_step() {
             ("incoming_temperature", random.between(260.0, 350.0)),
             ("incoming_wear_depth", random.between(0.0, 1e-6)),
         ];
+        // In the order of the inputs, any other at its start value.
+        let start: [_; INPUTS.len()] = std::array::from_fn(|row| {
+            let signal = &INPUTS[row];
+            let value = chosen.iter().find(|(name, _)| *name == signal.name);
+            (signal.name, value.map_or(signal.default, |(_, value)| *value))
+        });
         let moved = start.map(|(name, value)| (name, value * (1.0 + MOVE)));
         client.expect(OK, client.set(&moved));
         client.expect(OK, client.setup(0.0, None));
