@@ -130,6 +130,35 @@ def test_links_of_readme():
         assert (REPOSITORY / target).exists(), target
 
 
+def test_named_files():
+    """Every file of the repository and every Rust test that the documents name is there."""
+    documents = [REPOSITORY / "README.md", REPOSITORY / "CONTRIBUTING.md", REPOSITORY / "CHANGELOG.md"]
+    folders = "src|tests|python_tests|tools|examples|benches|fuzz|docs|modelDescription"
+    rust = {path.stem for path in (REPOSITORY / "tests").rglob("*.rs")}
+    rust |= {path.stem for path in (REPOSITORY / "src").rglob("*.rs")}
+    missing = []
+    for document in [*documents, *(REPOSITORY / "docs").rglob("*.md")]:
+        text = document.read_text()
+        for name in re.findall(rf"(?<![\w/.-])(?:{folders})/[\w./-]*\w", text):
+            if "NAME" not in name and not (REPOSITORY / name).exists():
+                missing.append(f"{document.name}: {name}")
+        for name in re.findall(r"`(test_\w+\.py)", text):
+            if not (REPOSITORY / "python_tests" / name).exists():
+                missing.append(f"{document.name}: {name}")
+        for target, name in re.findall(r"cargo test (?:--release )?--test (\w+)(?: (\w+)::)?", text):
+            path = REPOSITORY / "tests" / target
+            if target != "NAME" and not (path.with_suffix(".rs").exists() or (path / "main.rs").exists()):
+                missing.append(f"{document.name}: --test {target}")
+            if name not in ("", "NAME") and not (path / f"{name}.rs").exists():
+                missing.append(f"{document.name}: --test {target} {name}")
+        # The tables of this document name Rust tests by their files.
+        if document.name == "fmi.md":
+            rows = "\n".join(line for line in text.splitlines() if line.startswith("|"))
+            names = set(re.findall(r"`([a-z_0-9]+)`", rows)) - {"fuzz"}
+            missing += [f"{document.name}: {name}" for name in sorted(names - rust)]
+    assert not missing, missing
+
+
 def test_documentation_page_is_well_formed():
     """Opened elements are closed, and the page names no file that is not in the FMU."""
     page = update_docs.PAGE.read_text()
