@@ -41,8 +41,18 @@ impl Readings {
     }
 
     /// ∫ |s| p dA, to which wear is proportional, `W`.
-    pub fn sliding_power(&self) -> f64 {
+    fn sliding_power(&self) -> f64 {
         self.unit_force() * self.resultants.sliding
+    }
+
+    /// Friction power ∫ |τ s| dA, `W`.
+    fn friction_power(&self) -> f64 {
+        self.unit_force() * self.resultants.friction_power
+    }
+
+    /// Volume worn off the rail per time, `m³/s`.
+    fn wear_rate(&self, parameters: &Parameters) -> f64 {
+        parameters.wear_coefficient * self.sliding_power()
     }
 
     /// The outputs at one instant; the totals are 0.
@@ -77,10 +87,10 @@ impl Readings {
             } else {
                 free
             },
-            friction_power: force * sums.friction_power,
+            friction_power: self.friction_power(),
             rail_heat_flow: self.node_area * sums.heat_flux,
             wear_depth: self.wear_depth,
-            wear_rate: parameters.wear_coefficient * self.sliding_power(),
+            wear_rate: self.wear_rate(parameters),
             wheel_temperature: self.wheel_temperature,
             wheel_heat_flow: self.wheel_heat.flow(self.wheel_temperature - ambient),
             leaving_temperature: ambient + self.leaving_rise,
@@ -91,10 +101,9 @@ impl Readings {
 
     /// The totals' rates of growth per second, in the fields of the totals; the other outputs are 0.
     pub fn total_rates(&self, parameters: &Parameters, inputs: &Inputs) -> Outputs {
-        let sums = &self.resultants;
         Outputs {
-            worn_volume: parameters.wear_coefficient * self.sliding_power(),
-            friction_energy: self.unit_force() * sums.friction_power,
+            worn_volume: self.wear_rate(parameters),
+            friction_energy: self.friction_power(),
             distance: inputs.motion(parameters).rolling_speed.abs(),
             wheel_wear_depth: rim::wear_rate(parameters, self.sliding_power()),
             ..Outputs::default()

@@ -94,8 +94,8 @@ impl FrictionState<'_> {
 
     /// Change of μ at a temperature rise with that of the rise `K`, the ambient `K` and the factor.
     pub fn coefficient_tangent(&self, rise: f64, [rise_change, ambient_change, scale_change]: [f64; 3]) -> f64 {
-        let slope = self.coefficient(rise).1;
-        slope * (rise_change + ambient_change) + scale_change * coefficient(self.parameters, self.ambient + rise).0
+        let (mu, slope) = coefficient(self.parameters, self.ambient + rise);
+        self.scale * slope * (rise_change + ambient_change) + scale_change * mu
     }
 }
 
