@@ -1,25 +1,8 @@
 //! Lift-off, standstill, reversal: what the contact does where load or speed vanish or change sign.
 
-use wheelrail::parameters::{Parameters, SlipSource};
+use crate::by_speeds::{inputs, parameters};
 use wheelrail::signals::Inputs;
 use wheelrail::simulation::Simulation as Run;
-
-fn parameters() -> Parameters {
-    Parameters {
-        slip_source: SlipSource::VehicleSpeed,
-        ..Parameters::default()
-    }
-}
-
-/// Vehicle speed, circumferential speed [m/s], load [N].
-fn inputs(vehicle_speed: f64, circumferential: f64, normal_load: f64) -> Inputs {
-    Inputs {
-        vehicle_speed,
-        wheel_speed: circumferential / parameters().wheel_radius,
-        normal_load,
-        ..Inputs::default()
-    }
-}
 
 #[test]
 fn a_lifted_wheel_transmits_nothing_and_the_rail_cools() {

@@ -1,6 +1,7 @@
 //! How the stepped model behaves, natively: what it bears, what it refuses, and what must not depend on how it is driven.
 
 mod bad_input;
+mod by_speeds;
 mod effects;
 mod lift_off;
 mod paper_mesh;

@@ -1,26 +1,10 @@
 //! Inputs and parameters at the edge of what the iterations can bear: each of these once failed.
 
+use crate::by_speeds::{inputs, parameters};
 use wheelrail::error::Error;
-use wheelrail::parameters::{Parameters, SlipSource};
+use wheelrail::parameters::Parameters;
 use wheelrail::signals::Inputs;
 use wheelrail::simulation::Simulation as Run;
-
-fn parameters() -> Parameters {
-    Parameters {
-        slip_source: SlipSource::VehicleSpeed,
-        ..Parameters::default()
-    }
-}
-
-/// Vehicle speed, circumferential speed [m/s], load [N].
-fn inputs(vehicle_speed: f64, circumferential: f64, normal_load: f64) -> Inputs {
-    Inputs {
-        vehicle_speed,
-        wheel_speed: circumferential / parameters().wheel_radius,
-        normal_load,
-        ..Inputs::default()
-    }
-}
 
 /// Wear in the gap by fixed-point iteration would diverge where k|s|Δt, or k|s|Δx/V when rolling, exceeds the
 /// smallest eigenvalue of the compliance, some 1.5e-15 m/Pa on the default mesh: there the normal problem takes it in.
