@@ -105,8 +105,15 @@ pub struct NormalSettings {
 /// The tangential problem.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TangentialSettings {
-    /// Limit of the Newton steps at one regularisation ε.
+    /// Limit of the Newton steps at one regularisation ε, and of those of Coulomb's law.
     pub newton_steps: usize,
+    /// Coulomb's law: exchanges of all nodes that break their condition, before the path is followed that exchanges one at a
+    /// time.
+    pub exchanges: usize,
+    /// Limit of the exchanges on that path, per node. A node seldom changes sides more than twice.
+    pub path_exchanges_per_node: usize,
+    /// Shears beyond the bound by less than this share of the largest bound count as within.
+    pub round_off: f64,
     /// Limit of the halvings of one step in the line search. A step that does not help at 2⁻¹² of its length points uphill.
     pub halvings: usize,
     /// Half-decades by which ε is raised where Newton's method fails at the given one, and then lowered again.
@@ -222,6 +229,9 @@ impl Default for TangentialSettings {
     fn default() -> Self {
         TangentialSettings {
             newton_steps: 60,
+            exchanges: 12,
+            path_exchanges_per_node: 40,
+            round_off: 1e-13,
             halvings: 12,
             continuation: 10,
             slow_contraction: 0.1,

@@ -5,5 +5,6 @@
 
 pub mod compliance;
 pub mod elasticity;
+pub mod half_plane;
 pub mod mesh;
 pub mod pair;

@@ -1,5 +1,7 @@
 //! What the fields of a contact sum up to. The sums of two parts of a contact add up to those of the whole.
 
+use crate::friction::coulomb;
+
 /// State of one surface node.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Node {
@@ -59,7 +61,7 @@ impl Resultants {
             sum.moment += node.pressure * node.position;
             sum.shear += node.shear;
             sum.friction += node.pressure * node.friction;
-            sum.friction_power += (node.shear * node.slip).abs();
+            sum.friction_power += coulomb::power(node.shear, node.slip);
             sum.sliding += node.pressure * node.slip.abs();
             sum.peak_pressure = sum.peak_pressure.max(node.pressure);
             sum.peak_shear = sum.peak_shear.max(node.shear.abs());

@@ -24,6 +24,7 @@
 //! uniform depth does not show. The loss, micrometres, is not fed back into r₀.
 
 use crate::error::{Error, Result};
+use crate::friction::coulomb;
 use crate::parameters::{Parameters, WheelHeating};
 use crate::settings::HeatSettings;
 use std::f64::consts::PI;
@@ -79,7 +80,7 @@ impl ContactHeat {
         let weights = Weights::new(parameters, unit_force);
         let mut heat = ContactHeat::default();
         for node in nodes {
-            heat.friction += weights.friction * (node.shear * node.slip).abs();
+            heat.friction += weights.friction * coulomb::power(node.shear, node.slip);
             heat.conducted += weights.conduction * node.pressure * node.rise;
             heat.conductance += weights.conduction * node.pressure;
         }
@@ -95,8 +96,8 @@ impl ContactHeat {
         let weights = Weights::new(parameters, unit_force);
         let mut heat = ContactHeat::default();
         for (node, change) in nodes {
-            let sign = (node.shear * node.slip).signum();
-            heat.friction += weights.friction * sign * (change.shear * node.slip + node.shear * change.slip);
+            let power = coulomb::power_tangent((node.shear, node.slip), (change.shear, change.slip));
+            heat.friction += weights.friction * power;
             heat.conducted += weights.conduction * (change.pressure * node.rise + node.pressure * change.rise);
             heat.conductance += weights.conduction * change.pressure;
         }

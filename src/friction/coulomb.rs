@@ -27,12 +27,54 @@ pub fn saturation_slope(slip: f64, regularisation: f64) -> f64 {
     FRAC_2_PI * regularisation / (regularisation * regularisation + slip * slip)
 }
 
-/// A node sticks below this value of |φ|: |s| < 6.3 ε.
+/// By the regularised law a node sticks below this value of |φ|: |s| < 6.3 ε. By Coulomb's it sticks below 1.
 const STICK_SATURATION: f64 = 0.9;
 
-/// Whether a node with this slip counts as sticking.
-pub fn sticks(slip: f64, regularisation: f64) -> bool {
-    saturation(slip, regularisation).abs() < STICK_SATURATION
+/// Whether a node that takes this share of Coulomb's bound counts as sticking.
+pub fn sticks(saturation: f64, regularisation: f64) -> bool {
+    saturation.abs() < if regularisation > 0.0 { STICK_SATURATION } else { 1.0 }
+}
+
+/// −τ s where it is positive. Friction takes power; the slip of a node is a mean over its two cells, and where it changes
+/// sign between them, the mean may have the sign of the other one by a round-off of the scheme.
+pub fn power(shear: f64, slip: f64) -> f64 {
+    (-shear * slip).max(0.0)
+}
+
+/// Change of [`power`].
+pub fn power_tangent((shear, slip): (f64, f64), (shear_change, slip_change): (f64, f64)) -> f64 {
+    if shear * slip < 0.0 {
+        -(shear_change * slip + shear * slip_change)
+    } else {
+        0.0
+    }
+}
+
+/// Sliding of a surface: speed, and power per friction coefficient and pressure.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Sliding {
+    /// |s|, `m/s`.
+    pub speed: f64,
+    /// φ s, `m/s`.
+    pub power: f64,
+}
+
+impl Sliding {
+    /// With slip velocity s `m/s` and φ = −τ/(μ p).
+    pub fn new(slip: f64, saturation: f64) -> Sliding {
+        Sliding {
+            speed: slip.abs(),
+            power: power(-saturation, slip),
+        }
+    }
+
+    /// Its change.
+    pub fn tangent((slip, saturation): (f64, f64), (slip_change, saturation_change): (f64, f64)) -> Sliding {
+        Sliding {
+            speed: slip.signum() * slip_change,
+            power: power_tangent((-saturation, slip), (-saturation_change, slip_change)),
+        }
+    }
 }
 
 #[cfg(test)]

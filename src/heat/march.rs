@@ -234,6 +234,7 @@ fn split_columns(field: &mut [f64], own: usize, other: usize, m: usize) -> (&mut
 mod tests {
     use super::*;
     use crate::friction::FrictionState;
+    use crate::friction::coulomb::Sliding;
     use crate::heat::surface::ExchangeChange;
     use crate::parameters::{FrictionLaw, Parameters};
     use crate::settings::HeatSettings;
@@ -304,10 +305,13 @@ mod tests {
                 },
             };
             let pressure = |node: usize, h: f64| 1e9 * (1.0 + 0.1 * node as f64) + h * 1e8;
-            let speed = |node: usize, h: f64| 0.1 + 0.02 * node as f64 + h * 0.01;
+            let sliding = |node: usize, h: f64| Sliding {
+                speed: 0.1 + 0.02 * node as f64 + h * 0.01,
+                power: 0.09 + 0.02 * node as f64 + h * 0.012,
+            };
             let exchange = |h: f64| -> Vec<SurfaceExchange> {
                 (0..NODES)
-                    .map(|node| SurfaceExchange::new(&parameters, pressure(node, h), speed(node, h), 20.0 + 4.0 * h))
+                    .map(|node| SurfaceExchange::new(&parameters, pressure(node, h), sliding(node, h), 20.0 + 4.0 * h))
                     .collect()
             };
             let enter = |field: &mut Field, rise: f64, inflow: usize| {
@@ -327,10 +331,13 @@ mod tests {
                 .map(|node| {
                     let change = ExchangeChange {
                         pressure: 1e8,
-                        speed: 0.01,
+                        sliding: Sliding {
+                            speed: 0.01,
+                            power: 0.012,
+                        },
                         wheel_rise: 4.0,
                     };
-                    SurfaceExchange::tangent(&parameters, pressure(node, 0.0), speed(node, 0.0), 20.0, &change)
+                    SurfaceExchange::tangent(&parameters, pressure(node, 0.0), sliding(node, 0.0), 20.0, &change)
                 })
                 .collect();
             let mut tangent = Field::new(m);

@@ -1,12 +1,13 @@
 //! The condition (23) at the surface of one column: what heats and cools it, and the flux that follows.
 
 use crate::error::{Error, Result};
-use crate::friction::{self, FrictionState, coulomb};
+use crate::friction::coulomb::Sliding;
+use crate::friction::{self, FrictionState};
 use crate::parameters::Parameters;
 use crate::settings::HeatSettings;
 
 /// What heats and cools one column's surface, at the rail temperature θ (rise):
-/// q = ᾱ [ μ(θ) P + S − H θ ], the condition (23) with P = p φ(|s|) |s|, S = θ_w p / r and H = k ρ c_p |s| p + p / r.
+/// q = ᾱ [ μ(θ) P + S − H θ ], the condition (23) with P = p φ s, S = θ_w p / r and H = k ρ c_p |s| p + p / r.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct SurfaceExchange {
     /// P: friction power per area and friction coefficient, `W/m²`.
@@ -24,8 +25,8 @@ pub struct SurfaceExchange {
 pub struct ExchangeChange {
     /// dp, `Pa`.
     pub pressure: f64,
-    /// d|s|, `m/s`.
-    pub speed: f64,
+    /// d|s| and d(φ s), `m/s`.
+    pub sliding: Sliding,
     /// dθ_w, `K`.
     pub wheel_rise: f64,
 }
@@ -44,17 +45,15 @@ pub struct ExchangeTangent {
 }
 
 impl SurfaceExchange {
-    /// The exchange under pressure `pressure` `Pa` and slip speed |s| `speed` `m/s` with a wheel at `wheel_rise` `K` over
-    /// the ambient.
-    pub fn new(parameters: &Parameters, pressure: f64, speed: f64, wheel_rise: f64) -> SurfaceExchange {
+    /// The exchange under pressure `pressure` `Pa` and sliding with a wheel at `wheel_rise` `K` over the ambient.
+    pub fn new(parameters: &Parameters, pressure: f64, sliding: Sliding, wheel_rise: f64) -> SurfaceExchange {
         if pressure == 0.0 {
             return SurfaceExchange::default();
         }
-        let saturation = coulomb::saturation(speed, parameters.slip_regularisation);
         let conduction = pressure / parameters.contact_thermal_resistance;
         SurfaceExchange {
-            friction: pressure * (saturation * speed),
-            debris: parameters.wear_coefficient * parameters.volumetric_heat_capacity() * speed * pressure,
+            friction: pressure * sliding.power,
+            debris: parameters.wear_coefficient * parameters.volumetric_heat_capacity() * sliding.speed * pressure,
             conduction,
             wheel: conduction * wheel_rise,
         }
@@ -64,19 +63,16 @@ impl SurfaceExchange {
     pub fn tangent(
         parameters: &Parameters,
         pressure: f64,
-        speed: f64,
+        sliding: Sliding,
         wheel_rise: f64,
         change: &ExchangeChange,
     ) -> ExchangeTangent {
-        let regularisation = parameters.slip_regularisation;
-        let phi = coulomb::saturation(speed, regularisation);
-        let slope = coulomb::saturation_slope(speed, regularisation);
         let conduction = change.pressure / parameters.contact_thermal_resistance;
         ExchangeTangent {
-            friction: change.pressure * phi * speed + pressure * (slope * speed + phi) * change.speed,
+            friction: change.pressure * sliding.power + pressure * change.sliding.power,
             debris: parameters.wear_coefficient
                 * parameters.volumetric_heat_capacity()
-                * (change.speed * pressure + speed * change.pressure),
+                * (change.sliding.speed * pressure + sliding.speed * change.pressure),
             conduction,
             wheel: [
                 conduction * wheel_rise,
@@ -210,7 +206,8 @@ mod tests {
         #[test]
         fn the_flux_satisfies_the_condition(
             pressure in 1e7..1e9,
-            speed in 0.0..1.0,
+            speed in 0.0..1.0_f64,
+            saturation in 0.0..1.0_f64,
             wheel_rise in -20.0..200.0,
             unheated in -5.0..150.0,
             response in 1e-8..1e-6,
@@ -218,12 +215,12 @@ mod tests {
         ) {
             let parameters = parameters(10.0_f64.powf(log_resistance));
             let condition = condition(&parameters);
-            let exchange = SurfaceExchange::new(&parameters, pressure, speed, wheel_rise);
+            let exchange = SurfaceExchange::new(&parameters, pressure, Sliding::new(-speed, -saturation), wheel_rise);
             let flux = condition.flux(&exchange, unheated, response, 0.0).unwrap();
             // (23), written out.
             let rise = unheated + response * flux;
             let mu = 0.9 * friction::coefficient(&parameters, 293.15 + rise).0;
-            let power = mu * pressure * coulomb::saturation(speed, parameters.slip_regularisation) * speed;
+            let power = mu * pressure * saturation * speed;
             let debris = parameters.wear_coefficient * 7.8e3 * 460.0 * rise * speed * pressure;
             let conducted = (rise - wheel_rise) * pressure / parameters.contact_thermal_resistance;
             let expected = 0.5 * (power - debris - conducted);
@@ -235,14 +232,20 @@ mod tests {
         fn the_tangent_is_the_derivative_of_the_flux(
             pressure in 1e7..1e9,
             speed in 1e-3..1.0,
+            power in 1e-3..1.0,
             wheel_rise in -20.0..200.0,
             unheated in 40.0..80.0,
-            changes in prop::array::uniform6(-1.0..1.0_f64),
+            changes in prop::array::uniform7(-1.0..1.0_f64),
         ) {
             let parameters = parameters(100.0);
             let response = 1e-7;
-            let [dp, ds, dw, du, ambient, friction_scale] = changes;
-            let change = ExchangeChange { pressure: 1e7 * dp, speed: 1e-2 * ds, wheel_rise: dw };
+            let [dp, ds, dq, dw, du, ambient, friction_scale] = changes;
+            let sliding = Sliding { speed, power };
+            let change = ExchangeChange {
+                pressure: 1e7 * dp,
+                sliding: Sliding { speed: 1e-2 * ds, power: 1e-2 * dq },
+                wheel_rise: dw,
+            };
             let common = CommonChange { ambient, friction_scale };
             let at = |h: f64| {
                 let mut condition = condition(&parameters);
@@ -251,7 +254,10 @@ mod tests {
                 let exchange = SurfaceExchange::new(
                     &parameters,
                     pressure + h * change.pressure,
-                    speed + h * change.speed,
+                    Sliding {
+                        speed: speed + h * change.sliding.speed,
+                        power: power + h * change.sliding.power,
+                    },
                     wheel_rise + h * change.wheel_rise,
                 );
                 let flux = condition.flux(&exchange, unheated + h * du, response, 0.0).unwrap();
@@ -262,8 +268,8 @@ mod tests {
             let (here, ahead, behind) = (at(0.0), at(h), at(-h));
             // Not across a corner of the friction law.
             prop_assume!(ahead.1 == behind.1);
-            let exchange = SurfaceExchange::new(&parameters, pressure, speed, wheel_rise);
-            let tangent = SurfaceExchange::tangent(&parameters, pressure, speed, wheel_rise, &change);
+            let exchange = SurfaceExchange::new(&parameters, pressure, sliding, wheel_rise);
+            let tangent = SurfaceExchange::tangent(&parameters, pressure, sliding, wheel_rise, &change);
             let rise = unheated + response * here.0;
             let exact = condition(&parameters).flux_tangent(&exchange, &tangent, &common, (rise, du, response));
             let difference = (ahead.0 - behind.0) / (2.0 * h);
@@ -277,7 +283,7 @@ mod tests {
         let parameters = Parameters::default();
         let mut condition = condition(&parameters);
         condition.settings.surface_newton_steps = 0;
-        let exchange = SurfaceExchange::new(&parameters, 1e9, 0.1, 0.0);
+        let exchange = SurfaceExchange::new(&parameters, 1e9, Sliding::new(0.1, 1.0), 0.0);
         assert!(matches!(
             condition.flux(&exchange, 0.0, 1e-7, 1.5e-3),
             Err(Error::SurfaceHeatNotConverged { position, iterations: 0, .. }) if position == 1.5e-3

@@ -5,6 +5,7 @@
 //! pressure follows the shear. [`softening`] puts the wear of the step into the normal problem. [`tangent`] is the derivative
 //! of the solution with respect to the data.
 
+pub mod front;
 pub mod normal;
 pub mod problem;
 pub mod response;
@@ -12,3 +13,4 @@ pub mod softening;
 pub mod sweep;
 pub mod tangent;
 pub mod tangential;
+pub mod transient;

@@ -1,6 +1,8 @@
 //! The data of the mechanics problem and its unknowns.
 
+use super::front::NearField;
 use super::normal::problem::Constraint;
+use super::transient::Transient;
 use crate::body::compliance::Compliance;
 use crate::parameters::NormalSolver;
 use nalgebra::DMatrix;
@@ -16,6 +18,8 @@ pub struct MechanicsProblem<'a> {
     pub profile: &'a [f64],
     /// Displacement along x₁ that heat and inertia cause, n.
     pub displacement: &'a [f64],
+    /// Displacement along x₁ at the end of the step before, n.
+    pub displacement_before: &'a [f64],
     /// μ, n.
     pub friction: &'a [f64],
     /// Load or penetration.
@@ -26,7 +30,11 @@ pub struct MechanicsProblem<'a> {
     pub rigid_slip: f64,
     /// V times the displacement scale over the node spacing, `m/s`; its sign gives the leading side.
     pub strain_speed: f64,
-    /// ε, `m/s`.
+    /// ∂u₁/∂t.
+    pub transient: Transient,
+    /// The half-planes as one cell sees them.
+    pub near_field: NearField,
+    /// ε, `m/s`; 0 is Coulomb's law.
     pub regularisation: f64,
 }
 
@@ -45,6 +53,8 @@ pub struct ProblemTangent<'a> {
     pub rigid_slip: f64,
     /// Of the strain speed's magnitude, `m/s`.
     pub strain_speed: f64,
+    /// Of ∂u₁/∂t.
+    pub transient: Transient,
 }
 
 /// Tractions and what belongs to them, or a change of them, n contact nodes.
@@ -53,13 +63,22 @@ pub struct Tractions<'a> {
     pub pressure: &'a mut [f64],
     /// Shear traction on the rail, scaled.
     pub shear: &'a mut [f64],
-    /// Slip velocity, `m/s`, 0 outside the contact.
+    /// Slip velocity, `m/s`, 0 outside the contact: the mean of those in the middle of the two cells beside a node.
     pub slip: &'a mut [f64],
+    /// Share −τ/(μ p) of Coulomb's bound, with the sign of the slip: between −1 and 1.
+    pub saturation: &'a mut [f64],
     /// Penetration, scaled.
     pub penetration: &'a mut f64,
 }
 
 impl MechanicsProblem<'_> {
+    /// The weights with which strain and displacement of a node enter its slip: of u₁ less that of the node ahead, and of u₁ less
+    /// that of the step before, `m/s`.
+    pub fn slip_weights(&self) -> (f64, f64) {
+        let Transient { rate, centring } = self.transient;
+        (self.strain_speed.abs() - centring * rate, rate)
+    }
+
     /// Whether the leading side is towards +x₁: V ≥ 0.
     pub fn is_forward(&self) -> bool {
         self.strain_speed >= 0.0

@@ -145,6 +145,14 @@ pub fn multiply(a: &[f64], n: usize, x: &[f64], out: &mut [f64]) {
     );
 }
 
+/// `out += A x` for the matrix in `a` with `rows` rows and a column for each of `x`.
+pub fn multiply_columns(a: &[f64], rows: usize, x: &[f64], out: &mut [f64]) {
+    vectorised(
+        #[inline(always)]
+        |arithmetic| multiply_add_kernel(arithmetic, &a[..rows * x.len()], x, 1.0, &mut out[..rows]),
+    )
+}
+
 /// LU factors with row pivoting of the n × n matrix in `a`, in place, the diagonal of U inverted. False where it is
 /// singular.
 pub fn lu(a: &mut [f64], n: usize, pivots: &mut [usize]) -> bool {

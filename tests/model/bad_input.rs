@@ -233,7 +233,7 @@ fn what_is_tuned_wrongly_is_refused_and_changes_nothing() {
             ..before.clone()
         },
         Parameters {
-            slip_regularisation: 0.0,
+            slip_regularisation: -1e-3,
             ..before.clone()
         },
     ] {

@@ -21,10 +21,18 @@ pub struct Fields {
     pub shear: Vec<f64>,
     /// Slip velocity, `m/s`, 0 outside the contact, n.
     pub slip: Vec<f64>,
+    /// Share −τ/(μ p) of Coulomb's bound that the shear takes, n.
+    pub saturation: Vec<f64>,
     /// Friction coefficient, n.
     pub friction: Vec<f64>,
     /// Heat flux into the rail, `W/m²`, n.
     pub heat_flux: Vec<f64>,
+    /// Displacement of the contact nodes along x₁, scaled, n.
+    pub displacement: Vec<f64>,
+    /// Its change over the last step, n.
+    pub displacement_change: Vec<f64>,
+    /// The way of rolling on which the last step took the displacement to be forgotten, `m`.
+    pub relaxation_length: f64,
     /// Penetration δ, scaled; 0 when lifted.
     pub penetration: f64,
     /// Temperature of the wheel's rim, absolute, `K`.
@@ -43,15 +51,19 @@ impl Fields {
             pressure: vec![0.0; n],
             shear: vec![0.0; n],
             slip: vec![0.0; n],
+            saturation: vec![0.0; n],
             friction: vec![0.0; n],
             heat_flux: vec![0.0; n],
+            displacement: vec![0.0; n],
+            displacement_change: vec![0.0; n],
+            relaxation_length: rail.relaxation.length(rail.relaxation.half_length),
             penetration: 0.0,
             wheel_temperature: 0.0,
         }
     }
 
     /// The vectors, in the order of their declaration.
-    pub fn vectors(&self) -> [&Vec<f64>; 9] {
+    pub fn vectors(&self) -> [&Vec<f64>; 12] {
         [
             &self.temperature,
             &self.surface_temperature,
@@ -60,16 +72,32 @@ impl Fields {
             &self.pressure,
             &self.shear,
             &self.slip,
+            &self.saturation,
             &self.friction,
             &self.heat_flux,
+            &self.displacement,
+            &self.displacement_change,
         ]
     }
 
     /// Whether the outputs are linear functions of a vector or its largest value, in the order of [`Fields::vectors`]: so of
-    /// temperatures, displacement, wear and heat flux, not of tractions, slip and friction.
-    pub const OUTPUTS_ARE_LINEAR: [bool; 9] = [true, true, true, true, false, false, false, false, true];
+    /// temperatures, wear and heat flux, not of tractions, slip and friction. None where no output depends on it.
+    pub const OUTPUTS_ARE_LINEAR: [Option<bool>; 12] = [
+        Some(true),
+        Some(true),
+        Some(true),
+        Some(true),
+        Some(false),
+        Some(false),
+        Some(false),
+        Some(false),
+        Some(false),
+        Some(true),
+        None,
+        None,
+    ];
 
-    fn vectors_mut(&mut self) -> [&mut Vec<f64>; 9] {
+    fn vectors_mut(&mut self) -> [&mut Vec<f64>; 12] {
         [
             &mut self.temperature,
             &mut self.surface_temperature,
@@ -78,8 +106,11 @@ impl Fields {
             &mut self.pressure,
             &mut self.shear,
             &mut self.slip,
+            &mut self.saturation,
             &mut self.friction,
             &mut self.heat_flux,
+            &mut self.displacement,
+            &mut self.displacement_change,
         ]
     }
 
@@ -94,6 +125,7 @@ impl Fields {
         for (own, other) in self.vectors_mut().into_iter().zip(other.vectors()).skip(1) {
             own.copy_from_slice(other);
         }
+        self.relaxation_length = other.relaxation_length;
         self.penetration = other.penetration;
         self.wheel_temperature = other.wheel_temperature;
     }

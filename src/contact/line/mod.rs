@@ -12,6 +12,7 @@ pub mod problem;
 pub mod profiles;
 pub mod rail;
 pub mod readings;
+pub mod relaxation;
 pub mod rest;
 pub mod sensitivity;
 pub mod split;

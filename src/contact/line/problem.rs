@@ -7,11 +7,13 @@ use super::rail::Rail;
 use crate::contact::rim::HeatedNode;
 use crate::contact::task::Conditions;
 use crate::friction::FrictionState;
+use crate::friction::coulomb::Sliding;
 use crate::heat::march::HeatMarch;
 use crate::heat::surface::{SurfaceCondition, SurfaceExchange};
 use crate::mechanics::normal::problem::Constraint;
 use crate::mechanics::problem::{MechanicsProblem, Tractions};
 use crate::mechanics::softening::Softening;
+use crate::mechanics::transient::Transient;
 use crate::numerics::dense;
 use crate::parameters::{Control, Parameters, WheelHeating};
 use crate::settings::Settings;
@@ -37,6 +39,8 @@ pub struct MechanicsData {
     profile: Vec<f64>,
     /// Displacement along x₁ that heat and inertia cause, n.
     displacement: Vec<f64>,
+    /// Displacement along x₁ at the end of the step before, n.
+    displacement_before: Vec<f64>,
 }
 
 impl MechanicsData {
@@ -45,6 +49,20 @@ impl MechanicsData {
         MechanicsData {
             profile: vec![0.0; nodes],
             displacement: vec![0.0; nodes],
+            displacement_before: vec![0.0; nodes],
+        }
+    }
+
+    /// Takes the displacement at the end of the step before from the fields then.
+    pub fn start_from(&mut self, before: &Fields) {
+        self.displacement_before.copy_from_slice(&before.displacement);
+    }
+
+    /// Takes it from the fields at the end of the step.
+    pub fn start_from_end(&mut self, after: &Fields) {
+        let nodes = after.displacement.iter().zip(&after.displacement_change);
+        for (before, (now, change)) in self.displacement_before.iter_mut().zip(nodes) {
+            *before = now - change;
         }
     }
 }
@@ -107,6 +125,43 @@ impl<'a> Problem<'a> {
         }
     }
 
+    /// ∂u₁/∂t over the step, with the relaxation length of the fields.
+    pub fn transient(&self, fields: &Fields) -> Transient {
+        Transient::new(
+            self.conditions.duration,
+            self.conditions.motion.rolling_speed.abs(),
+            self.rail.mesh.contact_spacing(),
+            fields.relaxation_length,
+            self.rail.scales.displacement,
+        )
+    }
+
+    /// Its change with |V| by `speed` `m/s`.
+    pub fn transient_tangent(&self, fields: &Fields, speed: f64) -> Transient {
+        let per_speed = self.transient(fields).tangent(
+            self.conditions.duration,
+            self.conditions.motion.rolling_speed.abs(),
+            self.rail.mesh.contact_spacing(),
+            fields.relaxation_length,
+        );
+        Transient {
+            rate: speed * per_speed.rate,
+            centring: speed * per_speed.centring,
+        }
+    }
+
+    /// Relaxation length of a contact under the load that it had in the given fields, `m`; of the largest contact without load.
+    pub fn relaxation_length(&self, fields: &Fields) -> f64 {
+        let load = self.unit_force() * fields.pressure.iter().sum::<f64>();
+        let relaxation = &self.rail.relaxation;
+        if load > 0.0 {
+            let half_length = self.parameters.hertz_half_length(load);
+            relaxation.length(half_length.min(relaxation.half_length))
+        } else {
+            relaxation.length(relaxation.half_length)
+        }
+    }
+
     /// Force of a scaled traction of 1 on a node, `N`.
     pub fn unit_force(&self) -> f64 {
         self.rail.node_area(self.parameters) * self.rail.scales.pressure
@@ -139,10 +194,10 @@ impl<'a> Problem<'a> {
 
     /// What heats and cools the surface at the contact nodes with the wheel at θ_w.
     pub fn exchange(&self, fields: &Fields, wheel_rise: f64, exchange: &mut [SurfaceExchange]) {
-        let nodes = fields.pressure.iter().zip(&fields.slip);
-        for (exchange, (pressure, slip)) in exchange.iter_mut().zip(nodes) {
-            let pressure = pressure * self.rail.scales.pressure;
-            *exchange = SurfaceExchange::new(self.parameters, pressure, slip.abs(), wheel_rise);
+        for (node, exchange) in exchange.iter_mut().enumerate() {
+            let pressure = fields.pressure[node] * self.rail.scales.pressure;
+            let sliding = Sliding::new(fields.slip[node], fields.saturation[node]);
+            *exchange = SurfaceExchange::new(self.parameters, pressure, sliding, wheel_rise);
         }
     }
 
@@ -167,6 +222,24 @@ impl<'a> Problem<'a> {
         );
     }
 
+    /// The displacement along x₁ of the fields at the end of the step, and its change, for the coupling's thermal displacement.
+    pub fn close_displacement(&self, coupling: &Coupling, fields: &mut Fields, data: &mut MechanicsData) {
+        data.displacement.copy_from_slice(coupling.along());
+        // The upward part is not used.
+        let MechanicsData {
+            displacement, profile, ..
+        } = data;
+        self.add_inertia(self.rho_v2(), &fields.pressure, &fields.shear, displacement, profile);
+        let compliance = &self.rail.compliance.at_rest;
+        dense::multiply_add(&compliance.tangential_normal, &fields.pressure, -1.0, displacement);
+        dense::multiply_add(&compliance.tangential_tangential, &fields.shear, 1.0, displacement);
+        let before = data.displacement_before.iter();
+        for ((change, now), before) in fields.displacement_change.iter_mut().zip(&*displacement).zip(before) {
+            *change = now - before;
+        }
+        fields.displacement.copy_from_slice(displacement);
+    }
+
     /// Adds the displacement along x₁ and upward that the convective inertia of the given tractions causes.
     pub fn add_inertia(&self, rho_v2: f64, pressure: &[f64], shear: &[f64], along: &mut [f64], upward: &mut [f64]) {
         let inertia = &self.rail.compliance.inertia;
@@ -184,22 +257,27 @@ impl<'a> Problem<'a> {
         softening: &'s Softening,
     ) -> (MechanicsProblem<'s>, Tractions<'s>) {
         let motion = self.conditions.motion;
+        let transient = self.transient(fields);
         let problem = MechanicsProblem {
             compliance: &self.rail.compliance.at_rest,
             normal_compliance: softening.compliance(),
             profile: &data.profile,
             displacement: &data.displacement,
+            displacement_before: &data.displacement_before,
             friction: &fields.friction,
             constraint: self.constraint(),
             normal_solver: self.parameters.normal_solver,
             rigid_slip: motion.rigid_slip,
             strain_speed: motion.rolling_speed * self.strain_scale(),
+            transient,
+            near_field: self.rail.near_field,
             regularisation: self.parameters.slip_regularisation,
         };
         let tractions = Tractions {
             pressure: &mut fields.pressure,
             shear: &mut fields.shear,
             slip: &mut fields.slip,
+            saturation: &mut fields.saturation,
             penetration: &mut fields.penetration,
         };
         (problem, tractions)

@@ -93,6 +93,8 @@ pub struct ContactNode {
     pub shear: f64,
     /// Slip velocity, `m/s`; 0 outside the contact.
     pub slip: f64,
+    /// Share −τ/(μ p) of Coulomb's bound.
+    pub saturation: f64,
     /// Temperature rise over the ambient, `K`.
     pub temperature: f64,
 }
@@ -106,6 +108,7 @@ pub fn contact_nodes(rail: &Rail, fields: &Fields) -> Vec<ContactNode> {
             pressure: fields.pressure[i] * scale,
             shear: fields.shear[i] * scale,
             slip: fields.slip[i],
+            saturation: fields.saturation[i],
             temperature: fields.surface_temperature[mesh.contact_column(i)],
         })
         .collect()

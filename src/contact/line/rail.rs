@@ -1,10 +1,13 @@
 //! The rail: everything that is computed once, at initialisation.
 
+use super::relaxation::Relaxation;
 use crate::body::compliance::{RollingCompliance, Scales};
+use crate::body::half_plane::HalfPlanes;
 use crate::body::mesh::Mesh;
 use crate::body::pair;
 use crate::error::Result;
 use crate::heat::Heat;
+use crate::mechanics::front::NearField;
 use crate::parameters::Parameters;
 
 /// The rail and the wheel's profile, built at initialisation.
@@ -15,6 +18,10 @@ pub struct Rail {
     pub scales: Scales,
     /// Compliance of the contact nodes.
     pub compliance: RollingCompliance,
+    /// The half-planes as one cell sees them, scaled.
+    pub near_field: NearField,
+    /// How far rolling takes the displacement along.
+    pub relaxation: Relaxation,
     /// What the heat needs: depth basis, entering profile, thermal displacement.
     pub heat: Heat,
     /// Profile of the wheel √(r₀² − x²) − r₀ at the contact nodes, scaled. The u₁ in (9) is dropped: it moves the contact
@@ -32,6 +39,13 @@ impl Rail {
         let scales = Scales::new(parameters);
         let (compliance, thermal) = pair::build(&mesh, parameters, &scales)?;
         let heat = Heat::new(&mesh, &thermal, parameters)?;
+        let half_planes = HalfPlanes::of_pair(parameters);
+        let cell = mesh.contact_spacing() * scales.pressure / scales.displacement;
+        let near_field = NearField {
+            direct: half_planes.direct * cell,
+            coupling: half_planes.coupling * cell,
+        };
+        let relaxation = Relaxation::new(parameters, &mesh, &compliance.at_rest, near_field);
         let r0 = parameters.wheel_radius;
         let profile = (0..mesh.contact_nodes)
             .map(|i| {
@@ -44,6 +58,8 @@ impl Rail {
             mesh,
             scales,
             compliance,
+            near_field,
+            relaxation,
             heat,
             profile,
         })

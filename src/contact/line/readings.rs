@@ -40,7 +40,7 @@ fn nodes(problem: &Problem, fields: &Fields) -> impl Iterator<Item = Node> {
             slip,
             friction: fields.friction[node],
             heat_flux: fields.heat_flux[node],
-            sticks: pressure > 0.0 && coulomb::sticks(slip, regularisation),
+            sticks: pressure > 0.0 && coulomb::sticks(fields.saturation[node], regularisation),
         }
     })
 }

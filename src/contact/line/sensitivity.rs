@@ -14,6 +14,7 @@ use super::readings::readings;
 use super::split::{self, Scratch};
 use crate::contact::rim::{self, ContactHeat};
 use crate::error::{Error, Result};
+use crate::friction::coulomb::Sliding;
 use crate::heat::march::{Heated, MarchChange};
 use crate::heat::surface::{CommonChange, ExchangeChange, ExchangeTangent, SurfaceExchange};
 use crate::mechanics::normal::problem::Constraint;
@@ -163,11 +164,13 @@ impl<'a> Linearisation<'a> {
                 .scaled_load(problem.parameters, direction.inputs.normal_load),
             rigid_slip: direction.motion.rigid_slip,
             strain_speed: direction.speed * problem.strain_scale(),
+            transient: problem.transient_tangent(fields, direction.speed),
         };
         let mut tractions = Tractions {
             pressure: &mut tangent.pressure,
             shear: &mut tangent.shear,
             slip: &mut tangent.slip,
+            saturation: &mut tangent.saturation,
             penetration: &mut tangent.penetration,
         };
         let Scratch {
@@ -215,14 +218,20 @@ impl<'a> Linearisation<'a> {
         problem.exchange(fields, wheel_rise, &mut exchange);
         let exchange_tangent: Vec<ExchangeTangent> = (0..fields.pressure.len())
             .map(|node| {
-                let slip = fields.slip[node];
+                let (slip, saturation) = (fields.slip[node], fields.saturation[node]);
                 let change = ExchangeChange {
                     pressure: tangent.pressure[node] * scale,
-                    speed: slip.signum() * tangent.slip[node],
+                    sliding: Sliding::tangent((slip, saturation), (tangent.slip[node], tangent.saturation[node])),
                     wheel_rise: wheel_rise_tangent,
                 };
                 let pressure = fields.pressure[node] * scale;
-                SurfaceExchange::tangent(parameters, pressure, slip.abs(), wheel_rise, &change)
+                SurfaceExchange::tangent(
+                    parameters,
+                    pressure,
+                    Sliding::new(slip, saturation),
+                    wheel_rise,
+                    &change,
+                )
             })
             .collect();
         let solution = Heated {
@@ -306,13 +315,13 @@ impl<'a> Linearisation<'a> {
             .iter()
             .zip(tangent.vectors())
             .zip(Fields::OUTPUTS_ARE_LINEAR)
-            .map(|((field, tangent), linear)| {
-                let share = if linear {
+            .filter_map(|((field, tangent), linear)| {
+                let share = if linear? {
                     settings.linear_output_step
                 } else {
                     settings.output_step
                 };
-                share * largest(field) / largest(tangent)
+                Some(share * largest(field) / largest(tangent))
             })
             .filter(|step| step.is_finite() && *step > 0.0)
             .fold(f64::INFINITY, f64::min);

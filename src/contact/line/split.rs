@@ -9,7 +9,6 @@ use super::rest::Rest;
 use crate::contact::rim::{self, ContactHeat};
 use crate::contact::task::Convergence;
 use crate::error::{Error, Result};
-use crate::friction::coulomb;
 use crate::heat::march::{HeatMarch, Heated};
 use crate::heat::surface::SurfaceExchange;
 use crate::mechanics::normal::problem::Constraint;
@@ -75,6 +74,8 @@ impl Scratch {
 /// The first solver that did not converge, or [`Error::ContactLeavesWindow`]; `fields` is then unspecified.
 pub fn solve(problem: &Problem, before: &Fields, fields: &mut Fields, scratch: &mut Scratch) -> Result<Convergence> {
     let settings = problem.settings.split;
+    fields.relaxation_length = problem.relaxation_length(before);
+    scratch.data.start_from(before);
     start(problem, fields, scratch);
     let mut rest = Rest::new(settings);
     for iterations in 1..=settings.iterations {
@@ -95,6 +96,7 @@ pub fn solve(problem: &Problem, before: &Fields, fields: &mut Fields, scratch: &
         if rest.is_reached(change.max(unmapped), &sweep) {
             check_window(problem, fields)?;
             close_friction(problem, fields);
+            problem.close_displacement(&scratch.iterate, fields, &mut scratch.data);
             warm_wheel(problem, before, fields);
             return Ok(Convergence {
                 iterations,
@@ -132,6 +134,9 @@ pub fn solve_mechanics(problem: &Problem, fields: &mut Fields, scratch: &mut Scr
         let sweep = solve_tractions(problem, fields, scratch, tolerance)?;
         residual = sweep.shear_change;
         if sweep.rests(tolerance) {
+            problem.close_displacement(&scratch.iterate, fields, &mut scratch.data);
+            // There was no step before it.
+            fields.displacement_change.fill(0.0);
             return check_window(problem, fields);
         }
     }
@@ -147,6 +152,7 @@ pub fn solve_mechanics(problem: &Problem, fields: &mut Fields, scratch: &mut Scr
 /// # Errors
 /// Mechanics that are not at rest or singular.
 pub fn linearise_mechanics(problem: &Problem, fields: &mut Fields, scratch: &mut Scratch) -> Result<()> {
+    scratch.data.start_from_end(fields);
     start(problem, fields, scratch);
     problem.update_mechanics_data(&scratch.iterate, fields, &mut scratch.data);
     let (mechanics_problem, mut tractions) = problem.mechanics(fields, &scratch.data, &scratch.softening);
@@ -166,6 +172,7 @@ fn solve_tractions(problem: &Problem, fields: &mut Fields, scratch: &mut Scratch
         fields.pressure.fill(0.0);
         fields.shear.fill(0.0);
         fields.slip.fill(0.0);
+        fields.saturation.fill(0.0);
         fields.penetration = 0.0;
         return Ok(Sweep::NONE);
     }
@@ -306,8 +313,7 @@ fn close_friction(problem: &Problem, fields: &mut Fields) {
         let mu = law.coefficient(fields.surface_temperature[first + node]).0;
         fields.friction[node] = mu;
         if fields.pressure[node] > 0.0 {
-            let saturation = coulomb::saturation(fields.slip[node], problem.parameters.slip_regularisation);
-            fields.shear[node] = -mu * fields.pressure[node] * saturation;
+            fields.shear[node] = -mu * fields.pressure[node] * fields.saturation[node];
         }
     }
 }

@@ -1,0 +1,59 @@
+//! How far a contact must roll until the displacement along x₁ has forgotten a change: for the fitted step of ∂u₁/∂t
+//! ([`crate::mechanics::transient`]).
+//!
+//! A change of the shear force per width by ΔF changes u₁ in the contact by Λ direct/π ΔF, and rolling brings in material that
+//! has not moved, so that the change decays as exp(−x/ℓ). Kalker's transients have ℓ ≈ a/2 ... a for the contact alone; the
+//! body's compliance is in series with it, and lengthens ℓ with the logarithm of its size over that of the contact:
+//! ℓ = ¾ a Λ. The factor was fitted to transients with short steps, after jumps of the creepage to a twentieth and to
+//! the whole of saturation, with both kinds of wheel: with it, steps of any length stay within 2 % of μN of them.
+
+use crate::body::compliance::Compliance;
+use crate::body::mesh::Mesh;
+use crate::mechanics::front::NearField;
+use crate::parameters::Parameters;
+use std::f64::consts::PI;
+
+/// ℓ/(a Λ).
+const SHARE: f64 = 0.75;
+
+/// The relaxation length as a function of the contact's half-length.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Relaxation {
+    /// Half-length at the largest load, `m`.
+    pub half_length: f64,
+    /// Λ at the largest load: mean displacement along x₁ in the contact under a shear that is elliptic, per force and width, in
+    /// units of direct/π.
+    compliance: f64,
+}
+
+impl Relaxation {
+    /// Of a pair's compliance.
+    pub fn new(parameters: &Parameters, mesh: &Mesh, compliance: &Compliance, near_field: NearField) -> Relaxation {
+        let half_length = parameters.hertz_half_length(parameters.largest_load);
+        let shear: Vec<f64> = (0..mesh.contact_nodes)
+            .map(|node| {
+                (1.0 - (mesh.contact_position(node) / half_length).powi(2))
+                    .max(0.0)
+                    .sqrt()
+            })
+            .collect();
+        let force: f64 = shear.iter().sum();
+        let inside: Vec<usize> = (0..shear.len()).filter(|&node| shear[node] > 0.0).collect();
+        let row = |i: usize| {
+            inside
+                .iter()
+                .map(|&j| compliance.tangential_tangential[(i, j)] * shear[j])
+                .sum::<f64>()
+        };
+        let mean = inside.iter().map(|&i| row(i)).sum::<f64>() / inside.len() as f64;
+        Relaxation {
+            half_length,
+            compliance: PI * mean / (force * near_field.direct),
+        }
+    }
+
+    /// ℓ of a contact of this half-length, `m`. A shorter contact is more compliant by the logarithm of the ratio.
+    pub fn length(&self, half_length: f64) -> f64 {
+        SHARE * half_length * (self.compliance + (self.half_length / half_length).ln())
+    }
+}

@@ -1,0 +1,147 @@
+//! Coulomb's law itself: a primal–dual active set of nodes that stick and nodes that slip (semismooth Newton).
+//!
+//! With the sets held, the law is s = 0 where a node sticks and τ + μ p φ = 0, φ = ±1, where it slips. Then all nodes are
+//! exchanged at once that break their condition: a shear beyond the bound, or a slip along the shear. Nearly always a few
+//! exchanges settle it. They may cycle; then [`super::path`] finishes, which exchanges one node at a time.
+
+use super::{Ended, LawRow, Tangential, TangentialProblem};
+use crate::numerics::dense::largest;
+
+impl Tangential {
+    /// Solves Coulomb's law from the nodes in slip that `saturation` tells.
+    pub(super) fn solve_coulomb(&mut self, problem: &TangentialProblem, saturation: &[f64], shear: &[f64]) -> Ended {
+        let m = shear.len();
+        let settings = self.settings;
+        let tolerance = problem.tolerance * largest(problem.pressure);
+        for (sliding, phi) in self.sliding.iter_mut().zip(saturation) {
+            let start = if phi.abs() == 1.0 { *phi } else { 0.0 };
+            self.factored &= *sliding == start;
+            *sliding = start;
+        }
+        self.update_point(problem, shear);
+        let (mut exchanges, mut last_length) = (0, f64::INFINITY);
+        for steps in 1..=settings.newton_steps {
+            self.set_coulomb_rows(problem);
+            self.set_residual(problem, shear);
+            let fresh = !self.factored;
+            if fresh && !self.factorise(problem) {
+                return Ended::Stalled(steps);
+            }
+            self.find_step(m);
+            let length = largest(&self.step[..m]);
+            if !length.is_finite() {
+                return Ended::Stalled(steps);
+            }
+            for (change, step) in self.change.iter_mut().zip(&self.step[..m]) {
+                *change += step;
+            }
+            self.update_point(problem, shear);
+            if self.exchange(problem, shear) {
+                self.forget();
+                (exchanges, last_length) = (exchanges + 1, f64::INFINITY);
+                if exchanges % settings.exchanges.max(1) == 0 && !self.follow_path(problem, shear) {
+                    return Ended::Stalled(steps);
+                }
+                continue;
+            }
+            if !fresh && last_length.is_finite() {
+                self.contraction = (length / last_length).max(settings.least_contraction);
+            }
+            if length.min(length * self.contraction) <= tolerance {
+                self.set_saturation(problem, shear);
+                return Ended::Converged(steps);
+            }
+            // What the leading edge adds is not linear: with a matrix that no longer fits the steps do not get shorter.
+            if length > settings.slow_contraction * last_length {
+                self.forget();
+            }
+            last_length = length;
+        }
+        Ended::Stalled(settings.newton_steps)
+    }
+
+    /// The derivatives of τ + μ p φ where a node slips; where it sticks those of s, as a shear.
+    pub(super) fn set_coulomb_rows(&mut self, problem: &TangentialProblem) {
+        for (i, mu) in problem.friction.iter().enumerate() {
+            let phi = self.sliding[i];
+            self.rows[i] = if phi == 0.0 {
+                let compliance = self.own_slip(problem, i);
+                LawRow {
+                    // A node whose shear moves nothing: at rest, before any time has passed. It carries none.
+                    by_shear: if compliance > 0.0 { 0.0 } else { 1.0 },
+                    by_slip: if compliance > 0.0 { 1.0 / compliance } else { 0.0 },
+                    ..LawRow::default()
+                }
+            } else {
+                LawRow {
+                    by_shear: 1.0,
+                    by_slip: 0.0,
+                    by_pressure: mu * phi,
+                    by_friction: self.pressure[i] * phi,
+                }
+            };
+        }
+    }
+
+    /// Slip velocity per shear of a node on itself, `m/s`.
+    fn own_slip(&self, problem: &TangentialProblem, node: usize) -> f64 {
+        problem.slip_response[node * problem.pressure.len() + node]
+    }
+
+    fn set_residual(&mut self, problem: &TangentialProblem, shear: &[f64]) {
+        for (i, shear) in shear.iter().enumerate() {
+            let row = &self.rows[i];
+            let tau = shear + self.change[i];
+            self.residual[i] = if self.sliding[i] == 0.0 {
+                row.by_shear * tau + row.by_slip * self.slip[i]
+            } else {
+                tau + problem.friction[i] * self.pressure[i] * self.sliding[i]
+            };
+        }
+    }
+
+    /// Moves the nodes that break their condition to the other set. Returns whether there were any.
+    fn exchange(&mut self, problem: &TangentialProblem, shear: &[f64]) -> bool {
+        let m = shear.len();
+        let bound = |i: usize, pressure: &[f64]| problem.friction[i] * pressure[i];
+        let largest_bound = (0..m).fold(0.0, |largest: f64, i| largest.max(bound(i, &self.pressure)));
+        let round_off = self.settings.round_off * largest_bound;
+        let mut changed = false;
+        for (i, shear) in shear.iter().enumerate() {
+            let tau = shear + self.change[i];
+            let compliance = self.own_slip(problem, i);
+            let slip = self.slip[i];
+            let held = self.sliding[i];
+            let next = if held != 0.0 {
+                // The shear that would stop the slip: as long as it is beyond the bound, the node slips on.
+                let against = held * slip < 0.0 && slip.abs() > compliance * round_off;
+                if against { 0.0 } else { held }
+            } else if compliance <= 0.0 {
+                if slip == 0.0 { 0.0 } else { slip.signum() }
+            } else if tau.abs() > bound(i, &self.pressure) + round_off {
+                -tau.signum()
+            } else {
+                0.0
+            };
+            changed |= next != held;
+            self.sliding[i] = next;
+        }
+        changed
+    }
+
+    /// φ = −τ/(μ p).
+    fn set_saturation(&mut self, problem: &TangentialProblem, shear: &[f64]) {
+        // The largest number below 1: ±1 is slip.
+        let stick = 1.0 - f64::EPSILON;
+        for (i, shear) in shear.iter().enumerate() {
+            let bound = problem.friction[i] * self.pressure[i];
+            self.saturation[i] = if self.sliding[i] != 0.0 {
+                self.sliding[i]
+            } else if bound > 0.0 {
+                (-(shear + self.change[i]) / bound).clamp(-stick, stick)
+            } else {
+                0.0
+            };
+        }
+    }
+}

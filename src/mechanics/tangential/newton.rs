@@ -1,0 +1,120 @@
+//! The regularised law (30): damped Newton, with the factorised matrix as long as it contracts fast.
+
+use super::{Ended, LawRow, Tangential, TangentialProblem};
+use crate::friction::coulomb::{saturation_slope, saturations};
+use crate::numerics::dense::largest;
+
+impl Tangential {
+    /// Solves (30), from a larger ε where that is needed.
+    pub(super) fn solve_regularised(&mut self, problem: &TangentialProblem, shear: &[f64]) -> Ended {
+        let m = shear.len();
+        let mut end = self.newton(problem, problem.regularisation, shear);
+        let mut iterations = end.steps();
+        if let Ended::Stalled(_) = end {
+            // From a large ε, where the law is nearly linear, down to the one asked for.
+            self.change[..m].fill(0.0);
+            for half_decades in (0..=self.settings.continuation).rev() {
+                self.forget();
+                let regularisation = problem.regularisation * 10.0_f64.powf(0.5 * half_decades as f64);
+                end = self.newton(problem, regularisation, shear);
+                iterations += end.steps();
+            }
+            self.forget();
+        }
+        match end {
+            Ended::Converged(_) => Ended::Converged(iterations),
+            Ended::Stalled(_) => Ended::Stalled(iterations),
+        }
+    }
+
+    /// Damped Newton at one ε.
+    fn newton(&mut self, problem: &TangentialProblem, regularisation: f64, shear: &[f64]) -> Ended {
+        let m = shear.len();
+        let settings = self.settings;
+        let tolerance = problem.tolerance * largest(problem.pressure);
+        let mut norm = self.update_residual(problem, regularisation, shear);
+        let mut last_length = f64::INFINITY;
+        for steps in 1..=settings.newton_steps {
+            let fresh = !self.factored;
+            if fresh {
+                self.set_regularised_rows(problem, regularisation);
+                if !self.factorise(problem) {
+                    return Ended::Stalled(steps);
+                }
+            }
+            self.find_step(m);
+            let length = largest(&self.step[..m]);
+            if !fresh && last_length.is_finite() {
+                self.contraction = (length / last_length).max(settings.least_contraction);
+            }
+            let round_off = length <= tolerance;
+            let contracts = length <= settings.slow_contraction * last_length || round_off;
+            if !fresh && !contracts {
+                self.factored = false;
+                continue;
+            }
+            let last = round_off || length * self.contraction <= tolerance;
+            self.before[..m].copy_from_slice(&self.change[..m]);
+            let mut damping = 1.0;
+            for halving in 0..=settings.halvings {
+                for ((change, before), step) in self.change.iter_mut().zip(&self.before).zip(&self.step[..m]) {
+                    *change = before + damping * step;
+                }
+                let trial = self.update_residual(problem, regularisation, shear);
+                // A step as short as round-off cannot be expected to lower the residual.
+                if round_off || trial <= (1.0 - 0.1 * damping) * norm {
+                    norm = trial;
+                    break;
+                }
+                if halving == settings.halvings || !fresh {
+                    if fresh {
+                        return Ended::Stalled(steps);
+                    }
+                    // The step of a matrix that was factorised elsewhere may raise the residual: go back, and factorise here.
+                    self.change[..m].copy_from_slice(&self.before[..m]);
+                    norm = self.update_residual(problem, regularisation, shear);
+                    self.factored = false;
+                    break;
+                }
+                damping *= 0.5;
+            }
+            if last && self.factored && damping == 1.0 {
+                return Ended::Converged(steps);
+            }
+            last_length = if damping < 1.0 {
+                self.factored = false;
+                f64::INFINITY
+            } else {
+                length
+            };
+        }
+        Ended::Stalled(settings.newton_steps)
+    }
+
+    /// The point after `self.change`, φ(s) and the residual τ + μ p φ(s); returns the residual's 2-norm.
+    fn update_residual(&mut self, problem: &TangentialProblem, regularisation: f64, shear: &[f64]) -> f64 {
+        let m = shear.len();
+        self.update_point(problem, shear);
+        saturations(&self.slip[..m], regularisation, &mut self.saturation);
+        let mut square = 0.0;
+        for (i, shear) in shear.iter().enumerate() {
+            let bound = problem.friction[i] * self.pressure[i];
+            self.residual[i] = shear + self.change[i] + bound * self.saturation[i];
+            square += self.residual[i] * self.residual[i];
+        }
+        square.sqrt()
+    }
+
+    /// The derivatives of τ + μ p φ(s).
+    pub(super) fn set_regularised_rows(&mut self, problem: &TangentialProblem, regularisation: f64) {
+        for (i, mu) in problem.friction.iter().enumerate() {
+            let (pressure, phi) = (self.pressure[i], self.saturation[i]);
+            self.rows[i] = LawRow {
+                by_shear: 1.0,
+                by_slip: mu * pressure * saturation_slope(self.slip[i], regularisation),
+                by_pressure: mu * phi,
+                by_friction: pressure * phi,
+            };
+        }
+    }
+}

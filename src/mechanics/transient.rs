@@ -1,0 +1,112 @@
+//! ∂u₁/∂t in the slip velocity: the material under the wheel has come from the displacement of the step before.
+//!
+//! Backward Euler would take (u₁ − u₁ of the step before)/Δt. It relaxes a jump by 1/(1 + |V|Δt/ℓ) a step, where ℓ is the
+//! way on which rolling forgets it, several half-lengths of the contact, because the compliance of the whole body is in
+//! series with that of the contact: after 26 half-lengths some 15 % of μN would still be left. So the step is fitted to the
+//! exponential that is the solution, Δt* = (ℓ/|V|)(exp(|V|Δt/ℓ) − 1): exact for ∂u/∂t + |V|u/ℓ = F, Δt where the step is
+//! short, and without trace where it is long. At rest Δt* = Δt.
+
+/// How the displacement's rate of change enters the slip.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Transient {
+    /// 1/Δt* times the displacement scale: slip velocity per scaled change of displacement, `m/s`.
+    pub rate: f64,
+    /// θ: share of the node ahead in the change. The strain is the difference of a node and the one ahead of it, centred
+    /// between them, and so should the change be: θ = ½. At rest no strain is there to tell nodes whose shear alternates, and
+    /// θ = ½ would leave them without stiffness; θ = ½ |V|Δt/(|V|Δt + Δx) is between.
+    pub centring: f64,
+}
+
+/// Beyond this |V|Δt/ℓ nothing of the step before is left that a number in double precision would show.
+const FORGOTTEN: f64 = 60.0;
+
+impl Transient {
+    /// Over a step of `duration` `s` at |V| = `speed` `m/s`, with nodes `spacing` `m` apart and a relaxation length `length`
+    /// `m`. None, as in steady rolling, where the step is infinite or 0: a state without a step before it.
+    pub fn new(duration: f64, speed: f64, spacing: f64, length: f64, displacement_scale: f64) -> Transient {
+        let travelled = speed * duration;
+        if !(duration > 0.0 && duration.is_finite()) || travelled > FORGOTTEN * length {
+            return Transient::default();
+        }
+        Transient {
+            rate: displacement_scale / (duration * growth(travelled / length)),
+            centring: 0.5 * travelled / (travelled + spacing),
+        }
+    }
+
+    /// Its change with |V|, per `m/s`.
+    pub fn tangent(&self, duration: f64, speed: f64, spacing: f64, length: f64) -> Transient {
+        if self.rate == 0.0 {
+            return Transient::default();
+        }
+        let travelled = speed * duration;
+        Transient {
+            rate: -self.rate * growth_slope(travelled / length) * duration / length,
+            centring: 0.5 * duration * spacing / ((travelled + spacing) * (travelled + spacing)),
+        }
+    }
+}
+
+/// (eᶻ − 1)/z.
+fn growth(z: f64) -> f64 {
+    if z < 1e-4 {
+        1.0 + z / 2.0 + z * z / 6.0
+    } else {
+        z.exp_m1() / z
+    }
+}
+
+/// d/dz ln((eᶻ − 1)/z).
+fn growth_slope(z: f64) -> f64 {
+    if z < 1e-3 {
+        0.5 + z / 12.0
+    } else {
+        1.0 / -(-z).exp_m1() - 1.0 / z
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SPACING: f64 = 2e-4;
+    const LENGTH: f64 = 0.02;
+
+    fn at(speed: f64, duration: f64) -> Transient {
+        Transient::new(duration, speed, SPACING, LENGTH, 1.0)
+    }
+
+    /// A displacement that starts at 1 and is pulled nowhere decays as exp(−|V|t/ℓ), whatever the step.
+    #[test]
+    fn the_fitted_step_relaxes_as_the_exponential() {
+        let speed = 10.0;
+        for duration in [1e-5, 1e-3, 1e-2, 0.1] {
+            let rate = at(speed, duration).rate;
+            let relaxed = rate / (rate + speed / LENGTH);
+            let exact = (-speed * duration / LENGTH).exp();
+            assert!((relaxed / exact - 1.0).abs() < 1e-12, "{relaxed} {exact}");
+        }
+        assert_eq!(at(10.0, 0.2), Transient::default());
+        assert_eq!(at(10.0, f64::INFINITY), Transient::default());
+        assert_eq!(
+            at(0.0, 1e-3),
+            Transient {
+                rate: 1e3,
+                centring: 0.0
+            }
+        );
+    }
+
+    #[test]
+    fn the_tangent_is_the_derivative() {
+        for (speed, duration) in [(1e-9, 1e-3), (0.1, 1e-3), (10.0, 1e-3), (10.0, 1e-2), (80.0, 1e-2)] {
+            let h = 1e-6 * f64::max(speed, 1e-3);
+            let (ahead, behind) = (at(speed + h, duration), at(speed - h, duration));
+            let tangent = at(speed, duration).tangent(duration, speed, SPACING, LENGTH);
+            let close =
+                |difference: f64, d: f64, size: f64| (difference / (2.0 * h) - d).abs() < 1e-6 * (d.abs() + size);
+            assert!(close(ahead.rate - behind.rate, tangent.rate, ahead.rate));
+            assert!(close(ahead.centring - behind.centring, tangent.centring, 1.0));
+        }
+    }
+}
