@@ -170,6 +170,9 @@ pub struct SensitivitySettings {
     /// The same for fields of which the outputs are linear functions or the largest value: temperature, displacement, wear
     /// and flux. It is larger, so that a change of the rail that hardly moves the tractions is not lost in round-off.
     pub linear_output_step: f64,
+    /// Least step, relative to the nominal value of the input. Like bodies at creepage 0 have fields that are nothing but
+    /// round-off, and a share of those is lost in the outputs that the others make; no contact changes within this step.
+    pub least_output_step: f64,
 }
 
 impl Default for StepSettings {
@@ -271,6 +274,7 @@ impl Default for SensitivitySettings {
             tolerance: 1e-9,
             output_step: 1e-7,
             linear_output_step: 1e-5,
+            least_output_step: 1e-9,
         }
     }
 }

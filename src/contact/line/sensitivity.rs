@@ -42,6 +42,8 @@ struct Direction {
     motion: Motion,
     /// d|V|, `m/s`.
     speed: f64,
+    /// Least step along it of the difference of the outputs.
+    least_step: f64,
 }
 
 impl<'a> Linearisation<'a> {
@@ -82,6 +84,7 @@ impl<'a> Linearisation<'a> {
             } else {
                 -motion.rolling_speed
             },
+            least_step: self.problem.settings.sensitivity.least_output_step * INPUTS[input].nominal,
         };
         let tangent = self.fields_tangent(&direction)?;
         Ok(self.output_tangent(&direction, &tangent))
@@ -282,7 +285,7 @@ impl<'a> Linearisation<'a> {
     fn output_tangent(&self, direction: &Direction, tangent: &Fields) -> Outputs {
         let (problem, fields) = (&self.problem, &*self.fields);
         let conditions = &problem.conditions;
-        let step = self.output_step(tangent);
+        let step = self.output_step(tangent).max(direction.least_step);
         let moved = |step: f64| {
             let mut fields = fields.clone();
             fields.add_multiple(step, tangent);
