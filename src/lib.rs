@@ -48,7 +48,8 @@
 //! Where the paper is silent or wrong as printed, the code differs from it: wear W ≥ 0 is positive; the bracket of (23) is
 //! closed such that conduction cools a hot rail; the local slip speed \|s\| stands where (23) and (24) print V; (30) has the
 //! factor 2/π; (13) ends at μ_F; heat has no condition on the outflow side. The u₁ of (9) is dropped: some µm against a
-//! contact of some mm.
+//! contact of some mm. And the default wheel is elastic, of the rail's material, where the paper's is rigid ([`Wheel`]): on an
+//! elastic rail a rigid wheel pulls at creepage 0.
 //!
 //! # Signs
 //!

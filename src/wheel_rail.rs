@@ -333,13 +333,15 @@ impl Model {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::parameters::{NormalSolver, WheelHeating};
+    use crate::parameters::{NormalSolver, Wheel, WheelHeating};
     use crate::settings::limits::LIMITS;
 
-    /// A small model that heats its wheel, and a state from which a jump of the creepage divides the next step.
+    /// A small model of a rigid wheel, whose normal and tangential problem are coupled, that is heated, and a state from which
+    /// a jump of the creepage divides the next step.
     fn model(normal_solver: NormalSolver, settings: Settings) -> Model {
         let parameters = Parameters {
             normal_solver,
+            wheel: Wheel::Rigid,
             wheel_heating: WheelHeating::On,
             contact_nodes: 25,
             depth_nodes: 17,

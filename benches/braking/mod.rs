@@ -12,7 +12,8 @@ pub const STEP: f64 = 1e-3;
 /// Where the measured stretch begins, `s`: full braking, the wheel about to slide.
 const FROM: f64 = 4.0;
 
-/// A contact window of `contact_nodes` nodes, all effects on, moved by a vehicle.
+/// A contact window of `contact_nodes` nodes, the default wheel (elastic, of the rail's material), all effects on, moved by a
+/// vehicle.
 pub fn parameters(contact_nodes: usize) -> Parameters {
     Parameters {
         slip_source: SlipSource::VehicleSpeed,

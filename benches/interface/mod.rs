@@ -1,4 +1,5 @@
-//! One warm contact at a given creepage, through the C functions of the shared library and natively, at default settings.
+//! One warm contact at a given creepage, through the C functions of the shared library and natively, at default settings:
+//! the wheel is elastic, of the rail's material.
 
 // Each benchmark uses a part of this.
 #![allow(dead_code)]

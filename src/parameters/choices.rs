@@ -65,9 +65,10 @@ choices! {
 
     /// What the wheel is made of.
     Wheel {
-        /// Rigid: the paper's.
+        /// Rigid: the paper's. On an elastic rail it pulls at creepage 0.
         Rigid,
-        /// Elastic: its compliance adds to the rail's (`body::pair`).
+        /// Elastic, the default: its compliance adds to the rail's (`body::pair`). Of the rail's material it rolls freely at
+        /// creepage 0.
         Elastic,
     }
 

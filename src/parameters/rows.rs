@@ -122,7 +122,8 @@ macro_rules! is_there {
 
 macro_rules! parameters {
     ($($(#[doc = $description:literal])+ $field:ident $($symbol:literal)?: $type:ty = $kind:ident $columns:tt)+) => {
-        /// All parameters. Start values are those of section 5 of the paper where it gives a number.
+        /// All parameters. Start values are those of section 5 of the paper where it gives a number; the wheel is elastic, where
+        /// the paper's is rigid.
         #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
         pub struct Parameters {
             $(
@@ -131,8 +132,9 @@ macro_rules! parameters {
                 #[doc = $kind!(unit $columns)]
                 pub $field: $type,
             )+
-            /// Couple normal and tangential displacement (Dundurs). A rigid wheel on an elastic rail is coupled; the
-            /// switch exists for the comparison with Carter's theory, which has identical bodies. Not an FMI parameter.
+            /// Couple normal and tangential displacement (Dundurs). A rigid wheel on an elastic rail is coupled, a wheel of
+            /// the rail's material is not; the switch exists for the comparison of the former with Carter's theory, which
+            /// has identical bodies. Not an FMI parameter.
             pub normal_tangential_coupling: bool,
         }
 

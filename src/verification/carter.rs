@@ -8,7 +8,7 @@
 use super::row::Row;
 use crate::error::Result;
 use crate::friction::coulomb;
-use crate::parameters::{FrictionLaw, Parameters};
+use crate::parameters::{FrictionLaw, Parameters, Wheel};
 use crate::signals::Inputs;
 use crate::simulation::Simulation;
 
@@ -20,9 +20,10 @@ pub const TRACTION_TOLERANCE: f64 = 0.02;
 /// Creepage at which the stick zone is measured.
 const STICK_CREEPAGE: f64 = 0.002;
 
-/// Constant μ, like bodies, no heat or wear in the gap.
+/// Constant μ, the rigid wheel without coupling, no heat or wear in the gap.
 pub fn parameters() -> Parameters {
     Parameters {
+        wheel: Wheel::Rigid,
         friction_law: FrictionLaw::Constant,
         normal_tangential_coupling: false,
         slip_regularisation: 1e-4,

@@ -53,7 +53,10 @@ pub fn rows() -> Result<Vec<Row>> {
         "creepage of free rolling, rigid wheel",
         "1",
         -0.0016,
-        free_rolling(Parameters::default())?,
+        free_rolling(Parameters {
+            wheel: Wheel::Rigid,
+            ..Parameters::default()
+        })?,
         2e-4,
         "independent prototype, 61 nodes over 12 mm",
     ));

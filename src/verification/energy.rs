@@ -83,6 +83,7 @@ type Step = (f64, f64, f64);
 /// A solver that did not converge.
 pub fn rows() -> Result<Vec<Row>> {
     let base = Parameters {
+        wheel: Wheel::Rigid,
         slip_source: SlipSource::VehicleSpeed,
         friction_law: FrictionLaw::PiecewiseLinear,
         // More than the default, so that debris take a visible share.

@@ -8,7 +8,7 @@ use crate::friction::FrictionState;
 use crate::heat::basis::DepthBasis;
 use crate::heat::march::{HeatMarch, Heated};
 use crate::heat::surface::{SurfaceCondition, SurfaceExchange};
-use crate::parameters::{FrictionLaw, Parameters};
+use crate::parameters::{FrictionLaw, Parameters, Wheel};
 use crate::settings::HeatSettings;
 use crate::transport::Upwind;
 use std::f64::consts::{FRAC_PI_2, PI};
@@ -20,9 +20,10 @@ const LOAD: f64 = 60e3;
 const ROLLING_SPEED: f64 = 10.0;
 const SLIP: f64 = 0.1;
 
-/// All frictional heat enters the rail at constant μ.
+/// All frictional heat enters the rail at constant μ, under the rigid wheel's pressure: the prototype's.
 fn parameters() -> Parameters {
     Parameters {
+        wheel: Wheel::Rigid,
         friction_law: FrictionLaw::Constant,
         heat_partition: 1.0,
         ..Parameters::default()

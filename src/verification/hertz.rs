@@ -6,7 +6,7 @@
 
 use super::row::Row;
 use crate::error::Result;
-use crate::parameters::{FrictionLaw, Parameters};
+use crate::parameters::{FrictionLaw, Parameters, Wheel};
 use crate::signals::Inputs;
 use crate::simulation::Simulation;
 
@@ -21,9 +21,9 @@ const PRESSURE_TOLERANCE: f64 = 0.01;
 /// # Errors
 /// A solver that did not converge.
 pub fn rows() -> Result<Vec<Row>> {
-    let mut rows = contact("rigid wheel", Parameters::default(), &[10, 20, 35, 50, 75, 100])?;
+    let mut rows = contact("rigid wheel", rigid(), &[10, 20, 35, 50, 75, 100])?;
     let inputs = Inputs::default();
-    let mut run = Simulation::new(&smooth(Parameters::default()), &inputs)?;
+    let mut run = Simulation::new(&smooth(rigid()), &inputs)?;
     // The penetration of a line contact depends on the size of the body, and there is no closed form for the strip.
     rows.push(Row::relative(
         "penetration at 60 kN, rigid wheel",
@@ -34,6 +34,14 @@ pub fn rows() -> Result<Vec<Row>> {
         "independent prototype, 61 nodes over 12 mm",
     ));
     Ok(rows)
+}
+
+/// The rigid wheel; the elastic one's rows are in [`super::elastic_wheel`].
+fn rigid() -> Parameters {
+    Parameters {
+        wheel: Wheel::Rigid,
+        ..Parameters::default()
+    }
 }
 
 /// Without friction, heat and wear.
@@ -52,7 +60,7 @@ fn smooth(parameters: Parameters) -> Parameters {
 /// # Errors
 /// A solver that did not converge.
 pub fn curve() -> Result<Vec<Vec<f64>>> {
-    let parameters = smooth(Parameters::default());
+    let parameters = smooth(rigid());
     let mut run = Simulation::new(&parameters, &Inputs::default())?;
     let mut points = Vec::new();
     for share in [0.2, 0.5, 1.0] {

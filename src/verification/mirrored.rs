@@ -17,6 +17,7 @@ const TOLERANCE: f64 = 1e-10;
 /// A solver that did not converge.
 pub fn rows() -> Result<Vec<Row>> {
     let paper = Parameters {
+        wheel: Wheel::Rigid,
         slip_source: SlipSource::VehicleSpeed,
         ..Parameters::default()
     };

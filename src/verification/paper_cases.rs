@@ -5,7 +5,7 @@
 
 use super::row::Row;
 use crate::error::Result;
-use crate::parameters::{Control, FrictionLaw, Parameters, SlipSource};
+use crate::parameters::{Control, FrictionLaw, Parameters, SlipSource, Wheel};
 use crate::signals::Inputs;
 use crate::simulation::Simulation;
 
@@ -19,9 +19,10 @@ const AMBIENT: f64 = 273.15;
 /// Name and hot temperature θ_F `°C` of the cases with a temperature-dependent coefficient.
 pub const CASES: [(&str, f64); 3] = [("a", 150.0), ("b", 125.0), ("c", 100.0)];
 
-/// Parameters of a case: constant μ without a hot temperature `°C`.
+/// Parameters of a case, the rigid wheel's: constant μ without a hot temperature `°C`.
 pub fn parameters(hot: Option<f64>) -> Parameters {
     let mut parameters = Parameters {
+        wheel: Wheel::Rigid,
         control: Control::Penetration,
         slip_source: SlipSource::VehicleSpeed,
         friction_law: FrictionLaw::Constant,

@@ -5,7 +5,7 @@
 
 use super::row::Row;
 use crate::error::Result;
-use crate::parameters::{FrictionLaw, Parameters};
+use crate::parameters::{FrictionLaw, Parameters, Wheel};
 use crate::signals::Inputs;
 use crate::simulation::Simulation;
 
@@ -17,6 +17,7 @@ const SOURCE: &str = "independent prototype, 61 nodes over 12 mm";
 /// A solver that did not converge.
 pub fn rows() -> Result<Vec<Row>> {
     let parameters = Parameters {
+        wheel: Wheel::Rigid,
         friction_law: FrictionLaw::Constant,
         ..Parameters::default()
     };

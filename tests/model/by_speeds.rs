@@ -1,6 +1,6 @@
 //! A wheel whose motion is given by two speeds.
 
-use wheelrail::parameters::{Parameters, SlipSource};
+use wheelrail::parameters::{Parameters, SlipSource, Wheel};
 use wheelrail::signals::Inputs;
 
 /// The default ones, with the vehicle's speed as an input.
@@ -9,6 +9,11 @@ pub fn parameters() -> Parameters {
         slip_source: SlipSource::VehicleSpeed,
         ..Parameters::default()
     }
+}
+
+/// The same with each wheel: the rigid one couples normal and tangential problem, the default one does not.
+pub fn wheels() -> [Parameters; 2] {
+    [Wheel::Rigid, Wheel::Elastic].map(|wheel| Parameters { wheel, ..parameters() })
 }
 
 /// Vehicle speed, circumferential speed [m/s], load [N].

@@ -2,6 +2,7 @@
 
 mod bad_input;
 mod by_speeds;
+mod defaults;
 mod effects;
 mod lift_off;
 mod paper_mesh;

@@ -160,7 +160,7 @@ impl Line {
 mod tests {
     use super::*;
     use crate::numerics::dense;
-    use crate::parameters::{Control, NormalSolver, SlipSource};
+    use crate::parameters::{Control, NormalSolver, SlipSource, Wheel};
     use crate::signals::Inputs;
     use crate::simulation::Simulation as Run;
     use crate::transport::Upwind;
@@ -290,6 +290,8 @@ mod tests {
 
         fn run_with(normal_solver: NormalSolver, control: Control) -> Run {
             let parameters = Parameters {
+                // Normal and tangential problem are coupled.
+                wheel: Wheel::Rigid,
                 normal_solver,
                 control,
                 slip_source: SlipSource::VehicleSpeed,
