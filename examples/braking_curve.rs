@@ -21,14 +21,14 @@ fn main() -> Result<(), wheelrail::simulation::Error> {
         slip_source: SlipSource::VehicleSpeed,
         ..Parameters::default()
     };
-    // Braked at a creepage of -0.2 %; from 4 s to 6 s the wheel falls behind by a fifth and recovers.
+    // Braked at a creepage of -0.065 %; from 4 s to 6 s the wheel falls behind by a fifth and recovers.
     let rows = [
-        (0.0, -0.002),
-        (4.0, -0.002),
+        (0.0, -0.000_65),
+        (4.0, -0.000_65),
         (4.5, -0.2),
         (5.5, -0.2),
-        (6.0, -0.002),
-        (9.0, -0.002),
+        (6.0, -0.000_65),
+        (9.0, -0.000_65),
     ];
     let points = rows.map(|(time, creepage)| point(&parameters, time, creepage));
     let schedule = Schedule::new(points.to_vec())?;

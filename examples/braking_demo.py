@@ -47,7 +47,7 @@ def draw(signals, result):
     traction.plot(time, result["traction_force"] / 1e3, color=BLACK, linewidth=1.0)
     traction.set_ylabel("traction force [kN]")
     creepage.plot(time, -100 * result["slip_creepage"], color=GREEN)
-    creepage.set(yscale="log", ylabel="creepage, negative [%]", ylim=(0.1, 150))
+    creepage.set(yscale="log", ylabel="creepage, negative [%]", ylim=(0.01, 150))
     temperature.plot(time, result["peak_temperature"] - 273.15, color=RED)
     temperature.set(ylabel="peak temperature [°C]", ylim=(0, None))
     friction.plot(time, result["friction_coefficient"], color=BLUE, label="friction coefficient")

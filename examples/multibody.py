@@ -156,7 +156,7 @@ class Bogie:
 
     def axle(self, place, frame, ground, speed):
         """A wheelset in the primary suspension, its track, and its contact."""
-        spin = speed / WHEEL_RADIUS * (1.0 - 0.0016)
+        spin = speed / WHEEL_RADIUS
         node = self.mbs.AddNode(
             NodeRigidBody2D(referenceCoordinates=[place, 0, 0], initialVelocities=[speed, 0, -spin])
         )

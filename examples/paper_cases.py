@@ -2,8 +2,9 @@
 
     .venv/bin/python examples/paper_cases.py        (after `make fmu`)
 
-A wheel of 0.46 m pressed 0.1 mm into the rail rolls at 10 m/s with a creepage of 4 %, at an ambient temperature of
-0 °C. The friction coefficient is constant, or falls from 0.45 at 50 °C to 0.25 at 150 °C (a), 125 °C (b) or 100 °C (c).
+A rigid wheel of 0.46 m pressed 0.1 mm into the rail rolls at 10 m/s with a creepage of 4 %, at an ambient temperature
+of 0 °C. The friction coefficient is constant, or falls from 0.45 at 50 °C to 0.25 at 150 °C (a), 125 °C (b) or 100 °C
+(c).
 The pictures are the paper's Figures 4 and 5, and what happens in the contact.
 """
 
@@ -16,6 +17,7 @@ from helpers import BLACK, BLUE, ORANGE, RED, RESULTS, WHEEL_RADIUS, profile, pr
 SPEED, CREEPAGE, AMBIENT = 10.0, 0.04, 273.15
 CONSTANT, PIECEWISE_LINEAR = 1, 2
 PENETRATION = 2
+RIGID = 1
 
 # Label, colour, friction law, temperature at which the friction has fallen to its hot value [°C].
 CASES = {
@@ -35,6 +37,7 @@ def roll(case):
     names = [name for quantity in ACROSS for name in profile_names(f"profile.{quantity}", 61)]
     names += profile_names("depth.z", 41) + profile_names("depth.temperature", 41)
     start_values = {
+        "wheel": RIGID,
         "control": PENETRATION,
         "prescribed_penetration": 1e-4,
         "friction_law": law,

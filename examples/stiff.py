@@ -23,8 +23,8 @@ SPEED = 1.0  # m/s at the start
 DRIVE = 12e3  # N.m, at its peak 93 % of what friction can carry
 STOP = 0.4  # s
 REFERENCE_STEP = 10e-6  # s
-EXPLICIT_STEPS = (20e-6, 30e-6, 40e-6, 50e-6, 62.5e-6, 80e-6, 125e-6, 250e-6, 500e-6)  # s
-IMPLICIT_STEPS = (125e-6, 250e-6, 500e-6, 1.25e-3, 2.5e-3, 5e-3)  # s
+EXPLICIT_STEPS = (20e-6, 30e-6, 40e-6, 50e-6, 62.5e-6, 80e-6, 100e-6, 125e-6, 250e-6, 500e-6)  # s
+IMPLICIT_STEPS = (125e-6, 250e-6, 500e-6, 1.5625e-3, 3.125e-3, 6.25e-3)  # s
 MASSES = np.array([WHEEL_INERTIA, VEHICLE_MASS])
 NAMES = ("friction_torque", "traction_force")
 SPEEDS = ("wheel_speed", "vehicle_speed")
@@ -232,7 +232,7 @@ def main():
             f" {spent / STOP:6.2f} s per second, {repetitions:.1f} repetitions a step"
         )
     shown = (
-        ("explicit", EXPLICIT_STEPS[5]),
+        ("explicit", EXPLICIT_STEPS[6]),
         ("linearly implicit", IMPLICIT_STEPS[-2]),
         ("iterating", IMPLICIT_STEPS[-2]),
     )

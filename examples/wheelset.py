@@ -28,7 +28,7 @@ PARAMETERS = {
     "axle_inertia": 180.0,  # kg.m2, with the geared motor
     "wheel_radius": 0.46,  # m
     "initial_speed": 22.0,  # m/s
-    "initial_creepage": -0.0016,  # 1; a rigid wheel on an elastic rail rolls freely at this one
+    "initial_creepage": 0.0,  # 1; a wheel of the rail's material rolls freely at this one
     "resistance_constant": 120.0,  # N
     "resistance_quadratic": 0.45,  # N.s2/m2
     "traction_torque": 9e3,  # N.m

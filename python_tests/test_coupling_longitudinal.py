@@ -60,16 +60,19 @@ def test_energy_missing_shrinks_with_the_step(books):
     assert np.all(np.abs(bulge) < 3e-3 * friction)
 
 
-def test_bulge_and_wear_are_what_is_left(runs):
-    """Without thermal expansion and wear the contact's own balance closes within 0.04 % of the friction energy."""
-    result = model.in_fmpy(
-        model.STEPS[0],
-        model.SHORT_STOP,
-        contact={"thermal_expansion": 0.0, "wear_coefficient": 0.0},
-        wheelset=model.SHORT,
-    )
-    books = model.balance(result)
-    assert abs(books["bulge"][-1]) < 4e-4 * books["friction"][-1]
+def test_bulge_and_wear_are_what_is_left():
+    """Without thermal expansion and wear only the mesh's share is left, and that halves with the spacing of the nodes.
+
+    Within 0.1 % of the friction energy: upwind differences along the rail leave 1.3 % at a creepage of 1 % (the
+    verification's power balance), in inverse proportion to the creepage, which is 13 % in this slide.
+    """
+    shares = []
+    for nodes in (61, 121):
+        contact = {"thermal_expansion": 0.0, "wear_coefficient": 0.0, "contact_nodes": nodes}
+        books = model.balance(model.in_fmpy(model.STEPS[0], model.SHORT_STOP, contact=contact, wheelset=model.SHORT))
+        shares.append(abs(books["bulge"][-1]) / books["friction"][-1])
+    assert shares[0] < 1e-3
+    assert shares[1] < 0.6 * shares[0]
 
 
 def test_wheel_slides_and_is_caught(runs):
