@@ -1,16 +1,16 @@
 //! The temperature field (19), (23): transient, carried through the columns of the mesh, conducted in depth.
 //!
-//! Per column, P1 in depth with consistent mass M and stiffness K:
-//! M (θ − θⁿ)/Δt + |V|/Δx M (θ − θ_upstream) + κ K θ = e_surface q/(ρ c_p), θ = 0 at the bottom.
-//! In the eigenbasis K φ = λ M φ, φᵀ M φ = 1, a column is a set of independent scalars
-//! a = (aⁿ/Δt + |V|/Δx a_upstream + φ(0) q/(ρ c_p)) / (1/Δt + |V|/Δx + κ λ), so its surface temperature is linear in
-//! the surface flux q, and the surface condition (23) is one scalar equation a column.
+//! P1 in depth with consistent mass M and stiffness K: M (∂θ/∂t − V ∂θ/∂x₁) + κ K θ = e_surface q/(ρ c_p), θ = 0 at the bottom.
+//! In the eigenbasis K φ = λ M φ, φᵀ M φ = 1, a column is a set of independent scalars a, carried from column to column by the
+//! exact step of [`crate::transport`], at the rates r = 1/Δt + κλ, with the sources S = aⁿ/Δt + φ(0) q/(ρ c_p). The surface
+//! temperature of a column is so linear in its own surface flux q, and the surface condition (23) is one scalar equation a column.
 
 use super::basis::DepthBasis;
+use super::factors::{CellFactors, Conditions, Factors};
 use super::surface::{CommonChange, ExchangeTangent, SurfaceCondition, SurfaceExchange};
 use crate::error::Result;
 use crate::numerics::dense::{self, Arithmetic, LANES};
-use crate::transport::Upwind;
+use crate::transport::{CellStep, Upwind};
 
 /// One implicit time step of the march.
 pub struct HeatMarch<'a> {
@@ -36,6 +36,8 @@ pub struct MarchChange<'a> {
     pub exchange: &'a [SurfaceExchange],
     /// Its change.
     pub exchange_tangent: &'a [ExchangeTangent],
+    /// Modal amplitudes that stood in the inflow column before the step, m.
+    pub replaced_inflow: &'a [f64],
 }
 
 /// A temperature field, or a change of one, and the flux that goes with it.
@@ -49,13 +51,8 @@ pub struct Heated<'a> {
 }
 
 impl HeatMarch<'_> {
-    /// Values that [`HeatMarch::advance`] needs: three factors a mode.
-    pub fn scratch_len(basis: &DepthBasis) -> usize {
-        3 * basis.len()
-    }
-
     /// From the modal amplitudes `before` to the field `after` under the exchange at the contact nodes. The inflow column
-    /// of `after` holds what enters. `scratch` holds [`HeatMarch::scratch_len`] values.
+    /// of `after` holds what enters. `cells` are those of the columns.
     ///
     /// # Errors
     /// [`crate::error::Error::SurfaceHeatNotConverged`].
@@ -64,11 +61,11 @@ impl HeatMarch<'_> {
         before: &[f64],
         exchange: &[SurfaceExchange],
         after: &mut Heated,
-        scratch: &mut [f64],
+        cells: &mut CellFactors,
     ) -> Result<()> {
         dense::vectorised(
             #[inline(always)]
-            |arithmetic| self.advance_kernel(arithmetic, before, exchange, after, scratch),
+            |arithmetic| self.advance_kernel(arithmetic, before, exchange, after, cells),
         )
     }
 
@@ -79,141 +76,209 @@ impl HeatMarch<'_> {
         before: &[f64],
         exchange: &[SurfaceExchange],
         after: &mut Heated,
-        scratch: &mut [f64],
+        cells: &mut CellFactors,
     ) -> Result<()> {
-        let parameters = self.surface.friction.parameters;
-        let (m, capacity) = (self.basis.len(), parameters.volumetric_heat_capacity());
+        let m = self.basis.len();
         let storage = 1.0 / self.duration;
-        let (surface, eigenvalues) = (&self.basis.surface[..m], &self.basis.eigenvalues[..m]);
-        // What a mode keeps of the step before and of upstream, and what it takes of the heat.
-        let (keep, scratch) = scratch.split_at_mut(m);
-        let (carry, scratch) = scratch.split_at_mut(m);
-        let take = &mut scratch[..m];
-        let mut spacing = f64::NAN;
-        let mut response = 0.0;
+        let surface = &self.basis.surface[..m];
+        cells.adapt(self.basis, self.conditions());
+        // Of the column upstream, which is no contact node at the inflow.
+        let mut upstream_flux = 0.0;
         for column in self.transport.columns() {
-            let advection = self.transport.speed() / column.spacing;
             let (own, upstream) = split_columns(after.temperature, column.index, column.upstream, m);
             let old = &before[column.index * m..][..m];
+            let old_upstream = &before[column.upstream * m..][..m];
             let contact = column.index.wrapping_sub(self.first_contact);
             let heating = exchange.get(contact).filter(|exchange| !exchange.is_open());
-            // Nothing heats this column and nothing warm is carried into it.
-            if heating.is_none() && old[0] == 0.0 && upstream[0] == 0.0 {
-                own.fill(0.0);
-                after.surface[column.index] = 0.0;
+            if heating.is_none() && upstream_flux == 0.0 {
                 if let Some(flux) = after.flux.get_mut(contact) {
                     *flux = 0.0;
                 }
+                // Nothing heats this column, and nothing warm is in it or is carried into it.
+                let warm = old[0] != 0.0 || old_upstream[0] != 0.0 || upstream[0] != 0.0;
+                after.surface[column.index] = if warm {
+                    let factors = cells.at(arithmetic, cells.length_of(&column));
+                    let sources = Sources {
+                        storage,
+                        old_upstream,
+                        old,
+                        flux: None,
+                    };
+                    carry_over(arithmetic, own, &factors, upstream, &sources, surface)
+                } else {
+                    own.fill(0.0);
+                    0.0
+                };
                 continue;
             }
-            // The factors are those of the last column where the spacing is the same (all over the window).
-            if (column.spacing - spacing).abs() > 1e-9 * column.spacing || spacing.is_nan() {
-                spacing = column.spacing;
-                for mode in 0..m {
-                    let rate = storage + advection + parameters.thermal_diffusivity * eigenvalues[mode];
-                    let inverse = 1.0 / rate;
-                    keep[mode] = storage * inverse;
-                    carry[mode] = advection * inverse;
-                    take[mode] = surface[mode] * inverse / capacity;
-                }
-                response = arithmetic.dot(surface, take);
-            }
-            let unheated = carry_over(arithmetic, own, (keep, old), (carry, upstream), surface);
-            after.surface[column.index] = unheated;
-            let Some(exchange) = heating else {
-                if let Some(flux) = after.flux.get_mut(contact) {
-                    *flux = 0.0;
-                }
-                continue;
+            let (factors, heat) = cells.heated_at(arithmetic, self.basis, cells.length_of(&column));
+            let flux = Some((upstream_flux, heat.passed_on));
+            let sources = Sources {
+                storage,
+                old_upstream,
+                old,
+                flux,
             };
-            let q = self
-                .surface
-                .flux(exchange, unheated, response, self.transport.position(column.index))?;
-            after.flux[contact] = q;
-            after.surface[column.index] += response * q;
-            for mode in 0..m {
-                own[mode] = arithmetic.multiply_add(q, take[mode], own[mode]);
+            let unheated = carry_over(arithmetic, own, &factors, upstream, &sources, surface);
+            upstream_flux = match heating {
+                Some(exchange) => {
+                    let position = self.transport.position(column.index);
+                    self.surface.flux(exchange, unheated, heat.response, position)?
+                }
+                None => 0.0,
+            };
+            if let Some(flux) = after.flux.get_mut(contact) {
+                *flux = upstream_flux;
             }
+            after.surface[column.index] = unheated + heat.response * upstream_flux;
+            arithmetic.add_multiple(heat.taken, upstream_flux, own);
         }
         Ok(())
     }
 
+    fn conditions(&self) -> Conditions {
+        let parameters = self.surface.friction.parameters;
+        Conditions {
+            speed: self.transport.speed(),
+            duration: self.duration,
+            diffusivity: parameters.thermal_diffusivity,
+            capacity: parameters.volumetric_heat_capacity(),
+        }
+    }
+
     /// The change of [`HeatMarch::advance`]'s result `solution` with its data. The inflow column of `tangent` holds the
     /// change of what enters.
-    pub fn advance_tangent(&self, solution: &Heated, change: &MarchChange, tangent: &mut Heated) {
-        let (parameters, basis) = (self.surface.friction.parameters, self.basis);
-        let (m, capacity) = (basis.len(), parameters.volumetric_heat_capacity());
-        let storage = 1.0 / self.duration;
+    pub fn advance_tangent(
+        &self,
+        solution: &Heated,
+        change: &MarchChange,
+        tangent: &mut Heated,
+        cells: &mut CellFactors,
+    ) {
+        // With the arithmetic of the step: what is kept in the cells is the same to the last digit.
+        dense::vectorised(
+            #[inline(always)]
+            |arithmetic| self.advance_tangent_kernel(arithmetic, solution, change, tangent, cells),
+        );
+    }
+
+    #[inline(always)]
+    fn advance_tangent_kernel(
+        &self,
+        arithmetic: Arithmetic,
+        solution: &Heated,
+        change: &MarchChange,
+        tangent: &mut Heated,
+        cells: &mut CellFactors,
+    ) {
+        let (m, surface) = (self.basis.len(), &self.basis.surface);
+        cells.adapt(self.basis, self.conditions());
+        // The sources that the step was made from follow from its result.
+        let mut sources: Vec<f64> = change.replaced_inflow.iter().map(|old| old / self.duration).collect();
+        let mut upstream_flux = 0.0;
         for column in self.transport.columns() {
-            let advection = self.transport.speed() / column.spacing;
-            let advection_change = change.speed / column.spacing;
-            let inverse =
-                |mode: usize| 1.0 / (storage + advection + parameters.thermal_diffusivity * basis.eigenvalues[mode]);
-            let (mut response, mut unheated) = (0.0, 0.0);
+            let length = cells.length_of(&column);
+            let (factors, heat) = cells.heated_at(arithmetic, self.basis, length);
+            let cell = (column.spacing, self.transport.speed());
+            let mut unheated = 0.0;
             for mode in 0..m {
-                let inverse = inverse(mode);
                 let (own, upstream) = (column.index * m + mode, column.upstream * m + mode);
-                let carried = advection_change * (solution.temperature[upstream] - solution.temperature[own]);
-                tangent.temperature[own] = (advection * tangent.temperature[upstream] + carried) * inverse;
-                unheated += basis.surface[mode] * tangent.temperature[own];
-                response += basis.surface[mode] * basis.surface[mode] * inverse / capacity;
+                let values = (solution.temperature[upstream], solution.temperature[own]);
+                let step = CellStep {
+                    keep: factors.keep[mode],
+                    upstream: factors.upstream[mode],
+                    own: factors.own[mode],
+                };
+                let source = step.own_source(values, sources[mode]);
+                let carried = step.speed_tangent(heat.rates[mode], cell, values.0, (sources[mode], source));
+                sources[mode] = source;
+                tangent.temperature[own] = step.keep * tangent.temperature[upstream]
+                    + heat.passed_on[mode] * upstream_flux
+                    + change.speed * carried;
+                unheated += surface[mode] * tangent.temperature[own];
             }
             let node = column.index.wrapping_sub(self.first_contact);
             tangent.surface[column.index] = unheated;
+            upstream_flux = 0.0;
             let Some(exchange) = change.exchange.get(node) else {
                 continue;
             };
-            if exchange.is_open() {
-                tangent.flux[node] = 0.0;
-                continue;
+            if !exchange.is_open() {
+                upstream_flux = self.surface.flux_tangent(
+                    exchange,
+                    &change.exchange_tangent[node],
+                    &change.common,
+                    (solution.surface[column.index], unheated, heat.response),
+                );
             }
-            let rise = solution.surface[column.index];
-            let flux = self.surface.flux_tangent(
-                exchange,
-                &change.exchange_tangent[node],
-                &change.common,
-                (rise, unheated, response),
+            tangent.flux[node] = upstream_flux;
+            tangent.surface[column.index] += heat.response * upstream_flux;
+            arithmetic.add_multiple(
+                heat.taken,
+                upstream_flux,
+                &mut tangent.temperature[column.index * m..][..m],
             );
-            tangent.flux[node] = flux;
-            tangent.surface[column.index] += response * flux;
-            for mode in 0..m {
-                tangent.temperature[column.index * m + mode] += flux / capacity * basis.surface[mode] * inverse(mode);
-            }
         }
     }
 }
 
-/// own = keep · old + carry · upstream, and the surface value of it: as [`Arithmetic::dot`], in the same pass.
+/// What feeds the modes of a column but for its own heat flux, m each.
+struct Sources<'a> {
+    /// 1/Δt, `1/s`.
+    storage: f64,
+    /// Amplitudes of the step before in the column upstream.
+    old_upstream: &'a [f64],
+    /// Those in the column itself.
+    old: &'a [f64],
+    /// Heat flux into the column upstream, with what is taken of it.
+    flux: Option<(f64, &'a [f64])>,
+}
+
+/// own = E · upstream + g ω · (sources upstream) + g (1 − ω) · old/Δt, and the surface value of it: as [`Arithmetic::dot`], in
+/// the same pass.
 #[inline(always)]
 fn carry_over(
     arithmetic: Arithmetic,
     own: &mut [f64],
-    (keep, old): (&[f64], &[f64]),
-    (carry, upstream): (&[f64], &[f64]),
+    factors: &Factors,
+    upstream: &[f64],
+    sources: &Sources,
     surface: &[f64],
 ) -> f64 {
+    let fma = |a, b, c| arithmetic.multiply_add(a, b, c);
+    let (heat, passed_on) = sources.flux.unwrap_or((0.0, &[]));
+    let is_heated = sources.flux.is_some();
     let mut sums = [0.0; LANES];
     let (blocks, rest) = own.as_chunks_mut::<LANES>();
     let whole = LANES * blocks.len();
-    let inputs = keep.as_chunks::<LANES>().0.iter().zip(old.as_chunks::<LANES>().0);
-    let inputs = inputs.zip(carry.as_chunks::<LANES>().0.iter().zip(upstream.as_chunks::<LANES>().0));
-    for ((own, ((keep, old), (carry, upstream))), surface) in
-        blocks.iter_mut().zip(inputs).zip(surface.as_chunks::<LANES>().0)
-    {
+    for (block, own) in blocks.iter_mut().enumerate() {
+        let at = |values: &[f64]| -> [f64; LANES] { values.as_chunks::<LANES>().0[block] };
+        let (keep, upstream) = (at(factors.keep), at(upstream));
+        let (from_upstream, old_upstream) = (at(factors.upstream), at(sources.old_upstream));
+        let (from_own, old, surface) = (at(factors.own), at(sources.old), at(surface));
+        let passed_on = if is_heated { at(passed_on) } else { [0.0; LANES] };
         // All values are loaded before one is stored: otherwise the compiler must assume that the slices overlap, and does
         // not vectorise.
         let mut values = [0.0; LANES];
         for lane in 0..LANES {
-            values[lane] = arithmetic.multiply_add(keep[lane], old[lane], carry[lane] * upstream[lane]);
+            let stored = fma(from_own[lane], old[lane], from_upstream[lane] * old_upstream[lane]);
+            values[lane] = fma(sources.storage, stored, keep[lane] * upstream[lane]);
+            if is_heated {
+                values[lane] = fma(heat, passed_on[lane], values[lane]);
+            }
         }
         *own = values;
         for lane in 0..LANES {
-            sums[lane] = arithmetic.multiply_add(values[lane], surface[lane], sums[lane]);
+            sums[lane] = fma(values[lane], surface[lane], sums[lane]);
         }
     }
     let mut tail = 0.0;
     for (own, mode) in rest.iter_mut().zip(whole..) {
-        *own = keep[mode] * old[mode] + carry[mode] * upstream[mode];
+        let stored = factors.own[mode] * sources.old[mode] + factors.upstream[mode] * sources.old_upstream[mode];
+        *own = sources.storage * stored + factors.keep[mode] * upstream[mode];
+        if is_heated {
+            *own += heat * passed_on[mode];
+        }
         tail += *own * surface[mode];
     }
     tail + sums.iter().sum::<f64>()
@@ -322,7 +387,12 @@ mod tests {
                 let mut after = Field::new(m);
                 enter(&mut after, entering(h), march.transport.inflow());
                 march
-                    .advance(&before, &exchange(h), &mut after.heated(), &mut vec![0.0; 3 * m])
+                    .advance(
+                        &before,
+                        &exchange(h),
+                        &mut after.heated(),
+                        &mut CellFactors::new(&basis, &X),
+                    )
                     .unwrap();
                 after
             };
@@ -350,8 +420,10 @@ mod tests {
                 },
                 exchange: &exchange(0.0),
                 exchange_tangent: &exchange_tangent,
+                replaced_inflow: &before[march(0.0).transport.inflow() * m..][..m],
             };
-            march(0.0).advance_tangent(&solution.heated(), &change, &mut tangent.heated());
+            let mut cells = CellFactors::new(&basis, &X);
+            march(0.0).advance_tangent(&solution.heated(), &change, &mut tangent.heated(), &mut cells);
             let h = 1e-5;
             let (ahead, behind) = (solve(h), solve(-h));
             let outflow = march(0.0).transport.outflow();

@@ -226,6 +226,7 @@ mod tests {
     use crate::body::pair;
     use crate::friction::FrictionState;
     use crate::heat::Heat;
+    use crate::heat::factors::CellFactors;
     use crate::heat::incoming::Incoming;
     use crate::heat::march::{HeatMarch, Heated};
     use crate::heat::surface::{SurfaceCondition, SurfaceExchange};
@@ -322,7 +323,7 @@ mod tests {
                         surface: &mut vec![0.0; rail.mesh.columns()],
                         flux: &mut vec![0.0; 61],
                     },
-                    &mut vec![0.0; HeatMarch::scratch_len(&rail.heat.basis)],
+                    &mut CellFactors::new(&rail.heat.basis, &rail.mesh.x),
                 ).unwrap();
                 std::mem::swap(&mut before, &mut after);
             }

@@ -6,6 +6,7 @@
 //! ∂W/∂p into its compliance, as if the rail were softer, and the split iterates only on the rest of the wear.
 
 use crate::settings::SofteningSettings;
+use crate::transport::CellStep;
 use nalgebra::DMatrix;
 
 /// The normal compliance with the wear of the step, n contact nodes, scaled.
@@ -14,8 +15,8 @@ pub struct Softening {
     settings: SofteningSettings,
     /// ∂W/∂p of a node's own pressure, n; all zero where wear is explicit.
     own: Vec<f64>,
-    /// Share of a node's wear that the march hands to the next node downstream.
-    handed_on: f64,
+    /// The march from node to node.
+    step: CellStep,
     /// Whether material moves towards −x₁.
     forward: bool,
     compliance: DMatrix<f64>,
@@ -39,7 +40,7 @@ impl Softening {
         Softening {
             settings,
             own: vec![0.0; n],
-            handed_on: 0.0,
+            step: CellStep::NONE,
             forward: true,
             compliance: compliance.clone(),
             smallest_compliance: alternating / n as f64,
@@ -58,50 +59,42 @@ impl Softening {
         self.stale = true;
     }
 
-    /// Adapts to slip velocities `m/s` and step: `per_slip` is the wear rate per pressure and slip, `storage` 1/Δt and
-    /// `advection` |V|/Δx. Returns whether the compliance changed.
-    pub fn update(
-        &mut self,
-        stiff: &DMatrix<f64>,
-        slip: &[f64],
-        per_slip: f64,
-        storage: f64,
-        advection: f64,
-        forward: bool,
-    ) -> bool {
-        let rate = storage + advection;
-        let factor = if rate > 0.0 { per_slip / rate } else { 0.0 };
-        let largest = factor * slip.iter().fold(0.0, |m: f64, s| s.abs().max(m));
+    /// Adapts to slip velocities `m/s` and step: `per_slip` is the wear rate per pressure and slip, `step` the march of the
+    /// wear from node to node. Returns whether the compliance changed.
+    pub fn update(&mut self, stiff: &DMatrix<f64>, slip: &[f64], per_slip: f64, step: CellStep, forward: bool) -> bool {
+        let fastest = slip.iter().fold(0.0, |m: f64, s| s.abs().max(m));
         let was_soft = self.is_soft();
-        if largest <= self.settings.explicit * self.smallest_compliance {
+        if per_slip * (step.upstream + step.own) * fastest <= self.settings.explicit * self.smallest_compliance {
             if was_soft {
                 self.own.fill(0.0);
                 self.compliance.copy_from(stiff);
             }
             return was_soft;
         }
-        let handed_on = advection / rate;
+        let factor = per_slip * step.own;
+        let largest = factor * fastest;
         let change = self
             .own
             .iter()
             .zip(slip)
             .fold(0.0, |m: f64, (own, s)| (own - factor * s.abs()).abs().max(m));
         let stale = std::mem::take(&mut self.stale);
-        if !stale && change <= self.settings.renewal * largest && handed_on == self.handed_on && forward == self.forward
-        {
+        if !stale && change <= self.settings.renewal * largest && step == self.step && forward == self.forward {
             return false;
         }
         for (own, slip) in self.own.iter_mut().zip(slip) {
             *own = factor * slip.abs();
         }
-        self.handed_on = handed_on;
+        self.step = step;
         self.forward = forward;
         self.compliance.copy_from(stiff);
         for node in 0..slip.len() {
-            let (mut depth, mut row) = (self.own[node], Some(node));
+            // To the next node goes what stays of the node's own wear and what the march takes from a source upstream.
+            let (mut depth, mut next) = (self.own[node], self.passed_on() * self.own[node]);
+            let mut row = Some(node);
             while let Some(worn) = row.filter(|_| depth > 0.0) {
                 self.compliance[(worn, node)] += depth;
-                depth *= handed_on;
+                depth = self.step.keep * depth + std::mem::take(&mut next);
                 row = self.downstream(worn);
             }
         }
@@ -114,10 +107,13 @@ impl Softening {
             return;
         }
         let n = wear.len();
-        let mut carried = 0.0;
+        let passed_on = self.passed_on();
+        let (mut carried, mut upstream) = (0.0, 0.0);
         for k in 0..n {
             let node = if self.forward { n - 1 - k } else { k };
-            carried = self.handed_on * carried + self.own[node] * pressure[node];
+            let own = self.own[node] * pressure[node];
+            carried = self.step.keep * carried + passed_on * upstream + own;
+            upstream = own;
             wear[node] -= carried;
         }
     }
@@ -126,11 +122,64 @@ impl Softening {
         self.own.iter().any(|own| *own > 0.0)
     }
 
+    /// Wear of the next node downstream over that of a node's own, both by the node's pressure alone.
+    fn passed_on(&self) -> f64 {
+        self.step.upstream / self.step.own
+    }
+
     fn downstream(&self, node: usize) -> Option<usize> {
         if self.forward {
             node.checked_sub(1)
         } else {
             Some(node + 1).filter(|&next| next < self.own.len())
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::settings::Settings;
+    use crate::transport::Upwind;
+    use crate::wear::WearMarch;
+
+    /// Softened compliance and proportional part are what the march of the wear does under any pressure.
+    #[test]
+    fn the_proportional_part_is_that_of_the_march() {
+        let n = 6;
+        let x: Vec<f64> = (0..n + 2).map(|i| 0.2 * i as f64).collect();
+        let stiff = DMatrix::from_fn(n, n, |i, j| if i == j { 1.0 } else { 0.1 });
+        let slip = [0.3, -0.2, 0.5, 0.1, 0.0, -0.4];
+        let pressure = [0.0, 1.0, 3.0, 2.0, 0.5, 0.0];
+        for (speed, duration) in [(2.0, 0.01), (2.0, 10.0), (-0.5, 1.0), (0.0, 3.0)] {
+            let march = WearMarch {
+                transport: Upwind::new(&x, speed),
+                duration,
+                first_contact: 1,
+            };
+            let rate: Vec<f64> = slip
+                .iter()
+                .zip(&pressure)
+                .map(|(s, p): (&f64, _)| 70.0 * s.abs() * p)
+                .collect();
+            let mut worn = vec![0.0; n + 2];
+            march.advance(&rate, &vec![0.0; n + 2], &mut worn);
+            let mut softening = Softening::new(&stiff, Settings::default().softening);
+            let step = CellStep::new(1.0 / duration, 0.2, speed.abs());
+            assert!(softening.update(&stiff, &slip, 70.0, step, speed >= 0.0));
+            let mut rest = worn[1..=n].to_vec();
+            softening.subtract_proportional(&pressure, &mut rest);
+            for i in 0..n {
+                let softened: f64 = (0..n)
+                    .map(|j| (softening.compliance()[(i, j)] - stiff[(i, j)]) * pressure[j])
+                    .sum();
+                assert!(
+                    (softened - worn[i + 1]).abs() < 1e-12,
+                    "{speed} {i}: {softened} {}",
+                    worn[i + 1]
+                );
+                assert!(rest[i].abs() < 1e-12);
+            }
         }
     }
 }

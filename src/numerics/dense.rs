@@ -33,7 +33,8 @@ pub struct Arithmetic {
 }
 
 impl Arithmetic {
-    const SEPARATE: Arithmetic = Arithmetic { fused: false };
+    /// In two, for code outside the hot loops.
+    pub const SEPARATE: Arithmetic = Arithmetic { fused: false };
 
     /// a · b + c.
     #[inline(always)]

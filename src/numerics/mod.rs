@@ -2,5 +2,6 @@
 
 pub mod anderson;
 pub mod arctangent;
+pub mod decay;
 pub mod dense;
 pub mod sparse_cholesky;

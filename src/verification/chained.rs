@@ -11,7 +11,7 @@ use crate::error::Result;
 use crate::parameters::{FrictionLaw, Parameters};
 use crate::signals::{Inputs, Outputs};
 use crate::simulation::Simulation;
-use crate::transport::Upwind;
+use crate::transport::{CellStep, Upwind};
 use std::collections::VecDeque;
 use std::f64::consts::PI;
 
@@ -161,10 +161,15 @@ pub fn rows() -> Result<Vec<Row>> {
 
 /// Volume worn by both wheels against the wear that lies on the rail: in both strips, between them and behind.
 fn volume(pair: &Pair) -> Row {
+    // As the march holds it, at the one speed and step.
     let on_the_rail = |run: &Simulation| -> f64 {
+        let wear = &run.state.fields().wear;
         let columns = Upwind::new(&run.model.rail().mesh.x, SPEED).columns();
         columns
-            .map(|column| column.spacing * run.state.fields().wear[column.index])
+            .map(|column| {
+                let step = CellStep::new(1.0 / STEP, column.spacing, SPEED);
+                column.spacing * step.mean(wear[column.upstream], wear[column.index])
+            })
             .sum()
     };
     let per_step = SPEED * STEP;

@@ -1,20 +1,20 @@
 //! The discrete heat balance of the rail: what friction puts into it and what comes in with it is stored, carried out of the
 //! window, conducted through the bottom, given to the wheel or carried off by debris,
 //! d/dt ∫ρc θ + |V| ∫ρc θ dz (outflow less inflow) + bottom = ᾱ b Σ Δx (|τ s| − k ρ c θ |s| p − (θ − θ_w) p/r),
-//! to round-off of the sums, because the P1 test functions of a column add up to 1 and upwind differences telescope.
+//! to round-off of the sums, because the P1 test functions of a column add up to 1 and the march balances every mode in every
+//! cell. What is stored is the sum of these balances over the step, each mode weighted at both ends of a cell as the march does.
 //!
 //! And that of rail, wheel and debris together: with C dT_w/dt + h A θ_w in place of the conduction, the sum is all of the
 //! friction power, not ᾱ of it.
 
 use super::row::Row;
 use crate::contact::line::fields::Fields;
-use crate::contact::line::rail::Rail;
 use crate::contact::rim;
 use crate::error::Result;
 use crate::parameters::{FrictionLaw, Parameters, SlipSource, Wheel, WheelHeating};
 use crate::signals::Inputs;
 use crate::simulation::Simulation;
-use crate::transport::Upwind;
+use crate::transport::{CellStep, Upwind};
 
 const SOURCE: &str = "identity of the discrete equations";
 /// Round-off of the sums: after the operator split, friction is evaluated anew at the final temperature, so that the split's own
@@ -228,18 +228,25 @@ fn balance(run: &Simulation, before: &Fields, speed: f64, duration: f64) -> Bala
     let capacity = parameters.volumetric_heat_capacity() * parameters.contact_width;
     let mut balance = Balance::default();
 
-    let transport = Upwind::new(&rail.mesh.x, speed);
+    let (transport, basis) = (Upwind::new(&rail.mesh.x, speed), &rail.heat.basis);
+    let (speed, kappa) = (transport.speed(), parameters.thermal_diffusivity);
     let bottom_cell = rail.mesh.depth[rail.mesh.rows() - 1] - rail.mesh.depth[rail.mesh.rows() - 2];
     for column in transport.columns() {
-        let content = |fields: &Fields, index| rail.heat.basis.content(fields.column(rail, index));
-        let lowest = |fields: &Fields, index| lowest_temperature(rail, fields, index);
-        let storage = (content(after, column.index) - content(before, column.index)) / duration;
-        balance.stored += capacity * column.spacing * storage;
-        // Reaction of the bottom: conduction out of the last cell less what its share of the mass takes up.
-        let rate = (lowest(after, column.index) - lowest(before, column.index)) / duration
-            + transport.speed() / column.spacing * (lowest(after, column.index) - lowest(after, column.upstream));
-        let conducted = parameters.thermal_diffusivity * lowest(after, column.index) / bottom_cell;
-        balance.bottom += capacity * column.spacing * (conducted - bottom_cell / 6.0 * rate);
+        let amplitudes = |fields: &Fields, index| fields.column(rail, index).to_vec();
+        let [upstream, own] = [column.upstream, column.index].map(|index| amplitudes(after, index));
+        let [old_upstream, old_own] = [column.upstream, column.index].map(|index| amplitudes(before, index));
+        for mode in 0..basis.len() {
+            let rate = 1.0 / duration + kappa * basis.eigenvalues[mode];
+            let step = CellStep::new(rate, column.spacing, speed);
+            let growth = step.mean(upstream[mode] - old_upstream[mode], own[mode] - old_own[mode]);
+            let held = column.spacing * growth / duration;
+            balance.stored += capacity * basis.integral[mode] * held;
+            // Reaction of the bottom: conduction out of the last cell less what its share of the mass takes up.
+            let lowest = basis.modes[(rail.mesh.rows() - 2, mode)];
+            let taken_up = held + speed * (own[mode] - upstream[mode]);
+            let conducted = kappa * basis.bottom_flux[mode] * column.spacing * step.mean(upstream[mode], own[mode]);
+            balance.bottom += capacity * (conducted - bottom_cell / 6.0 * lowest * taken_up);
+        }
     }
     let outflow = rail.heat.basis.content(after.column(rail, transport.outflow()));
     balance.carried_out = capacity * transport.speed() * outflow;
@@ -263,9 +270,4 @@ fn balance(run: &Simulation, before: &Fields, speed: f64, duration: f64) -> Bala
         }
     };
     balance
-}
-
-/// Temperature rise at the row above the bottom.
-fn lowest_temperature(rail: &Rail, fields: &Fields, column: usize) -> f64 {
-    rail.heat.basis.value(fields.column(rail, column), rail.mesh.rows() - 2)
 }

@@ -163,7 +163,7 @@ mod tests {
     use crate::parameters::{Control, NormalSolver, SlipSource, Wheel};
     use crate::signals::Inputs;
     use crate::simulation::Simulation as Run;
-    use crate::transport::Upwind;
+    use crate::transport::{CellStep, Upwind};
     use proptest::prelude::*;
 
     /// Largest difference, relative to the largest value.
@@ -171,13 +171,20 @@ mod tests {
         dense::largest_change(a, b) / dense::largest(a)
     }
 
-    /// ∫W dx on the march's own weights, the spacing upstream of each column, [m²].
-    fn worn_area(x: &[f64], speed: f64, depth: &[f64]) -> f64 {
-        let columns = Upwind::new(x, speed).columns();
-        columns.map(|column| column.spacing * depth[column.index]).sum()
+    /// What the wear depth on the rail grows by in a step, ∫(W − Wⁿ) dx as the march balances it, `m²`.
+    fn deposited(x: &[f64], speed: f64, duration: f64, before: &[f64], after: &[f64]) -> f64 {
+        let transport = Upwind::new(x, speed);
+        let growth = |i: usize| after[i] - before[i];
+        transport
+            .columns()
+            .map(|column| {
+                let step = CellStep::new(1.0 / duration, column.spacing, transport.speed());
+                column.spacing * step.mean(growth(column.upstream), growth(column.index))
+            })
+            .sum()
     }
 
-    /// d/dt ∫W dx + |V| W(outflow) = ∫ k|s|p dx: upwind differences telescope.
+    /// d/dt ∫W dx + |V| W(outflow) = ∫ k|s|p dx: the balances of the cells add up.
     #[test]
     fn worn_volume_is_the_depth_on_the_rail_and_what_left_it() {
         let parameters = Parameters {
@@ -195,17 +202,17 @@ mod tests {
                 }
             };
             let mut run = Run::new(&parameters, &inputs(0)).unwrap();
-            let mut left = 0.0;
+            let (mut on_the_rail, mut left) = (0.0, 0.0);
             for step in 0..100 {
+                let before = run.state.fields().wear.clone();
                 run.step(&inputs(step), 5e-3).unwrap();
                 // The first step after the cold start is no jump: none is divided.
                 assert_eq!(run.state.duration, 5e-3);
                 let speed = inputs(step).vehicle_speed;
-                let outflow = Upwind::new(&run.model.rail().mesh.x, speed).outflow();
-                left += speed.abs() * 5e-3 * run.state.fields().wear[outflow];
+                let (x, after) = (&run.model.rail().mesh.x, &run.state.fields().wear);
+                left += speed.abs() * 5e-3 * after[Upwind::new(x, speed).outflow()];
+                on_the_rail += deposited(x, speed, 5e-3, &before, after);
             }
-            let x = &run.model.rail().mesh.x;
-            let on_the_rail = worn_area(x, direction, &run.state.fields().wear);
             let volume = parameters.contact_width * (on_the_rail + left);
             let expected = run.state.outputs.worn_volume;
             assert!(
@@ -213,6 +220,11 @@ mod tests {
                 "the wear must have reached the end of the strip"
             );
             assert!((volume / expected - 1.0).abs() < 1e-10, "{volume} {expected}");
+            // The depth as it lies there at last, between columns linear, but for the order of the march.
+            let (x, wear) = (&run.model.rail().mesh.x, &run.state.fields().wear);
+            let cells = x.windows(2).zip(wear.windows(2));
+            let area: f64 = cells.map(|(x, w)| (x[1] - x[0]) * 0.5 * (w[0] + w[1])).sum();
+            assert!((area / on_the_rail - 1.0).abs() < 0.01, "{area} {on_the_rail}");
         }
     }
 

@@ -15,6 +15,9 @@ pub struct Fields {
     pub thermal_displacement: Vec<f64>,
     /// Wear depth at the columns, `m`.
     pub wear: Vec<f64>,
+    /// What stood in the inflow column before the step: its modal amplitudes, then its wear depth, modes + 1. The derivatives of
+    /// the step need it.
+    pub replaced_inflow: Vec<f64>,
     /// Pressure, scaled, n.
     pub pressure: Vec<f64>,
     /// Shear traction on the rail, scaled, n.
@@ -48,6 +51,7 @@ impl Fields {
             surface_temperature: vec![0.0; columns],
             thermal_displacement: vec![0.0; 2 * n],
             wear: vec![0.0; columns],
+            replaced_inflow: vec![0.0; rail.heat.basis.len() + 1],
             pressure: vec![0.0; n],
             shear: vec![0.0; n],
             slip: vec![0.0; n],
@@ -63,12 +67,13 @@ impl Fields {
     }
 
     /// The vectors, in the order of their declaration.
-    pub fn vectors(&self) -> [&Vec<f64>; 12] {
+    pub fn vectors(&self) -> [&Vec<f64>; 13] {
         [
             &self.temperature,
             &self.surface_temperature,
             &self.thermal_displacement,
             &self.wear,
+            &self.replaced_inflow,
             &self.pressure,
             &self.shear,
             &self.slip,
@@ -82,11 +87,12 @@ impl Fields {
 
     /// Whether the outputs are linear functions of a vector or its largest value, in the order of [`Fields::vectors`]: so of
     /// temperatures, wear and heat flux, not of tractions, slip and friction. None where no output depends on it.
-    pub const OUTPUTS_ARE_LINEAR: [Option<bool>; 12] = [
+    pub const OUTPUTS_ARE_LINEAR: [Option<bool>; 13] = [
         Some(true),
         Some(true),
         Some(true),
         Some(true),
+        None,
         Some(false),
         Some(false),
         Some(false),
@@ -97,12 +103,13 @@ impl Fields {
         None,
     ];
 
-    fn vectors_mut(&mut self) -> [&mut Vec<f64>; 12] {
+    fn vectors_mut(&mut self) -> [&mut Vec<f64>; 13] {
         [
             &mut self.temperature,
             &mut self.surface_temperature,
             &mut self.thermal_displacement,
             &mut self.wear,
+            &mut self.replaced_inflow,
             &mut self.pressure,
             &mut self.shear,
             &mut self.slip,

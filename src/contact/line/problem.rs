@@ -19,6 +19,7 @@ use crate::parameters::{Control, Parameters, WheelHeating};
 use crate::settings::Settings;
 use crate::signals::Inputs;
 use crate::transport::Upwind;
+use crate::wear::WearMarch;
 
 /// One problem: the rail, its parameters, the limits of the methods, the conditions of the step.
 #[derive(Clone, Copy)]
@@ -189,6 +190,15 @@ impl<'a> Problem<'a> {
                 friction: self.friction(),
                 settings: self.settings.heat,
             },
+        }
+    }
+
+    /// The wear march of the step.
+    pub fn wear_march(&self) -> WearMarch<'a> {
+        WearMarch {
+            transport: self.upwind(),
+            duration: self.conditions.duration,
+            first_contact: self.rail.mesh.first_contact,
         }
     }
 

@@ -23,7 +23,6 @@ use crate::numerics::anderson::Anderson;
 use crate::numerics::dense::{largest, largest_change};
 use crate::parameters::WheelHeating;
 use crate::signals::{INPUTS, Inputs, Motion, OUTPUTS, OutputKind, Outputs};
-use crate::wear;
 
 /// The linearised step.
 pub struct Linearisation<'a> {
@@ -196,16 +195,10 @@ impl<'a> Linearisation<'a> {
             .zip(changes)
             .map(|((p, s), (dp, ds))| scale * (s.signum() * ds * p + s.abs() * dp))
             .collect();
-        let transport = problem.upwind();
-        tangent.wear[transport.inflow()] = direction.inputs.incoming_wear_depth;
-        wear::advance_tangent(
-            &transport,
-            problem.conditions.duration,
-            problem.rail.mesh.first_contact,
-            (&rate, direction.speed),
-            &fields.wear,
-            &mut tangent.wear,
-        );
+        let march = problem.wear_march();
+        tangent.wear[march.transport.inflow()] = direction.inputs.incoming_wear_depth;
+        let replaced = fields.replaced_inflow[problem.rail.heat.basis.len()];
+        march.advance_tangent((&rate, direction.speed), replaced, &fields.wear, &mut tangent.wear);
     }
 
     /// (19), (23), at the given change of the wheel's temperature, `K`.
@@ -258,8 +251,9 @@ impl<'a> Linearisation<'a> {
             },
             exchange: &exchange,
             exchange_tangent: &exchange_tangent,
+            replaced_inflow: &fields.replaced_inflow[..problem.rail.heat.basis.len()],
         };
-        march.advance_tangent(&solution, &data, &mut change);
+        march.advance_tangent(&solution, &data, &mut change, &mut self.scratch.cells);
     }
 
     /// The rim's temperature.

@@ -9,7 +9,8 @@ use super::rest::Rest;
 use crate::contact::rim::{self, ContactHeat};
 use crate::contact::task::Convergence;
 use crate::error::{Error, Result};
-use crate::heat::march::{HeatMarch, Heated};
+use crate::heat::factors::CellFactors;
+use crate::heat::march::Heated;
 use crate::heat::surface::SurfaceExchange;
 use crate::mechanics::normal::problem::Constraint;
 use crate::mechanics::softening::Softening;
@@ -18,7 +19,7 @@ use crate::numerics::anderson::Anderson;
 use crate::numerics::dense::{largest, largest_change};
 use crate::parameters::WheelHeating;
 use crate::settings::Settings;
-use crate::wear;
+use crate::transport::CellStep;
 
 /// Buffers of a split.
 pub struct Scratch {
@@ -30,8 +31,8 @@ pub struct Scratch {
     image: Coupling,
     exchange: Vec<SurfaceExchange>,
     wear_rate: Vec<f64>,
-    /// Of the heat march, per mode.
-    modes: Vec<f64>,
+    /// Of the heat march.
+    pub(super) cells: CellFactors,
     /// Of the thermal map.
     pub(super) moments: Vec<f64>,
     /// The heat flux that the thermal map was last applied to.
@@ -50,7 +51,7 @@ impl Scratch {
             data: MechanicsData::new(n),
             exchange: vec![SurfaceExchange::default(); n],
             wear_rate: vec![0.0; n],
-            modes: vec![0.0; HeatMarch::scratch_len(&rail.heat.basis)],
+            cells: CellFactors::new(&rail.heat.basis, &rail.mesh.x),
             moments: vec![0.0; rail.heat.displacement.scratch_len()],
             mapped_flux: vec![0.0; n],
             anderson: Anderson::new(iterate.values().len()),
@@ -77,6 +78,7 @@ pub fn solve(problem: &Problem, before: &Fields, fields: &mut Fields, scratch: &
     fields.relaxation_length = problem.relaxation_length(before);
     scratch.data.start_from(before);
     start(problem, fields, scratch);
+    replace_inflow(problem, before, fields);
     let mut rest = Rest::new(settings);
     for iterations in 1..=settings.iterations {
         // Step 2: tractions for given temperature and wear.
@@ -166,6 +168,14 @@ fn start(problem: &Problem, fields: &Fields, scratch: &mut Scratch) {
     scratch.iterate.read(problem.rail, fields, &scratch.softening);
 }
 
+/// Keeps what stands in the inflow column before something new enters there.
+fn replace_inflow(problem: &Problem, before: &Fields, fields: &mut Fields) {
+    let inflow = problem.upwind().inflow();
+    let modes = problem.rail.heat.basis.len();
+    fields.replaced_inflow[..modes].copy_from_slice(before.column(problem.rail, inflow));
+    fields.replaced_inflow[modes] = before.wear[inflow];
+}
+
 /// (31): one sweep of the mechanics for given temperature and wear. Without load there is nothing to solve.
 fn solve_tractions(problem: &Problem, fields: &mut Fields, scratch: &mut Scratch, tolerance: f64) -> Result<Sweep> {
     if problem.constraint() == Constraint::Total(0.0) {
@@ -189,8 +199,11 @@ fn soften(problem: &Problem, fields: &Fields, scratch: &mut Scratch) {
         &problem.rail.compliance.at_rest.normal_normal,
         &fields.slip,
         problem.parameters.wear_coefficient * scales.pressure / scales.displacement,
-        1.0 / problem.conditions.duration,
-        transport.speed() / problem.rail.mesh.contact_spacing(),
+        CellStep::new(
+            1.0 / problem.conditions.duration,
+            problem.rail.mesh.contact_spacing(),
+            transport.speed(),
+        ),
         transport.is_forward(),
     );
     if changed {
@@ -204,16 +217,9 @@ fn march_wear(problem: &Problem, before: &Fields, fields: &mut Fields, scratch: 
     for (rate, (pressure, slip)) in scratch.wear_rate.iter_mut().zip(nodes) {
         *rate = problem.parameters.wear_coefficient * slip.abs() * pressure * problem.rail.scales.pressure;
     }
-    let transport = problem.upwind();
-    fields.wear[transport.inflow()] = problem.conditions.inputs.incoming_wear_depth;
-    wear::advance(
-        &transport,
-        problem.conditions.duration,
-        problem.rail.mesh.first_contact,
-        &scratch.wear_rate,
-        &before.wear,
-        &mut fields.wear,
-    );
+    let march = problem.wear_march();
+    fields.wear[march.transport.inflow()] = problem.conditions.inputs.incoming_wear_depth;
+    march.advance(&scratch.wear_rate, &before.wear, &mut fields.wear);
 }
 
 /// (19), (23) together with the rim's temperature: what the rail gives to the wheel and what the wheel takes is the same
@@ -263,7 +269,7 @@ fn march_rail(
     };
     let rise = inputs.incoming_temperature - inputs.ambient_temperature;
     problem.rail.heat.enter(rise, march.transport.inflow(), &mut after);
-    march.advance(&before.temperature, &scratch.exchange, &mut after, &mut scratch.modes)
+    march.advance(&before.temperature, &scratch.exchange, &mut after, &mut scratch.cells)
 }
 
 /// The rim's temperature under what the contact gives to it.

@@ -1,0 +1,210 @@
+//! The factors with which the modes of a column pass from one column to the next.
+//!
+//! They depend on the length of the cell between the columns, on |V| and on Δt. A step marches several times with the same
+//! speed and Δt, all cells of the window are of one length, and those outside it are mirror images: so they are kept by length,
+//! and computed for the cells that something warm crosses.
+
+use super::basis::DepthBasis;
+use crate::numerics::dense::{Arithmetic, LANES};
+use crate::transport::{CellStep, Column};
+
+/// Factors of all modes in the cells between columns; m modes. What they are depends on nothing that was asked before.
+#[derive(Debug, Clone)]
+pub struct CellFactors {
+    /// Of the cell between a column and the next one, the place of its length in `lengths`.
+    length_of: Vec<usize>,
+    /// The different lengths, `m`.
+    lengths: Vec<f64>,
+    /// The conditions of what is known.
+    conditions: Conditions,
+    /// Whether the factors of a length are known.
+    known: Vec<bool>,
+    /// r and 1/r of the modes, m each.
+    rates: Vec<f64>,
+    durations: Vec<f64>,
+    /// E, g ω and g (1 − ω) of the modes, one after the other for each length.
+    steps: Vec<f64>,
+    /// The length that `passed_on`, `taken` and `response` are of.
+    heated: Option<usize>,
+    /// What the modes take of a flux upstream and of their column's own, m each, `K m^½ / (W/m²)`.
+    passed_on: Vec<f64>,
+    taken: Vec<f64>,
+    response: f64,
+}
+
+/// What the factors depend on beside the length of a cell.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Conditions {
+    /// |V|, `m/s`.
+    pub speed: f64,
+    /// Δt, `s`.
+    pub duration: f64,
+    /// κ, `m²/s`.
+    pub diffusivity: f64,
+    /// ρ c_p, `J/(m³ K)`.
+    pub capacity: f64,
+}
+
+/// What the modes of a column take from the column upstream and from the step before, m each.
+#[derive(Debug, Clone, Copy)]
+pub struct Factors<'a> {
+    /// E.
+    pub keep: &'a [f64],
+    /// g ω, `s`.
+    pub upstream: &'a [f64],
+    /// g (1 − ω), `s`.
+    pub own: &'a [f64],
+}
+
+/// What a column takes of the heat flux, m each.
+#[derive(Debug, Clone, Copy)]
+pub struct HeatFactors<'a> {
+    /// r of the modes, `1/s`.
+    pub rates: &'a [f64],
+    /// Of the flux upstream.
+    pub passed_on: &'a [f64],
+    /// Of its own.
+    pub taken: &'a [f64],
+    /// Surface temperature per own flux, `K/(W/m²)`.
+    pub response: f64,
+}
+
+impl CellFactors {
+    /// For columns at `x` `m`.
+    pub fn new(basis: &DepthBasis, x: &[f64]) -> CellFactors {
+        let m = basis.len();
+        let mut lengths: Vec<f64> = Vec::new();
+        let length_of = x
+            .windows(2)
+            .map(|ends| {
+                let length = ends[1] - ends[0];
+                // The same but for round-off of the positions.
+                let same = |other: &f64| (length - other).abs() <= 1e-9 * length;
+                lengths.iter().position(same).unwrap_or_else(|| {
+                    lengths.push(length);
+                    lengths.len() - 1
+                })
+            })
+            .collect();
+        CellFactors {
+            length_of,
+            conditions: Conditions {
+                speed: f64::NAN,
+                duration: f64::NAN,
+                diffusivity: f64::NAN,
+                capacity: f64::NAN,
+            },
+            known: vec![false; lengths.len()],
+            rates: vec![0.0; m],
+            durations: vec![0.0; m],
+            steps: vec![0.0; 3 * m * lengths.len()],
+            lengths,
+            heated: None,
+            passed_on: vec![0.0; m],
+            taken: vec![0.0; m],
+            response: 0.0,
+        }
+    }
+
+    /// Forgets what was computed under other conditions.
+    #[inline(always)]
+    pub fn adapt(&mut self, basis: &DepthBasis, conditions: Conditions) {
+        if self.conditions == conditions {
+            return;
+        }
+        self.conditions = conditions;
+        self.known.fill(false);
+        self.heated = None;
+        let modes = self.rates.iter_mut().zip(&mut self.durations).zip(&basis.eigenvalues);
+        for ((rate, duration), eigenvalue) in modes {
+            *rate = 1.0 / conditions.duration + conditions.diffusivity * eigenvalue;
+            *duration = 1.0 / *rate;
+        }
+    }
+
+    /// The place of the length of the cell upstream of a column.
+    pub fn length_of(&self, column: &Column) -> usize {
+        self.length_of[column.index.min(column.upstream)]
+    }
+
+    /// Factors at a length.
+    #[inline(always)]
+    pub fn at(&mut self, arithmetic: Arithmetic, length: usize) -> Factors<'_> {
+        if !self.known[length] {
+            self.known[length] = true;
+            self.compute(arithmetic, length);
+        }
+        self.known_at(length)
+    }
+
+    #[inline(always)]
+    fn known_at(&self, length: usize) -> Factors<'_> {
+        let m = self.rates.len();
+        let steps = &self.steps[3 * m * length..][..3 * m];
+        Factors {
+            keep: &steps[..m],
+            upstream: &steps[m..2 * m],
+            own: &steps[2 * m..],
+        }
+    }
+
+    /// Factors at a length, and those of the flux.
+    #[inline(always)]
+    pub fn heated_at(
+        &mut self,
+        arithmetic: Arithmetic,
+        basis: &DepthBasis,
+        length: usize,
+    ) -> (Factors<'_>, HeatFactors<'_>) {
+        self.at(arithmetic, length);
+        if self.heated != Some(length) {
+            self.heated = Some(length);
+            let m = self.rates.len();
+            let steps = &self.steps[3 * m * length..][..3 * m];
+            for mode in 0..m {
+                let heating = basis.surface[mode] / self.conditions.capacity;
+                self.passed_on[mode] = heating * steps[m + mode];
+                self.taken[mode] = heating * steps[2 * m + mode];
+            }
+            self.response = arithmetic.dot(&basis.surface, &self.taken);
+        }
+        let heat = HeatFactors {
+            rates: &self.rates,
+            passed_on: &self.passed_on,
+            taken: &self.taken,
+            response: self.response,
+        };
+        (self.known_at(length), heat)
+    }
+
+    /// [`CellStep`] of every mode.
+    #[inline(always)]
+    fn compute(&mut self, arithmetic: Arithmetic, length: usize) {
+        let m = self.rates.len();
+        let (length_of_cell, speed) = (self.lengths[length], self.conditions.speed);
+        let passage = (length_of_cell / speed, speed / length_of_cell);
+        let steps = &mut self.steps[3 * m * length..][..3 * m];
+        let (keep, rest) = steps.split_at_mut(m);
+        let (upstream, own) = rest.split_at_mut(m);
+        let whole = m - m % LANES;
+        for first in (0..whole).step_by(LANES) {
+            // All values are loaded before one is stored: as in the march itself.
+            let block = |values: &[f64]| -> [f64; LANES] { std::array::from_fn(|lane| values[first + lane]) };
+            let (rates, durations) = (block(&self.rates), block(&self.durations));
+            let mut stepped = [[0.0; LANES]; 3];
+            for lane in 0..LANES {
+                let step = CellStep::at(arithmetic, (rates[lane], durations[lane]), passage);
+                stepped[0][lane] = step.keep;
+                stepped[1][lane] = step.upstream;
+                stepped[2][lane] = step.own;
+            }
+            keep[first..first + LANES].copy_from_slice(&stepped[0]);
+            upstream[first..first + LANES].copy_from_slice(&stepped[1]);
+            own[first..first + LANES].copy_from_slice(&stepped[2]);
+        }
+        for mode in whole..m {
+            let step = CellStep::at(arithmetic, (self.rates[mode], self.durations[mode]), passage);
+            (keep[mode], upstream[mode], own[mode]) = (step.keep, step.upstream, step.own);
+        }
+    }
+}
