@@ -144,7 +144,7 @@ parameters! {
     /// Archard wear coefficient; 0 switches wear off
     wear_coefficient "k": f64 = real { "1/Pa", 0.5e-12, 0.0, 1e-9 }
     /// Slip speed at which the regularised Coulomb law reaches half the friction bound
-    slip_regularisation "ε": f64 = real { "m/s", 1e-3, 0.0, 1.0, tunable }
+    slip_regularisation "ε": f64 = real { "m/s", 0.0, 0.0, 1.0, tunable }
     /// Friction coefficient against temperature: 1 constant, 2 piecewise_linear, 3 flow_stress, 4 table
     friction_law: FrictionLaw = choice { FrictionLaw::PiecewiseLinear }
     /// Friction coefficient of the cold contact

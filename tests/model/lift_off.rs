@@ -55,21 +55,21 @@ fn a_wheel_that_was_never_down_leaves_the_rail_as_it_is() {
     assert!((outputs.distance - 1.0).abs() < 1e-12);
 }
 
-/// Full sliding on the spot for a short time: every node slides at the wheel's speed, T = μN(2/π)arctan(s/ε), and the
-/// heat stays under the wheel.
+/// Full sliding on the spot for a short time: every node slides at the wheel's speed, T = μN, and the heat stays under the
+/// wheel.
 #[test]
 fn a_wheel_that_spins_on_the_spot_drives_with_full_friction() {
     let parameters = parameters();
     let spinning = inputs(0.0, 0.05, 60e3);
     let mut run = Run::new(&parameters, &spinning).unwrap();
     let outputs = run.hold(&spinning, 1e-3, 20).unwrap();
-    let saturation = std::f64::consts::FRAC_2_PI * (0.05 / parameters.slip_regularisation).atan();
-    let expected = outputs.friction_coefficient * saturation;
+    let expected = outputs.friction_coefficient;
     assert!((outputs.traction_coefficient - expected).abs() < 1e-9, "{outputs:?}");
     assert_eq!(outputs.stick_fraction, 0.0);
     assert_eq!(outputs.distance, 0.0);
     let power = outputs.traction_force * 0.05;
-    assert!((outputs.friction_power / power - 1.0).abs() < 1e-9);
+    // The rail's surface moves with its thermal expansion, some nanometres a millisecond beside 50 µm.
+    assert!((outputs.friction_power / power - 1.0).abs() < 1e-4);
 
     // The hottest node lies under the wheel, and no heat has left it sideways.
     let nodes = run.contact_nodes();
