@@ -15,8 +15,10 @@ use crate::simulation::Simulation;
 const SOURCE: &str = "Carter 1926; Johnson, Contact Mechanics, 8.3";
 /// Creepages of the curve.
 pub const CREEPAGES: [f64; 8] = [0.0, 0.0005, 0.001, 0.002, 0.003, 0.004, 0.006, 0.01];
-/// A node is some 1 % of the half-length, and the regularisation takes (2/π) ε/s off the traction: together below 0.02.
-pub const TRACTION_TOLERANCE: f64 = 0.02;
+/// The leading edge is resolved within its cell; the end of the stick zone falls between two nodes.
+pub const TRACTION_TOLERANCE: f64 = 0.004;
+/// A step after which nothing is left of the state before it: each is a steady state.
+pub const PASSAGE: f64 = 0.5;
 /// Creepage at which the stick zone is measured.
 const STICK_CREEPAGE: f64 = 0.002;
 
@@ -26,7 +28,6 @@ pub fn parameters() -> Parameters {
         wheel: Wheel::Rigid,
         friction_law: FrictionLaw::Constant,
         normal_tangential_coupling: false,
-        slip_regularisation: 1e-4,
         thermal_expansion: 0.0,
         wear_coefficient: 0.0,
         ..Parameters::default()
@@ -57,7 +58,7 @@ pub fn curve() -> Result<Vec<Vec<f64>>> {
             creepage: 1e-4 * f64::from(step),
             ..Inputs::default()
         };
-        let computed = run.hold(&inputs, 1e-3, 1)?.traction_coefficient / parameters.friction_cold;
+        let computed = run.hold(&inputs, PASSAGE, 1)?.traction_coefficient / parameters.friction_cold;
         let carter = traction_share(&parameters, inputs.normal_load, inputs.creepage);
         points.push(vec![inputs.creepage, computed, carter]);
     }
@@ -78,7 +79,7 @@ pub fn rows() -> Result<Vec<Row>> {
     let mut run = Simulation::new(&parameters, &inputs(0.0))?;
     let mut rows = Vec::new();
     for creepage in CREEPAGES {
-        let outputs = run.hold(&inputs(creepage), 1e-3, 1)?;
+        let outputs = run.hold(&inputs(creepage), PASSAGE, 1)?;
         rows.push(Row::absolute(
             format!("T/(mu N) at creepage {creepage}"),
             "1",
@@ -95,7 +96,7 @@ pub fn rows() -> Result<Vec<Row>> {
 /// Length and ends of the zone in which the nodes stick; each node stands for one spacing. Were there two zones, length and
 /// ends would contradict each other.
 fn stick_zone(run: &mut Simulation, inputs: &Inputs) -> Result<Vec<Row>> {
-    run.hold(inputs, 1e-3, 1)?;
+    run.hold(inputs, PASSAGE, 1)?;
     let parameters = run.model.parameters();
     let spacing = run.model.rail().mesh.contact_spacing();
     let half_length = parameters.hertz_half_length(inputs.normal_load);

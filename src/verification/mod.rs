@@ -4,10 +4,13 @@
 //! closed forms evaluated here, published figures, or identities of the discrete equations; a row says which.
 
 pub mod carter;
+pub mod cattaneo;
 pub mod chained;
 pub mod convergence;
+pub mod creep_curve;
 pub mod elastic_wheel;
 pub mod energy;
+pub mod explicit_master;
 pub mod flash_temperature;
 pub mod hertz;
 pub mod locked_wheel;
@@ -15,6 +18,7 @@ pub mod mirrored;
 pub mod paper_cases;
 pub mod power_balance;
 pub mod rigid_wheel;
+pub mod rolling_start;
 mod row;
 pub mod wheel_temperature;
 
@@ -67,6 +71,22 @@ pub const CHECKS: &[Check] = &[
     Check {
         name: "Carter's rolling contact",
         rows: carter::rows,
+    },
+    Check {
+        name: "Creep curve and nodes",
+        rows: creep_curve::rows,
+    },
+    Check {
+        name: "Cattaneo's contact at rest",
+        rows: cattaneo::rows,
+    },
+    Check {
+        name: "Rolling from rest",
+        rows: rolling_start::rows,
+    },
+    Check {
+        name: "Steps of an explicit master",
+        rows: explicit_master::rows,
     },
     Check {
         name: "Rigid wheel on elastic rail",

@@ -1,0 +1,148 @@
+//! What a node is worth: the creep curve T/(μN) with Coulomb's law and constant μ, over creepages from −0.5 % to 0.5 %,
+//! against the limit of fine nodes, for both kinds of wheel; the creepage at which a rigid wheel rolls freely; and friction that
+//! depends on temperature, in partial slip, against the same limit.
+
+use super::row::Row;
+use crate::error::Result;
+use crate::parameters::{FrictionLaw, Parameters, Wheel};
+use crate::signals::{Inputs, Outputs};
+use crate::simulation::Simulation;
+
+const SOURCE: &str = "the same on 401 nodes";
+/// Nodes of the limit: its own error is a fifth of that at 121.
+const FINE: usize = 401;
+/// Loads whose contacts end at different places between the nodes, `N`.
+const LOADS: [f64; 3] = [45e3, 60e3, 83e3];
+/// Longer than any way that a change is remembered on: each step is a steady state of the mechanics.
+const PASSAGE: f64 = 0.5;
+
+fn parameters(wheel: Wheel, contact_nodes: usize) -> Parameters {
+    Parameters {
+        wheel,
+        contact_nodes,
+        friction_law: FrictionLaw::Constant,
+        thermal_expansion: 0.0,
+        wear_coefficient: 0.0,
+        ..Parameters::default()
+    }
+}
+
+/// Creepages from −0.5 % to 0.5 %.
+fn creepages() -> impl Iterator<Item = f64> {
+    (-10..=10).map(|k| 5e-4 * f64::from(k))
+}
+
+/// T/(μN) over the creepages, load by load.
+fn curves(wheel: Wheel, contact_nodes: usize) -> Result<Vec<f64>> {
+    let parameters = parameters(wheel, contact_nodes);
+    let mut run = Simulation::new(&parameters, &Inputs::default())?;
+    let mut values = Vec::new();
+    for normal_load in LOADS {
+        for creepage in creepages() {
+            let inputs = Inputs {
+                creepage,
+                normal_load,
+                ..Inputs::default()
+            };
+            values.push(run.hold(&inputs, PASSAGE, 1)?.traction_coefficient / parameters.friction_cold);
+        }
+    }
+    Ok(values)
+}
+
+/// All of it.
+///
+/// # Errors
+/// A solver that did not converge.
+pub fn rows() -> Result<Vec<Row>> {
+    let mut rows = Vec::new();
+    for (wheel, name) in [(Wheel::Rigid, "rigid wheel"), (Wheel::Elastic, "elastic wheel")] {
+        let limit = curves(wheel, FINE)?;
+        for (nodes, tolerance) in [(31, 0.0075), (61, 0.005), (121, 0.003)] {
+            let values = curves(wheel, nodes)?;
+            let worst = values
+                .iter()
+                .zip(&limit)
+                .fold(0.0, |worst: f64, (value, limit)| worst.max((value - limit).abs()));
+            rows.push(Row::absolute(
+                format!("largest error of T/(mu N) at {nodes} nodes, {name}"),
+                "1",
+                0.0,
+                worst,
+                tolerance,
+                SOURCE,
+            ));
+        }
+    }
+    let limit = free_rolling(FINE)?;
+    rows.push(Row::relative(
+        "creepage of free rolling, rigid wheel, default nodes",
+        "1",
+        limit,
+        free_rolling(Parameters::default().contact_nodes)?,
+        0.005,
+        SOURCE,
+    ));
+    rows.extend(hot_rows()?);
+    Ok(rows)
+}
+
+/// The creepage at which a rigid wheel has no traction.
+fn free_rolling(contact_nodes: usize) -> Result<f64> {
+    let inputs = |creepage| Inputs {
+        creepage,
+        ..Inputs::default()
+    };
+    let mut run = Simulation::new(&parameters(Wheel::Rigid, contact_nodes), &inputs(0.0))?;
+    let mut traction =
+        |creepage: f64| -> Result<f64> { Ok(run.hold(&inputs(creepage), PASSAGE, 1)?.traction_coefficient) };
+    // The curve is nearly straight here: a few secant steps.
+    let (mut before, mut now) = (-0.001, -0.002);
+    let mut traction_before = traction(before)?;
+    for _ in 0..5 {
+        let traction_now = traction(now)?;
+        if traction_now == traction_before {
+            break;
+        }
+        let next = now - traction_now * (now - before) / (traction_now - traction_before);
+        (before, traction_before, now) = (now, traction_now, next);
+    }
+    Ok(now)
+}
+
+/// Partial slip at 0.5 % with friction that falls with temperature: force and peak temperature.
+fn hot_rows() -> Result<Vec<Row>> {
+    let settled = |contact_nodes: usize| -> Result<Outputs> {
+        let parameters = Parameters {
+            contact_nodes,
+            wheel: Wheel::Rigid,
+            heat_partition: 1.0,
+            contact_thermal_resistance: 1e12,
+            wear_coefficient: 0.0,
+            thermal_expansion: 0.0,
+            friction_temperature_cold: 300.0,
+            ..Parameters::default()
+        };
+        let inputs = Inputs {
+            creepage: 0.005,
+            ..Inputs::default()
+        };
+        Ok(*Simulation::new(&parameters, &inputs)?.hold(&inputs, PASSAGE, 30)?)
+    };
+    let (limit, default) = (settled(FINE)?, settled(Parameters::default().contact_nodes)?);
+    let row = |quantity: &str, unit, limit, default| Row::relative(quantity, unit, limit, default, 0.003, SOURCE);
+    Ok(vec![
+        row(
+            "traction force at creepage 0.005 with mu(theta), default nodes",
+            "N",
+            limit.traction_force,
+            default.traction_force,
+        ),
+        row(
+            "largest temperature rise there",
+            "K",
+            limit.peak_temperature - Inputs::default().ambient_temperature,
+            default.peak_temperature - Inputs::default().ambient_temperature,
+        ),
+    ])
+}
