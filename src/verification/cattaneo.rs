@@ -55,6 +55,7 @@ impl Ramp {
     fn inputs(surface_speed: f64) -> Inputs {
         Inputs {
             wheel_speed: surface_speed / parameters().wheel_radius,
+            vehicle_speed: 0.0,
             normal_load: LOAD,
             ..Inputs::default()
         }
