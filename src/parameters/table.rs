@@ -166,7 +166,7 @@ parameters! {
         "friction_table.coefficient" [1 2 3 4 5 6 7 8 9 10], "1", TABLE_COEFFICIENTS, 0.0, 1.0
     }
     /// Wheel: 1 rigid (the paper's; it pulls at creepage 0), 2 elastic (wheel_lame_lambda, wheel_shear_modulus and
-    /// wheel_density; like the rail it does not)
+    /// wheel_density; by default of the rail's material, so that it does not)
     wheel: Wheel = choice { Wheel::Elastic }
     /// First Lame coefficient of the wheel, used where wheel is elastic
     wheel_lame_lambda: f64 = real { "Pa" shown in "GPa", 11.66e10, 1e5, 1e13 }
