@@ -151,13 +151,15 @@ pub enum Error {
         /// Last change, `K`.
         residual: f64,
     },
-    /// The contact reaches the end of the window that was sized for `largest_load`.
+    /// The contact reaches the end of the window that was sized for `largest_load`, under a larger load.
     #[error(
-        "the contact reaches the end of the contact window (half-width {half_width} m): largest_load = {largest_load} N is too small for this penetration, wear or thermal bulge"
+        "the contact reaches the end of the contact window (half-width {half_width} m): the penetration takes a load of {load} N, more than largest_load = {largest_load} N"
     )]
     ContactLeavesWindow {
         /// Half-width of the window, `m`.
         half_width: f64,
+        /// The load, `N`.
+        load: f64,
         /// The load that sized it, `N`.
         largest_load: f64,
     },

@@ -80,6 +80,8 @@ pub struct MechanicsSettings {
     /// Limit of the sweeps over both problems. With the active-set method two or three do, with the paper's method some
     /// ten.
     pub sweeps: usize,
+    /// Overlap of wheel and rail, scaled, above which an end of the window counts as cut off.
+    pub overlap: f64,
     /// Change of the shear, relative to the peak pressure, to which they are solved before they are linearised.
     pub linearisation_tolerance: f64,
 }
@@ -210,6 +212,7 @@ impl Default for MechanicsSettings {
     fn default() -> Self {
         MechanicsSettings {
             sweeps: 200,
+            overlap: 1e-9,
             linearisation_tolerance: 1e-10,
         }
     }

@@ -215,6 +215,7 @@ impl Model {
             state.time = start + committed;
             convergence.iterations += solved.iterations;
             convergence.residual = solved.residual;
+            convergence.fills_window |= solved.fills_window;
             state.convergence = convergence;
             substep = (2.0 * substep).min(largest_substep);
         }

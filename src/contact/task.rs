@@ -34,4 +34,7 @@ pub struct Convergence {
     pub iterations: usize,
     /// Last relative change of the surface temperature.
     pub residual: f64,
+    /// Whether the contact would reach beyond its window: it is held within it, and the groove that the wheel has worn is as wide
+    /// as the window.
+    pub fills_window: bool,
 }

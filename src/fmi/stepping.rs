@@ -77,8 +77,13 @@ impl Component {
                 _ => Default::default(),
             };
             let (iterations, residual) = (convergence.iterations, convergence.residual);
+            let window = if convergence.fills_window {
+                "; the wheel has worn a groove as wide as the contact window, which largest_load sizes"
+            } else {
+                ""
+            };
             format!(
-                "t = {} s: {iterations} iterations, residual {residual:e}",
+                "t = {} s: {iterations} iterations, residual {residual:e}{window}",
                 component.time
             )
         });

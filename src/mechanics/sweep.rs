@@ -60,6 +60,7 @@ pub struct Mechanics {
     nodes_before: Vec<usize>,
     /// Separation of the node ahead of the leading one.
     pub(super) gap: f64,
+    cut_off: bool,
     /// Values on the nodes under pressure.
     pub(super) local: Local,
 }
@@ -95,6 +96,7 @@ impl Mechanics {
             nodes: Vec::with_capacity(nodes),
             nodes_before: Vec::with_capacity(nodes),
             gap: 0.0,
+            cut_off: false,
             local: Local {
                 pressure: vector(),
                 shear: vector(),
@@ -168,6 +170,8 @@ impl Mechanics {
             compliance: problem.normal_compliance,
             profile: &self.profile,
             constraint: problem.constraint,
+            // The slip of a node takes the displacement of its neighbours.
+            free_ends: 1,
         };
         let solution = match problem.normal_solver {
             NormalSolver::ActiveSet => self.active_set.solve(&normal, tractions.pressure)?,
@@ -182,19 +186,25 @@ impl Mechanics {
             self.tangential.forget();
             self.slip_weights = (f64::NAN, f64::NAN);
         }
-        self.gap = self.gap_ahead(problem, tractions.pressure, solution.penetration);
+        let separation = |node: usize| self.separation(problem, tractions.pressure, solution.penetration, node);
+        let gap = self.response.node_ahead_of_the_contact().map_or(0.0, separation);
+        let ends = [0, tractions.pressure.len() - 1];
+        let cut_off = ends.into_iter().any(|end| separation(end) < -self.settings.overlap);
+        (self.gap, self.cut_off) = (gap, cut_off);
         // Not whether the response was computed anew: that depends on what was solved before this step.
         Ok(self.nodes != self.nodes_before)
     }
 
-    /// Separation w = C p − b − δ of the node ahead of the leading one.
-    fn gap_ahead(&self, problem: &MechanicsProblem, pressure: &[f64], penetration: f64) -> f64 {
-        let Some(ahead) = self.response.node_ahead_of_the_contact() else {
-            return 0.0;
-        };
-        let row = problem.normal_compliance.row(ahead);
+    /// Separation w = C p − b − δ of a node.
+    fn separation(&self, problem: &MechanicsProblem, pressure: &[f64], penetration: f64, node: usize) -> f64 {
+        let row = problem.normal_compliance.row(node);
         let lowered: f64 = self.nodes.iter().map(|&node| row[node] * pressure[node]).sum();
-        lowered - self.profile[ahead] - penetration
+        lowered - self.profile[node] - penetration
+    }
+
+    /// Whether the contact of the last sweep would reach beyond the window, had it not been held within it.
+    pub fn is_cut_off(&self) -> bool {
+        self.cut_off
     }
 
     /// ∂s/∂τ from the response of the displacement: with the weights of [`MechanicsProblem::slip_weights`].

@@ -1,7 +1,6 @@
 //! Inputs and parameters at the edge of what the iterations can bear, with either wheel: each of these once failed.
 
 use crate::by_speeds::{inputs, wheels};
-use wheelrail::error::Error;
 use wheelrail::parameters::Parameters;
 use wheelrail::signals::Inputs;
 use wheelrail::simulation::Simulation as Run;
@@ -36,12 +35,8 @@ fn a_soft_rail_wears_at_speed() {
             };
             let sliding = inputs(10.0, 10.0 * (1.0 + creepage), 60e3);
             let mut run = Run::new(&parameters, &sliding).unwrap();
-            // So much wear widens the contact beyond its window within the step: an honest end, not a diverging iteration.
-            let outcome = run.hold(&sliding, 1e-3, 1);
-            assert!(
-                outcome.is_ok() || matches!(outcome, Err(Error::ContactLeavesWindow { .. })),
-                "{outcome:?}"
-            );
+            // So much wear widens the contact beyond its window within the step, where it is held.
+            run.hold(&sliding, 1e-3, 1).unwrap();
         }
     }
 }

@@ -72,15 +72,15 @@ impl ActiveSet {
     /// [`Error::NormalNotConverged`].
     pub fn solve(&mut self, problem: &NormalProblem, pressure: &mut [f64]) -> Result<NormalSolution> {
         self.active.clear();
-        self.active.extend((0..pressure.len()).filter(|&i| pressure[i] > 0.0));
+        self.active.extend(problem.candidates().filter(|&i| pressure[i] > 0.0));
         if self.active.is_empty() {
-            self.active.extend(0..pressure.len());
+            self.active.extend(problem.candidates());
         }
         for iterations in 1..=self.settings.exchanges {
             let penetration = self.close_active_nodes(problem)?;
             pressure.copy_from_slice(&self.target);
             self.update_separation(problem, pressure, penetration);
-            let Some(worst) = self.worst_violation(pressure) else {
+            let Some(worst) = self.worst_violation(problem, pressure) else {
                 return Ok(NormalSolution {
                     penetration,
                     iterations,
@@ -88,7 +88,7 @@ impl ActiveSet {
             };
             if iterations <= self.settings.set_exchanges {
                 self.active.clear();
-                self.active.extend((0..pressure.len()).filter(|&i| match pressure[i] {
+                self.active.extend(problem.candidates().filter(|&i| match pressure[i] {
                     0.0 => self.separation[i] < -self.settings.round_off,
                     p => p > 0.0,
                 }));
@@ -103,12 +103,13 @@ impl ActiveSet {
     }
 
     /// The node whose condition is violated most, by negative pressure or negative separation (both scaled).
-    fn worst_violation(&self, pressure: &[f64]) -> Option<usize> {
+    fn worst_violation(&self, problem: &NormalProblem, pressure: &[f64]) -> Option<usize> {
         let violation = |i: usize| match pressure[i] {
             0.0 if self.separation[i] < -self.settings.round_off => -self.separation[i],
             p => -p,
         };
-        (0..pressure.len())
+        problem
+            .candidates()
             .filter(|&i| violation(i) > 0.0)
             .max_by(|&a, &b| violation(a).total_cmp(&violation(b)))
     }
@@ -117,12 +118,13 @@ impl ActiveSet {
     pub(super) fn descend(&mut self, problem: &NormalProblem, pressure: &mut [f64]) -> Result<NormalSolution> {
         let n = pressure.len();
         let start = match problem.constraint {
-            Constraint::Total(total) => total / n as f64,
+            Constraint::Total(total) => total / problem.candidates().len() as f64,
             Constraint::Penetration(_) => 0.0,
         };
-        pressure.fill(start);
+        pressure.fill(0.0);
+        pressure[problem.candidates()].fill(start);
         self.active.clear();
-        self.active.extend((0..n).filter(|_| start > 0.0));
+        self.active.extend(problem.candidates().filter(|_| start > 0.0));
         let first = self.settings.exchanges + 1;
         let limit = self.settings.exchanges + self.settings.descents_per_node * n;
         for iterations in first..=limit {
@@ -141,7 +143,8 @@ impl ActiveSet {
             }
             pressure.copy_from_slice(&self.target);
             self.update_separation(problem, pressure, penetration);
-            let worst = (0..n)
+            let worst = problem
+                .candidates()
                 .filter(|i| !self.active.contains(i))
                 .min_by(|&a, &b| self.separation[a].total_cmp(&self.separation[b]));
             match worst {

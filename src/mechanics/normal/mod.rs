@@ -39,6 +39,9 @@ mod tests {
             assert!((p - q).abs() <= 1e-8 * largest, "{p} {q} {first:?} {second:?}");
             assert!(*p >= 0.0);
         }
+        for end in 0..problem.free_ends {
+            assert_eq!((p[end], p[p.len() - 1 - end]), (0.0, 0.0));
+        }
         assert!(
             (first.penetration - second.penetration).abs() <= 1e-8 * first.penetration.abs().max(1.0),
             "{first:?} {second:?}"
@@ -60,7 +63,9 @@ mod tests {
             let a: DMatrix<f64> = DMatrix::from_vec(15, 15, entries);
             let compliance: DMatrix<f64> = &a * a.transpose() * 0.3 + DMatrix::identity(15, 15) * 0.1;
             let constraint = if load { Constraint::Total(value) } else { Constraint::Penetration(value - 1.5) };
-            check(&NormalProblem { compliance: &compliance, profile: &profile, constraint });
+            for free_ends in 0..2 {
+                check(&NormalProblem { compliance: &compliance, profile: &profile, constraint, free_ends });
+            }
         }
 
         #[test]
@@ -72,7 +77,7 @@ mod tests {
             let a: DMatrix<f64> = DMatrix::from_vec(10, 10, entries);
             let compliance: DMatrix<f64> = &a * a.transpose() + DMatrix::identity(10, 10) * 0.1;
             let constraint = if load { Constraint::Total(1.0) } else { Constraint::Penetration(0.1) };
-            let problem = NormalProblem { compliance: &compliance, profile: &profile, constraint };
+            let problem = NormalProblem { compliance: &compliance, profile: &profile, constraint, free_ends: 0 };
             let mut solver = ActiveSet::new(10, NormalSettings::default());
             let (mut p, mut q) = (vec![0.0; 10], vec![0.0; 10]);
             let first = solver.solve(&problem, &mut p).unwrap();
@@ -91,6 +96,7 @@ mod tests {
             compliance: &compliance,
             profile: &[-0.3, -0.1, 0.0, -0.2],
             constraint: Constraint::Penetration(-0.5),
+            free_ends: 0,
         };
         for (pressure, _) in both(&problem) {
             assert_eq!(pressure, vec![0.0; 4]);

@@ -1,6 +1,7 @@
 //! The data of the normal problem and of its solution.
 
 use nalgebra::DMatrix;
+use std::ops::Range;
 
 /// What closes the problem.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -20,6 +21,15 @@ pub struct NormalProblem<'a> {
     pub profile: &'a [f64],
     /// Load or penetration.
     pub constraint: Constraint,
+    /// So many nodes at either end stay free, whatever lies over them.
+    pub free_ends: usize,
+}
+
+impl NormalProblem<'_> {
+    /// The nodes that may come under pressure.
+    pub fn candidates(&self) -> Range<usize> {
+        self.free_ends..self.profile.len() - self.free_ends
+    }
 }
 
 /// What a solver found besides the pressure.

@@ -41,7 +41,7 @@ impl Pschenichnyj {
             Constraint::Penetration(penetration) => penetration,
             Constraint::Total(_) => 0.0,
         };
-        self.project(problem.constraint, pressure);
+        self.project(problem, pressure);
         let mut curvature = (0..pressure.len()).map(|i| problem.compliance[(i, i)]).sum::<f64>();
         let mut residual = f64::INFINITY;
         for iterations in 1..=self.settings.linearisations {
@@ -54,7 +54,7 @@ impl Pschenichnyj {
                 *d = p - g / curvature;
             }
             let mut direction = std::mem::take(&mut self.direction);
-            let multiplier = self.project(problem.constraint, &mut direction) * curvature;
+            let multiplier = self.project(problem, &mut direction) * curvature;
             for (d, p) in direction.iter_mut().zip(pressure.iter()) {
                 *d -= p;
             }
@@ -100,10 +100,15 @@ impl Pschenichnyj {
         })
     }
 
-    /// Projects onto p ≥ 0, and onto Σp where that is given. Returns the shift λ of the projection max(v + λ, 0).
-    fn project(&mut self, constraint: Constraint, values: &mut [f64]) -> f64 {
+    /// Projects onto p ≥ 0, 0 at the free ends, and onto Σp where that is given. Returns the shift λ of the projection
+    /// max(v + λ, 0).
+    fn project(&mut self, problem: &NormalProblem, values: &mut [f64]) -> f64 {
+        let candidates = problem.candidates();
+        values[..candidates.start].fill(0.0);
+        values[candidates.end..].fill(0.0);
+        let values = &mut values[candidates];
         let mut shift = 0.0;
-        if let Constraint::Total(total) = constraint {
+        if let Constraint::Total(total) = problem.constraint {
             self.sorted.clear();
             self.sorted.extend_from_slice(values);
             self.sorted.sort_unstable_by(|a, b| b.total_cmp(a));
