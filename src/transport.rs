@@ -42,13 +42,6 @@ pub struct Column {
     pub spacing: f64,
 }
 
-impl Column {
-    /// Whether the cell upstream has this length, but for round-off of the positions.
-    pub fn is_as_long_as(&self, spacing: f64) -> bool {
-        (self.spacing - spacing).abs() <= 1e-9 * self.spacing
-    }
-}
-
 impl<'a> Upwind<'a> {
     /// March over columns at positions `x` `m` for the speed V `m/s`; V = 0 counts as forward.
     pub fn new(x: &'a [f64], speed: f64) -> Upwind<'a> {
@@ -95,6 +88,41 @@ impl<'a> Upwind<'a> {
                 spacing: (x[upstream] - x[index]).abs(),
             }
         })
+    }
+}
+
+/// The cells between neighbouring columns, by their lengths: all those of the window are of one length, and those outside it are
+/// mirror images.
+#[derive(Debug, Clone)]
+pub struct Cells {
+    /// Of the cell between a column and the next one, the place of its length in `lengths`.
+    length_of: Vec<usize>,
+    /// The different lengths, `m`.
+    pub lengths: Vec<f64>,
+}
+
+impl Cells {
+    /// Between columns at `x` `m`.
+    pub fn new(x: &[f64]) -> Cells {
+        let mut lengths: Vec<f64> = Vec::new();
+        let length_of = x
+            .windows(2)
+            .map(|ends| {
+                let length = ends[1] - ends[0];
+                // The same but for round-off of the positions.
+                let same = |other: &f64| (length - other).abs() <= 1e-9 * length;
+                lengths.iter().position(same).unwrap_or_else(|| {
+                    lengths.push(length);
+                    lengths.len() - 1
+                })
+            })
+            .collect();
+        Cells { length_of, lengths }
+    }
+
+    /// The place in [`Cells::lengths`] of the cell upstream of a column.
+    pub fn length_of(&self, column: &Column) -> usize {
+        self.length_of[column.index.min(column.upstream)]
     }
 }
 

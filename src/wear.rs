@@ -1,6 +1,6 @@
 //! Archard wear (11), (24) with storage: ∂W/∂t − V ∂W/∂x₁ = k |s| p, the march of the heat without conduction.
 
-use crate::transport::{CellStep, Upwind};
+use crate::transport::{CellStep, Cells, Upwind};
 
 /// The step from the wear depth `before` to that at its end, `m`, at all columns.
 pub struct WearMarch<'a> {
@@ -12,22 +12,49 @@ pub struct WearMarch<'a> {
     pub first_contact: usize,
 }
 
+/// The steps through the cells, one for each length. What they are depends on nothing that was asked before.
+#[derive(Debug, Clone)]
+pub struct WearSteps {
+    cells: Cells,
+    steps: Vec<CellStep>,
+    /// The speed and Δt that they are of.
+    conditions: (f64, f64),
+}
+
+impl WearSteps {
+    /// Between columns at `x` `m`.
+    pub fn new(x: &[f64]) -> WearSteps {
+        let cells = Cells::new(x);
+        WearSteps {
+            steps: vec![CellStep::NONE; cells.lengths.len()],
+            conditions: (f64::NAN, f64::NAN),
+            cells,
+        }
+    }
+
+    /// A step marches several times at the same speed and Δt.
+    fn adapt(&mut self, speed: f64, duration: f64) {
+        if self.conditions == (speed, duration) {
+            return;
+        }
+        self.conditions = (speed, duration);
+        for (step, length) in self.steps.iter_mut().zip(&self.cells.lengths) {
+            *step = CellStep::new(1.0 / duration, *length, speed);
+        }
+    }
+}
+
 impl WearMarch<'_> {
     /// The depth `after` from that `before` under the wear rate k |s| p at the contact nodes, `m/s`. The inflow column of
-    /// `after` holds what enters.
-    pub fn advance(&self, rate: &[f64], before: &[f64], after: &mut [f64]) {
+    /// `after` holds what enters. `steps` are those between the columns.
+    pub fn advance(&self, rate: &[f64], before: &[f64], after: &mut [f64], steps: &mut WearSteps) {
+        steps.adapt(self.transport.speed(), self.duration);
         let storage = 1.0 / self.duration;
         let inflow = self.transport.inflow();
         let mut upstream = after[inflow];
         let mut upstream_source = storage * before[inflow];
-        let mut spacing = f64::NAN;
-        let mut step = CellStep::NONE;
         for column in self.transport.columns() {
-            // The factors are those of the last column where the spacing is the same (all over the window).
-            if !column.is_as_long_as(spacing) {
-                spacing = column.spacing;
-                step = CellStep::new(storage, spacing, self.transport.speed());
-            }
+            let step = steps.steps[steps.cells.length_of(&column)];
             let own_source = storage * before[column.index] + self.at(rate, column.index);
             // The depth upstream enters last: columns wait for each other there, and all the rest can be computed meanwhile.
             let fed = step.upstream * upstream_source + step.own * own_source;
@@ -106,7 +133,7 @@ mod tests {
             let transport = march.transport;
             let mut after = vec![0.0; X.len()];
             after[transport.inflow()] = incoming;
-            march.advance(&rate, &before, &mut after);
+            march.advance(&rate, &before, &mut after, &mut WearSteps::new(&X));
             let (mut stored, mut worn) = (0.0, 0.0);
             for column in transport.columns() {
                 let step = CellStep::new(1.0 / duration, column.spacing, transport.speed());
@@ -142,7 +169,7 @@ mod tests {
                 let rate: Vec<f64> = rate.iter().zip(&rate_change).map(|(r, d)| r + h * d).collect();
                 let mut after = vec![0.0; X.len()];
                 after[march.transport.inflow()] = 0.3 + h * incoming_change;
-                march.advance(&rate, &before, &mut after);
+                march.advance(&rate, &before, &mut after, &mut WearSteps::new(&X));
                 after
             };
             let h = 1e-5;
@@ -173,7 +200,7 @@ mod tests {
                 duration: 10.0_f64.powf(log_duration),
                 first_contact: 0,
             };
-            march.advance(&[], &before, &mut after);
+            march.advance(&[], &before, &mut after, &mut WearSteps::new(&x));
             let largest = before.iter().fold(0.0, |m: f64, w| w.max(m));
             // Round-off of the weights.
             prop_assert!(after.iter().all(|&w| (0.0..=largest * (1.0 + 1e-14)).contains(&w)));
@@ -188,7 +215,7 @@ mod tests {
             let at = |speed: f64| {
                 let mut after = vec![0.0; X.len()];
                 after[X.len() - 1] = 0.3;
-                march(speed, duration).advance(&rate, &before, &mut after);
+                march(speed, duration).advance(&rate, &before, &mut after, &mut WearSteps::new(&X));
                 after
             };
             // Truncation h and round-off 1/h, on the scale on which a cell is crossed in a step.
@@ -219,7 +246,7 @@ mod tests {
                 for step in 0..40 {
                     let mut after = vec![0.0; X.len()];
                     after[march.transport.inflow()] = if step % 20 < 10 { 1.0 } else { 0.0 };
-                    march.advance(&[0.0; 5], &before, &mut after);
+                    march.advance(&[0.0; 5], &before, &mut after, &mut WearSteps::new(&X));
                     assert!(
                         after.iter().all(|&depth| (0.0..=1.0 + 1e-14).contains(&depth)),
                         "{after:?}"

@@ -6,15 +6,12 @@
 
 use super::basis::DepthBasis;
 use crate::numerics::dense::{Arithmetic, LANES};
-use crate::transport::{CellStep, Column};
+use crate::transport::{CellStep, Cells, Column};
 
 /// Factors of all modes in the cells between columns; m modes. What they are depends on nothing that was asked before.
 #[derive(Debug, Clone)]
 pub struct CellFactors {
-    /// Of the cell between a column and the next one, the place of its length in `lengths`.
-    length_of: Vec<usize>,
-    /// The different lengths, `m`.
-    lengths: Vec<f64>,
+    cells: Cells,
     /// The conditions of what is known.
     conditions: Conditions,
     /// Whether the factors of a length are known.
@@ -73,32 +70,20 @@ impl CellFactors {
     /// For columns at `x` `m`.
     pub fn new(basis: &DepthBasis, x: &[f64]) -> CellFactors {
         let m = basis.len();
-        let mut lengths: Vec<f64> = Vec::new();
-        let length_of = x
-            .windows(2)
-            .map(|ends| {
-                let length = ends[1] - ends[0];
-                // The same but for round-off of the positions.
-                let same = |other: &f64| (length - other).abs() <= 1e-9 * length;
-                lengths.iter().position(same).unwrap_or_else(|| {
-                    lengths.push(length);
-                    lengths.len() - 1
-                })
-            })
-            .collect();
+        let cells = Cells::new(x);
+        let lengths = cells.lengths.len();
         CellFactors {
-            length_of,
             conditions: Conditions {
                 speed: f64::NAN,
                 duration: f64::NAN,
                 diffusivity: f64::NAN,
                 capacity: f64::NAN,
             },
-            known: vec![false; lengths.len()],
+            known: vec![false; lengths],
             rates: vec![0.0; m],
             durations: vec![0.0; m],
-            steps: vec![0.0; 3 * m * lengths.len()],
-            lengths,
+            steps: vec![0.0; 3 * m * lengths],
+            cells,
             heated: None,
             passed_on: vec![0.0; m],
             taken: vec![0.0; m],
@@ -124,7 +109,7 @@ impl CellFactors {
 
     /// The place of the length of the cell upstream of a column.
     pub fn length_of(&self, column: &Column) -> usize {
-        self.length_of[column.index.min(column.upstream)]
+        self.cells.length_of(column)
     }
 
     /// Factors at a length.
@@ -181,30 +166,34 @@ impl CellFactors {
     #[inline(always)]
     fn compute(&mut self, arithmetic: Arithmetic, length: usize) {
         let m = self.rates.len();
-        let (length_of_cell, speed) = (self.lengths[length], self.conditions.speed);
+        let (length_of_cell, speed) = (self.cells.lengths[length], self.conditions.speed);
         let passage = (length_of_cell / speed, speed / length_of_cell);
         let steps = &mut self.steps[3 * m * length..][..3 * m];
         let (keep, rest) = steps.split_at_mut(m);
         let (upstream, own) = rest.split_at_mut(m);
-        let whole = m - m % LANES;
-        for first in (0..whole).step_by(LANES) {
+        let (rates, rest_of_rates) = self.rates.as_chunks::<LANES>();
+        let (durations, rest_of_durations) = self.durations.as_chunks::<LANES>();
+        let (keep, rest_of_keep) = keep.as_chunks_mut::<LANES>();
+        let (upstream, rest_of_upstream) = upstream.as_chunks_mut::<LANES>();
+        let (own, rest_of_own) = own.as_chunks_mut::<LANES>();
+        let out = keep.iter_mut().zip(upstream).zip(own);
+        for ((rates, durations), ((keep, upstream), own)) in rates.iter().zip(durations).zip(out) {
             // All values are loaded before one is stored: as in the march itself.
-            let block = |values: &[f64]| -> [f64; LANES] { std::array::from_fn(|lane| values[first + lane]) };
-            let (rates, durations) = (block(&self.rates), block(&self.durations));
-            let mut stepped = [[0.0; LANES]; 3];
+            let (rates, durations) = (*rates, *durations);
+            let mut steps = [[0.0; LANES]; 3];
             for lane in 0..LANES {
                 let step = CellStep::at(arithmetic, (rates[lane], durations[lane]), passage);
-                stepped[0][lane] = step.keep;
-                stepped[1][lane] = step.upstream;
-                stepped[2][lane] = step.own;
+                steps[0][lane] = step.keep;
+                steps[1][lane] = step.upstream;
+                steps[2][lane] = step.own;
             }
-            keep[first..first + LANES].copy_from_slice(&stepped[0]);
-            upstream[first..first + LANES].copy_from_slice(&stepped[1]);
-            own[first..first + LANES].copy_from_slice(&stepped[2]);
+            [*keep, *upstream, *own] = steps;
         }
-        for mode in whole..m {
-            let step = CellStep::at(arithmetic, (self.rates[mode], self.durations[mode]), passage);
-            (keep[mode], upstream[mode], own[mode]) = (step.keep, step.upstream, step.own);
+        let rest = rest_of_rates.iter().zip(rest_of_durations);
+        let out = rest_of_keep.iter_mut().zip(rest_of_upstream).zip(rest_of_own);
+        for ((rate, duration), ((keep, upstream), own)) in rest.zip(out) {
+            let step = CellStep::at(arithmetic, (*rate, *duration), passage);
+            (*keep, *upstream, *own) = (step.keep, step.upstream, step.own);
         }
     }
 }

@@ -251,12 +251,15 @@ fn carry_over(
     let mut sums = [0.0; LANES];
     let (blocks, rest) = own.as_chunks_mut::<LANES>();
     let whole = LANES * blocks.len();
-    for (block, own) in blocks.iter_mut().enumerate() {
-        let at = |values: &[f64]| -> [f64; LANES] { values.as_chunks::<LANES>().0[block] };
-        let (keep, upstream) = (at(factors.keep), at(upstream));
-        let (from_upstream, old_upstream) = (at(factors.upstream), at(sources.old_upstream));
-        let (from_own, old, surface) = (at(factors.own), at(sources.old), at(surface));
-        let passed_on = if is_heated { at(passed_on) } else { [0.0; LANES] };
+    let old = chunks(factors.own).zip(chunks(sources.old));
+    let old_upstream = chunks(factors.upstream).zip(chunks(sources.old_upstream));
+    let carried = chunks(factors.keep).zip(chunks(upstream));
+    // Without a flux upstream these are not read.
+    let passed = chunks(if is_heated { passed_on } else { surface });
+    let inputs = old.zip(old_upstream).zip(carried).zip(passed).zip(chunks(surface));
+    for (block, ((((old, old_upstream), carried), passed), surface)) in blocks.iter_mut().zip(inputs) {
+        let ((from_own, old), (from_upstream, old_upstream)) = (old, old_upstream);
+        let (keep, upstream) = carried;
         // All values are loaded before one is stored: otherwise the compiler must assume that the slices overlap, and does
         // not vectorise.
         let mut values = [0.0; LANES];
@@ -264,10 +267,10 @@ fn carry_over(
             let stored = fma(from_own[lane], old[lane], from_upstream[lane] * old_upstream[lane]);
             values[lane] = fma(sources.storage, stored, keep[lane] * upstream[lane]);
             if is_heated {
-                values[lane] = fma(heat, passed_on[lane], values[lane]);
+                values[lane] = fma(heat, passed[lane], values[lane]);
             }
         }
-        *own = values;
+        *block = values;
         for lane in 0..LANES {
             sums[lane] = fma(values[lane], surface[lane], sums[lane]);
         }
@@ -282,6 +285,10 @@ fn carry_over(
         tail += *own * surface[mode];
     }
     tail + sums.iter().sum::<f64>()
+}
+
+fn chunks(values: &[f64]) -> impl Iterator<Item = &[f64; LANES]> {
+    values.as_chunks::<LANES>().0.iter()
 }
 
 /// Two different columns of a field, the first mutable.

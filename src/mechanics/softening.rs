@@ -141,7 +141,7 @@ mod tests {
     use super::*;
     use crate::settings::Settings;
     use crate::transport::Upwind;
-    use crate::wear::WearMarch;
+    use crate::wear::{WearMarch, WearSteps};
 
     /// Softened compliance and proportional part are what the march of the wear does under any pressure.
     #[test]
@@ -163,7 +163,7 @@ mod tests {
                 .map(|(s, p): (&f64, _)| 70.0 * s.abs() * p)
                 .collect();
             let mut worn = vec![0.0; n + 2];
-            march.advance(&rate, &vec![0.0; n + 2], &mut worn);
+            march.advance(&rate, &vec![0.0; n + 2], &mut worn, &mut WearSteps::new(&x));
             let mut softening = Softening::new(&stiff, Settings::default().softening);
             let step = CellStep::new(1.0 / duration, 0.2, speed.abs());
             assert!(softening.update(&stiff, &slip, 70.0, step, speed >= 0.0));

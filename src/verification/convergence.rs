@@ -16,7 +16,7 @@ use crate::heat::surface::{SurfaceCondition, SurfaceExchange};
 use crate::parameters::Parameters;
 use crate::settings::HeatSettings;
 use crate::transport::Upwind;
-use crate::wear::WearMarch;
+use crate::wear::{WearMarch, WearSteps};
 use std::f64::consts::{FRAC_PI_2, PI};
 
 const SOURCE: &str = "order of the scheme, manufactured solution";
@@ -353,7 +353,7 @@ fn wear_error(cells: usize) -> f64 {
         duration,
         first_contact: 0,
     };
-    march.advance(&rate, &before, &mut after);
+    march.advance(&rate, &before, &mut after, &mut WearSteps::new(&x));
     let square: f64 = x.iter().zip(&after).map(|(&x, w)| (w - exact(x)).powi(2)).sum();
     (square * 2.0 / cells as f64).sqrt()
 }

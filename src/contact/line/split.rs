@@ -20,6 +20,7 @@ use crate::numerics::dense::{largest, largest_change};
 use crate::parameters::WheelHeating;
 use crate::settings::Settings;
 use crate::transport::CellStep;
+use crate::wear::WearSteps;
 
 /// Buffers of a split.
 pub struct Scratch {
@@ -31,6 +32,7 @@ pub struct Scratch {
     image: Coupling,
     exchange: Vec<SurfaceExchange>,
     wear_rate: Vec<f64>,
+    wear_steps: WearSteps,
     /// Of the heat march.
     pub(super) cells: CellFactors,
     /// Of the thermal map.
@@ -51,6 +53,7 @@ impl Scratch {
             data: MechanicsData::new(n),
             exchange: vec![SurfaceExchange::default(); n],
             wear_rate: vec![0.0; n],
+            wear_steps: WearSteps::new(&rail.mesh.x),
             cells: CellFactors::new(&rail.heat.basis, &rail.mesh.x),
             moments: vec![0.0; rail.heat.displacement.scratch_len()],
             mapped_flux: vec![0.0; n],
@@ -220,7 +223,12 @@ fn march_wear(problem: &Problem, before: &Fields, fields: &mut Fields, scratch: 
     }
     let march = problem.wear_march();
     fields.wear[march.transport.inflow()] = problem.conditions.inputs.incoming_wear_depth;
-    march.advance(&scratch.wear_rate, &before.wear, &mut fields.wear);
+    march.advance(
+        &scratch.wear_rate,
+        &before.wear,
+        &mut fields.wear,
+        &mut scratch.wear_steps,
+    );
 }
 
 /// (19), (23) together with the rim's temperature: what the rail gives to the wheel and what the wheel takes is the same
