@@ -144,7 +144,7 @@ mod tests {
             let carried = speed.abs() * (after[transport.outflow()] - incoming);
             let size = stored.abs().max(worn).max(carried.abs()).max(1.0 / duration);
             prop_assert!((stored + carried - worn).abs() < 1e-12 * size);
-            // The first and the last node are not in contact: what is worn is that of all nodes, as in the outputs.
+            // Between cells of one length a node counts with that length, as in the outputs; at the ends the weights vary.
             let even = 0.2 * rate[1..4].iter().sum::<f64>();
             let wide = 0.6 * rate[0].max(rate[4]);
             prop_assert!(worn >= even - 1e-12 && worn <= even + 2.0 * wide);

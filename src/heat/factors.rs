@@ -66,6 +66,78 @@ pub struct HeatFactors<'a> {
     pub response: f64,
 }
 
+/// What feeds the modes of a column but for its own heat flux, m each.
+#[derive(Debug, Clone, Copy)]
+pub struct Sources<'a> {
+    /// 1/Δt, `1/s`.
+    pub storage: f64,
+    /// Amplitudes of the step before in the column upstream.
+    pub old_upstream: &'a [f64],
+    /// Those in the column itself.
+    pub old: &'a [f64],
+    /// Heat flux into the column upstream, with what is taken of it.
+    pub flux: Option<(f64, &'a [f64])>,
+}
+
+impl Factors<'_> {
+    /// own = E · upstream + g ω · (sources upstream) + g (1 − ω) · old/Δt, and the surface value of it: as [`Arithmetic::dot`], in
+    /// the same pass.
+    #[inline(always)]
+    pub fn carry_over(
+        &self,
+        arithmetic: Arithmetic,
+        own: &mut [f64],
+        upstream: &[f64],
+        sources: &Sources,
+        surface: &[f64],
+    ) -> f64 {
+        let fma = |a, b, c| arithmetic.multiply_add(a, b, c);
+        let (heat, passed_on) = sources.flux.unwrap_or((0.0, &[]));
+        let is_heated = sources.flux.is_some();
+        let mut sums = [0.0; LANES];
+        let (blocks, rest) = own.as_chunks_mut::<LANES>();
+        let whole = LANES * blocks.len();
+        let old = chunks(self.own).zip(chunks(sources.old));
+        let old_upstream = chunks(self.upstream).zip(chunks(sources.old_upstream));
+        let carried = chunks(self.keep).zip(chunks(upstream));
+        // Without a flux upstream these are not read.
+        let passed = chunks(if is_heated { passed_on } else { surface });
+        let inputs = old.zip(old_upstream).zip(carried).zip(passed).zip(chunks(surface));
+        for (block, ((((old, old_upstream), carried), passed), surface)) in blocks.iter_mut().zip(inputs) {
+            let ((from_own, old), (from_upstream, old_upstream)) = (old, old_upstream);
+            let (keep, upstream) = carried;
+            // All values are loaded before one is stored: otherwise the compiler must assume that the slices overlap, and does
+            // not vectorise.
+            let mut values = [0.0; LANES];
+            for lane in 0..LANES {
+                let stored = fma(from_own[lane], old[lane], from_upstream[lane] * old_upstream[lane]);
+                values[lane] = fma(sources.storage, stored, keep[lane] * upstream[lane]);
+                if is_heated {
+                    values[lane] = fma(heat, passed[lane], values[lane]);
+                }
+            }
+            *block = values;
+            for lane in 0..LANES {
+                sums[lane] = fma(values[lane], surface[lane], sums[lane]);
+            }
+        }
+        let mut tail = 0.0;
+        for (own, mode) in rest.iter_mut().zip(whole..) {
+            let stored = self.own[mode] * sources.old[mode] + self.upstream[mode] * sources.old_upstream[mode];
+            *own = sources.storage * stored + self.keep[mode] * upstream[mode];
+            if is_heated {
+                *own += heat * passed_on[mode];
+            }
+            tail += *own * surface[mode];
+        }
+        tail + sums.iter().sum::<f64>()
+    }
+}
+
+fn chunks(values: &[f64]) -> impl Iterator<Item = &[f64; LANES]> {
+    values.as_chunks::<LANES>().0.iter()
+}
+
 impl CellFactors {
     /// For columns at `x` `m`.
     pub fn new(basis: &DepthBasis, x: &[f64]) -> CellFactors {
@@ -194,6 +266,66 @@ impl CellFactors {
         for ((rate, duration), ((keep, upstream), own)) in rest.zip(out) {
             let step = CellStep::at(arithmetic, (*rate, *duration), passage);
             (*keep, *upstream, *own) = (step.keep, step.upstream, step.own);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Whatever was asked before: columns on either side, under other conditions, with heat or without.
+    #[test]
+    fn what_is_kept_is_the_step_of_the_cell() {
+        let x = [-0.1, -0.01, -0.004, -0.002, 0.0, 0.002, 0.004, 0.01, 0.1];
+        let depth: Vec<f64> = (0..12).map(|row| 1e-5 * (1.8_f64.powi(row) - 1.0)).collect();
+        let basis = DepthBasis::new(&depth).unwrap();
+        let mut cells = CellFactors::new(&basis, &x);
+        assert_eq!(cells.cells.lengths.len(), 3);
+        for (speed, duration) in [
+            (10.0, 1e-3),
+            (10.0, 1e-4),
+            (0.0, 1e-3),
+            (3.0, f64::INFINITY),
+            (10.0, 1e-3),
+        ] {
+            let conditions = Conditions {
+                speed,
+                duration,
+                diffusivity: 1.4e-5,
+                capacity: 3.6e6,
+            };
+            cells.adapt(&basis, conditions);
+            for (index, spacing) in [(0, 0.09), (3, 0.002), (6, 0.006), (4, 0.002), (7, 0.09)] {
+                let column = Column {
+                    index,
+                    upstream: index + 1,
+                    spacing,
+                };
+                let length = cells.length_of(&column);
+                let (factors, heat) = cells.heated_at(Arithmetic::SEPARATE, &basis, length);
+                let mut response = 0.0;
+                for mode in 0..basis.len() {
+                    let rate = 1.0 / duration + 1.4e-5 * basis.eigenvalues[mode];
+                    let step = CellStep::new(rate, spacing, speed);
+                    let heating = basis.surface[mode] / 3.6e6;
+                    response += basis.surface[mode] * heating * step.own;
+                    for (kept, exact) in [
+                        (factors.keep[mode], step.keep),
+                        (factors.upstream[mode], step.upstream),
+                        (factors.own[mode], step.own),
+                        (heat.passed_on[mode], heating * step.upstream),
+                        (heat.taken[mode], heating * step.own),
+                    ] {
+                        // The lengths differ by round-off.
+                        assert!(
+                            (kept - exact).abs() <= 1e-12 * exact.abs(),
+                            "{speed} {index} {mode}: {kept:e} {exact:e}"
+                        );
+                    }
+                }
+                assert!((heat.response / response - 1.0).abs() < 1e-12);
+            }
         }
     }
 }

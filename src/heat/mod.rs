@@ -68,3 +68,79 @@ impl Heat {
         self.incoming.equivalent_rise(&self.basis, amplitudes)
     }
 }
+
+/// Fronts on the default mesh.
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::friction::FrictionState;
+    use crate::heat::factors::CellFactors;
+    use crate::heat::march::HeatMarch;
+    use crate::heat::surface::{SurfaceCondition, SurfaceExchange};
+    use crate::settings::HeatSettings;
+    use crate::transport::Upwind;
+
+    /// Hot rail comes in and ends, and the wheel slips and stops: no surface falls below the ambient, and none that is not
+    /// heated rises above what came in.
+    #[test]
+    fn fronts_leave_no_surface_colder_than_the_ambient() {
+        let parameters = Parameters::default();
+        let mesh = Mesh::new(&parameters);
+        let basis = DepthBasis::new(&mesh.depth).unwrap();
+        let incoming = Incoming::new(&mesh.depth, &basis, parameters.skin_depth);
+        let m = basis.len();
+        let exchange = |heats: bool| -> Vec<SurfaceExchange> {
+            (0..mesh.contact_nodes)
+                .map(|node| match heats && node.abs_diff(30) < 18 {
+                    true => SurfaceExchange::new(&parameters, 5e8, 2.0, 0.0),
+                    false => SurfaceExchange::default(),
+                })
+                .collect()
+        };
+        let mut cells = CellFactors::new(&basis, &mesh.x);
+        let mut heated_most = 0.0_f64;
+        for speed in [0.0, 1e-3, 0.1, 1.0, 10.0, 80.0, -10.0] {
+            for duration in [1e-6, 1e-5, 1e-4, 1e-3, 3e-2] {
+                for heats in [false, true] {
+                    let march = HeatMarch {
+                        basis: &basis,
+                        transport: Upwind::new(&mesh.x, speed),
+                        first_contact: mesh.first_contact,
+                        duration,
+                        surface: SurfaceCondition {
+                            friction: FrictionState {
+                                parameters: &parameters,
+                                ambient: 293.15,
+                                scale: 1.0,
+                            },
+                            settings: HeatSettings::default(),
+                        },
+                    };
+                    let mut before = vec![0.0; mesh.columns() * m];
+                    for step in 0..40 {
+                        let (mut after, mut surface) = (vec![0.0; before.len()], vec![0.0; mesh.columns()]);
+                        let inflow = march.transport.inflow();
+                        let rise = if step % 20 < 10 { 100.0 } else { 0.0 };
+                        incoming.enter(rise, &mut after[inflow * m..][..m], &mut surface[inflow]);
+                        let mut field = Heated {
+                            temperature: &mut after,
+                            surface: &mut surface,
+                            flux: &mut vec![0.0; mesh.contact_nodes],
+                        };
+                        let exchange = exchange(heats && step % 6 < 3);
+                        march.advance(&before, &exchange, &mut field, &mut cells).unwrap();
+                        let (least, most) = surface.iter().fold((0.0_f64, 0.0_f64), |(least, most), &rise| {
+                            (least.min(rise), most.max(rise))
+                        });
+                        // Round-off of the sums over the modes.
+                        assert!(least > -1e-9, "{speed} {duration} {heats} {step}: {least}");
+                        assert!(heats || most < 101.5, "{speed} {duration} {step}: {most}");
+                        heated_most = heated_most.max(most);
+                        before = after;
+                    }
+                }
+            }
+        }
+        assert!(heated_most > 200.0, "{heated_most}");
+    }
+}

@@ -247,8 +247,8 @@ mod tests {
             }
         }
         assert!(fields.wear.iter().all(|&w| w >= 0.0));
-        // P1 with consistent mass undershoots ahead of a front, by far less than a kelvin.
-        assert!(fields.surface_temperature.iter().all(|&t| t > -1.0));
+        // Round-off of the sums over the modes.
+        assert!(fields.surface_temperature.iter().all(|&t| t > -1e-9));
     }
 
     proptest! {
