@@ -72,7 +72,8 @@
 //!
 //! 1. `parameters` and `signals`: every quantity that goes in and out, with unit, default, range and source. `settings`: limits and
 //!    tolerances of the methods, each with its reason.
-//! 2. `body`: mesh, elasticity and compliance of rail and wheel. What is computed once; after it, no sparse system is solved.
+//! 2. `body`: compliance of rail and wheel, the near field in closed form and the rest by finite elements. What is computed once;
+//!    after it, no sparse system is solved.
 //! 3. `friction`: the laws of μ(θ), and Coulomb's law. `mechanics`: tractions for given temperature and wear.
 //! 4. `transport`, `heat`, `wear`: temperature and wear of the rail for given tractions; `heat::incoming`: the rail that the
 //!    wheel ahead has left.

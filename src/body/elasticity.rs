@@ -1,87 +1,66 @@
-//! P1 plane-strain elasticity (26)–(27): stiffness, convective inertia, thermal load, and the factorised solve.
+//! P1 plane-strain elasticity (26)–(27): the stiffness, factorised, and what is solved with it.
 //!
-//! Weak form: ∫ σ(u):ε(v) − ρV² ∫ u,₁·v,₁ = α(3λ+2γ) ∫ θ div v + ∫_Γ F·v, u = 0 on Γ₀. The three bilinear forms are
-//! assembled apart, because a step changes V and θ but never factorises.
+//! Weak form: ∫ σ(u):ε(v) − ρV² ∫ u,₁·v,₁ = α(3λ+2γ) ∫ θ div v + ∫_Γ F·v, u given on Γ₀: zero but for [`super::remainder`].
+//! Inertia and thermal load stand in [`super::forms`], because a step changes V and θ but never factorises.
 
-use crate::body::mesh::Mesh;
+use super::forms::{Fields, elements};
+use super::mesh::Mesh;
 use crate::error::{Error, Result};
-use crate::numerics::sparse_cholesky::{SparseCholesky, WIDTH};
+use crate::numerics::sparse_cholesky::SparseCholesky;
 use faer::sparse::{SparseColMat, SymbolicSparseColMat};
-use nalgebra::{DMatrix, Vector2};
-use std::ops::AddAssign;
 
-/// Displacement fields, one to a column: entry `(2 * node + direction, field)` in `m` (0 along x₁, 1 along x₂).
-pub type Fields = DMatrix<f64>;
+/// Fields that are solved for together where there are many.
+const MANY: usize = 32;
 
-/// A sparse matrix between nodes (or unknowns), by rows.
-#[derive(Debug, Clone)]
-pub struct NodeMatrix<T> {
-    starts: Vec<usize>,
-    columns: Vec<usize>,
-    values: Vec<T>,
-}
+/// The sums of element contributions to the lower triangle of a symmetric matrix, column by column.
+struct Sums(Vec<Vec<(usize, f64)>>);
 
-/// The sums of element contributions to a [`NodeMatrix`], row by row.
-struct Sums<T>(Vec<Vec<(usize, T)>>);
-
-impl<T: Copy + AddAssign> Sums<T> {
-    fn new(rows: usize) -> Sums<T> {
-        // A node of the mesh has up to eight neighbours.
-        Sums((0..rows).map(|_| Vec::with_capacity(9)).collect())
+impl Sums {
+    fn new(unknowns: usize) -> Sums {
+        // A node of the mesh has up to eight neighbours; half of them, and itself, are in the lower triangle.
+        Sums((0..unknowns).map(|_| Vec::with_capacity(10)).collect())
     }
 
-    fn add(&mut self, row: usize, column: usize, value: T) {
-        let row = &mut self.0[row];
-        match row.iter_mut().find(|(c, _)| *c == column) {
+    fn add(&mut self, row: usize, column: usize, value: f64) {
+        let column = &mut self.0[column];
+        match column.iter_mut().find(|(r, _)| *r == row) {
             Some((_, sum)) => *sum += value,
-            None => row.push((column, value)),
+            None => column.push((row, value)),
         }
     }
 
-    /// Rows in ascending order of their columns.
-    fn compressed(self) -> NodeMatrix<T> {
+    /// The matrix, rows in ascending order.
+    fn compressed(self) -> SparseColMat<usize, f64> {
+        let unknowns = self.0.len();
         let count = self.0.iter().map(Vec::len).sum();
-        let mut matrix = NodeMatrix {
-            starts: vec![0],
-            columns: Vec::with_capacity(count),
-            values: Vec::with_capacity(count),
-        };
-        for mut row in self.0 {
-            row.sort_unstable_by_key(|(column, _)| *column);
-            matrix.columns.extend(row.iter().map(|(c, _)| c));
-            matrix.values.extend(row.iter().map(|(_, v)| v));
-            matrix.starts.push(matrix.columns.len());
+        let (mut starts, mut rows, mut values) = (vec![0], Vec::with_capacity(count), Vec::with_capacity(count));
+        for mut column in self.0 {
+            column.sort_unstable_by_key(|(row, _)| *row);
+            rows.extend(column.iter().map(|(r, _)| r));
+            values.extend(column.iter().map(|(_, v)| v));
+            starts.push(rows.len());
         }
-        matrix
+        let pattern = SymbolicSparseColMat::new_checked(unknowns, unknowns, starts, None, rows);
+        SparseColMat::new(pattern, values)
     }
 }
 
-impl<T: Copy> NodeMatrix<T> {
-    /// Non-zero entries `(column, value)` of a row.
-    pub fn row(&self, row: usize) -> impl Iterator<Item = (usize, T)> + '_ {
-        let range = self.starts[row]..self.starts[row + 1];
-        range.map(move |k| (self.columns[k], self.values[k]))
-    }
+/// One entry of the stiffness between a free and a clamped displacement.
+struct Coupling {
+    /// `2 * node + direction`.
+    free: usize,
+    /// `2 * node + direction`.
+    clamped: usize,
+    stiffness: f64,
 }
 
-/// The assembled forms of the rail.
+/// The factorised body.
 pub struct Elasticity {
-    /// ∫ N_i,₁ N_j,₁: the convective inertia is −ρV² times this, the same for both directions.
-    pub inertia: NodeMatrix<f64>,
-    /// ∫ ∇N_i N_j: load along x₁ and x₂ at node i of a unit thermal stress at node j.
-    pub thermal_load: NodeMatrix<Vector2<f64>>,
     factor: SparseCholesky,
     /// The row in `factor` of each `2 * node + direction`, `None` where clamped.
     rows: Vec<Option<usize>>,
     unknowns: usize,
-}
-
-/// Gradients of the three hat functions of a triangle, `1/m`, and its area, `m²`.
-fn gradients(points: [[f64; 2]; 3]) -> ([[f64; 2]; 3], f64) {
-    let [p, q, r] = points;
-    let twice_area = (q[0] - p[0]) * (r[1] - p[1]) - (r[0] - p[0]) * (q[1] - p[1]);
-    let side = |a: [f64; 2], b: [f64; 2]| [(a[1] - b[1]) / twice_area, (b[0] - a[0]) / twice_area];
-    ([side(q, r), side(r, p), side(p, q)], 0.5 * twice_area)
+    boundary: Vec<Coupling>,
 }
 
 impl Elasticity {
@@ -102,55 +81,50 @@ impl Elasticity {
         }
 
         let mut stiffness = Sums::new(unknowns);
-        let mut inertia = Sums::new(nodes);
-        let mut thermal_load = Sums::new(nodes);
-        for triangle in mesh.triangles() {
-            let (grad, area) = gradients(triangle.nodes.map(|n| mesh.coordinates(n)));
-            let measure = area * triangle.weight;
-            for (i, &node_i) in triangle.nodes.iter().enumerate() {
-                for (j, &node_j) in triangle.nodes.iter().enumerate() {
-                    inertia.add(node_i, node_j, measure * grad[i][0] * grad[j][0]);
-                    thermal_load.add(node_i, node_j, Vector2::from(grad[i]) * (measure / 3.0));
-                    for a in 0..2 {
-                        for b in 0..2 {
-                            let (Some(row), Some(column)) = (unknown[2 * node_i + a], unknown[2 * node_j + b]) else {
-                                continue;
-                            };
-                            // The upper triangle by rows is the lower one by columns.
-                            if column < row {
-                                continue;
-                            }
-                            // σ(u):ε(v) = λ div u div v + 2γ ε(u):ε(v)
-                            let mut value = lambda * grad[i][a] * grad[j][b] + shear * grad[i][b] * grad[j][a];
-                            if a == b {
-                                value += shear * (grad[i][0] * grad[j][0] + grad[i][1] * grad[j][1])
-                                    - rho_v2 * grad[i][0] * grad[j][0];
-                            }
-                            stiffness.add(row, column, measure * value);
+        let mut boundary = Vec::new();
+        for element in elements(mesh) {
+            let grad = element.gradients;
+            for (i, node_i) in element.nodes.into_iter().enumerate() {
+                for (j, node_j) in element.nodes.into_iter().enumerate() {
+                    for (a, b) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
+                        let (place, other) = (2 * node_i + a, 2 * node_j + b);
+                        let Some(row) = unknown[place] else {
+                            continue;
+                        };
+                        // The lower triangle is enough.
+                        if unknown[other].is_some_and(|column| row < column) {
+                            continue;
+                        }
+                        // σ(u):ε(v) = λ div u div v + 2γ ε(u):ε(v)
+                        let mut value = lambda * grad[i][a] * grad[j][b] + shear * grad[i][b] * grad[j][a];
+                        if a == b {
+                            value += shear * (grad[i][0] * grad[j][0] + grad[i][1] * grad[j][1])
+                                - rho_v2 * grad[i][0] * grad[j][0];
+                        }
+                        value *= element.measure;
+                        match unknown[other] {
+                            Some(column) => stiffness.add(row, column, value),
+                            None => boundary.push(Coupling {
+                                free: place,
+                                clamped: other,
+                                stiffness: value,
+                            }),
                         }
                     }
                 }
             }
         }
         let failed = Error::StiffnessNotPositiveDefinite { unknowns };
-        let NodeMatrix {
-            starts,
-            columns,
-            values,
-        } = stiffness.compressed();
-        let pattern = SymbolicSparseColMat::new_checked(unknowns, unknowns, starts, None, columns);
-        let matrix = SparseColMat::new(pattern, values);
-        let factor = SparseCholesky::new(&matrix).ok_or(failed)?;
+        let factor = SparseCholesky::new(&stiffness.compressed()).ok_or(failed)?;
         let rows = unknown
             .into_iter()
             .map(|unknown| unknown.map(|unknown| factor.row_of(unknown)))
             .collect();
         Ok(Elasticity {
-            inertia: inertia.compressed(),
-            thermal_load: thermal_load.compressed(),
             factor,
             rows,
             unknowns,
+            boundary,
         })
     }
 
@@ -158,7 +132,7 @@ impl Elasticity {
     #[cfg(any(test, feature = "verification"))]
     pub fn solve(&self, loads: &Fields) -> Fields {
         let mut displacements = Fields::zeros(loads.nrows(), loads.ncols());
-        self.solve_each(
+        self.solve_each::<MANY, _>(
             loads.ncols(),
             |field| (0..loads.nrows()).map(move |place| (place, loads[(place, field)])),
             |place, first, values| {
@@ -176,7 +150,7 @@ impl Elasticity {
         let (n, rows) = (mesh.contact_nodes, mesh.rows());
         let half = n.div_ceil(2);
         let mut fields = Fields::zeros(2 * mesh.nodes(), 2 * n);
-        self.solve_each(
+        self.solve_each::<MANY, _>(
             2 * half,
             |field| {
                 let node = mesh.node(mesh.contact_column(field % half), 0);
@@ -197,9 +171,42 @@ impl Elasticity {
         fields
     }
 
-    /// Solves for so many fields, [`WIDTH`] of them at a time: `load` gives the places `2 * node + direction` that a field
-    /// loads and their loads; `take` receives a place, the first of some fields, and the displacements there in these.
-    fn solve_each<L: IntoIterator<Item = (usize, f64)>>(
+    /// Fields without load whose displacement on Γ₀ is given by position, one field after the other.
+    pub fn fields_by_boundary<const FIELDS: usize>(
+        &self,
+        mesh: &Mesh,
+        displacement: impl Fn([f64; 2]) -> [[f64; 2]; FIELDS],
+    ) -> Fields {
+        let mut fields = Fields::zeros(2 * mesh.nodes(), FIELDS);
+        for node in (0..mesh.nodes()).filter(|&node| mesh.is_clamped(node)) {
+            for (field, value) in displacement(mesh.coordinates(node)).into_iter().enumerate() {
+                fields[(2 * node, field)] = value[0];
+                fields[(2 * node + 1, field)] = value[1];
+            }
+        }
+        // K_ff u_f = −K_fc u_c.
+        let given = fields.clone();
+        self.solve_each::<FIELDS, _>(
+            FIELDS,
+            |field| {
+                let given = given.column(field);
+                self.boundary
+                    .iter()
+                    .map(move |entry| (entry.free, -entry.stiffness * given[entry.clamped]))
+            },
+            |place, first, values| {
+                for (lane, value) in values.iter().enumerate() {
+                    fields[(place, first + lane)] = *value;
+                }
+            },
+        );
+        fields
+    }
+
+    /// Solves for so many fields, `WIDTH` of them at a time: `load` gives the places `2 * node + direction` that a field
+    /// loads and their loads, which add up; `take` receives a place, the first of some fields, and the displacements there
+    /// in these.
+    fn solve_each<const WIDTH: usize, L: IntoIterator<Item = (usize, f64)>>(
         &self,
         fields: usize,
         load: impl Fn(usize) -> L,
@@ -212,7 +219,7 @@ impl Elasticity {
             for field in first..first + lanes {
                 for (place, value) in load(field) {
                     if let Some(row) = self.rows[place] {
-                        solution[row][field - first] = value;
+                        solution[row][field - first] += value;
                     }
                 }
             }
@@ -258,6 +265,35 @@ mod tests {
                     crate::numerics::dense::largest_change(mirrored, solved) < 1e-10 * size,
                     "{field}"
                 );
+            }
+        }
+    }
+
+    /// A linear displacement has constant stress: in the strip below a free surface it is the solution where it leaves the
+    /// surface free, ε₂₂ = −λ/(λ+2γ) ε₁₁ without shear. Linear triangles have it exactly.
+    #[test]
+    fn given_displacements_of_the_boundary_stretch_the_strip() {
+        let parameters = Parameters {
+            contact_nodes: 20,
+            depth_nodes: 21,
+            ..Parameters::default()
+        };
+        let mesh = Mesh::new(&parameters);
+        let (lambda, shear) = (parameters.lame_lambda, parameters.shear_modulus);
+        let body = Elasticity::new(&mesh, lambda, shear, 0.0).unwrap();
+        let stretched = |[x, y]: [f64; 2]| [x, -lambda / (lambda + 2.0 * shear) * y];
+        // The second is a rotation by a small angle.
+        let turned = |[x, y]: [f64; 2]| [-y, x];
+        let fields = body.fields_by_boundary(&mesh, |point| [stretched(point), turned(point)]);
+        for node in 0..mesh.nodes() {
+            for (field, exact) in [stretched(mesh.coordinates(node)), turned(mesh.coordinates(node))]
+                .iter()
+                .enumerate()
+            {
+                for (direction, exact) in exact.iter().enumerate() {
+                    let error = fields[(2 * node + direction, field)] - exact;
+                    assert!(error.abs() < 1e-10, "{node} {field} {direction}: {error:e}");
+                }
             }
         }
     }

@@ -5,7 +5,8 @@
 //! through a cell with sources linear over it.
 
 use super::row::Row;
-use crate::body::elasticity::{Elasticity, Fields};
+use crate::body::elasticity::Elasticity;
+use crate::body::forms::{self, Fields};
 use crate::body::mesh::Mesh;
 use crate::error::Result;
 use crate::friction::FrictionState;
@@ -175,11 +176,12 @@ fn displacement_error(cells: usize) -> Result<f64> {
             }
         }
     }
-    for node in 0..mesh.nodes() {
-        for (heated, load) in rail.thermal_load.row(node) {
-            let stress = THERMAL_STRESS * Exact::at(mesh.coordinates(heated)).temperature[0];
-            loads[(2 * node, 0)] += load.x * stress;
-            loads[(2 * node + 1, 0)] += load.y * stress;
+    for element in forms::elements(&mesh) {
+        let temperature = |node: usize| Exact::at(mesh.coordinates(node)).temperature[0];
+        let stress = THERMAL_STRESS * element.nodes.map(temperature).iter().sum::<f64>();
+        for (node, load) in element.nodes.into_iter().zip(element.thermal_loads()) {
+            loads[(2 * node, 0)] += load[0] * stress;
+            loads[(2 * node + 1, 0)] += load[1] * stress;
         }
     }
     let solution = rail.solve(&loads);
