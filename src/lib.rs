@@ -82,6 +82,7 @@
 //!    all this sums up to.
 //! 6. `wheel_rail`: the stepped model. `simulation`: a wheel's way through time.
 //! 7. `verification`: the closed forms and published numbers that all this is held against.
+//!    `torture`: random parameters and drives, which no step may fail.
 //! 8. `fmi`: the same model as a co-simulation unit, `fmi2`: its C functions and its description of FMI 2.0. Nothing above
 //!    knows of FMI.
 //!
@@ -102,6 +103,8 @@ pub mod parameters;
 pub mod settings;
 pub mod signals;
 pub mod simulation;
+#[cfg(feature = "verification")]
+pub mod torture;
 mod transport;
 #[cfg(feature = "verification")]
 pub mod verification;

@@ -10,5 +10,6 @@ mod robustness;
 mod sensitivity;
 mod shared_model;
 mod time_step;
+mod torture;
 mod wear;
 mod wheel_heat;

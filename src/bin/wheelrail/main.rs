@@ -3,6 +3,7 @@
 mod describe;
 mod pack;
 mod simulate;
+mod torture;
 mod verify;
 
 use clap::{Parser, Subcommand};
@@ -30,6 +31,8 @@ enum Command {
     Simulate(simulate::Simulate),
     /// Compare the model with closed forms, identities and published figures.
     Verify(verify::Verify),
+    /// Drive wheels with random parameters at random: what fails, and which steps are slow.
+    Torture(torture::Options),
 }
 
 fn main() -> ExitCode {
@@ -38,6 +41,7 @@ fn main() -> ExitCode {
         Command::Describe(command) => command.run().map_err(Into::into),
         Command::Simulate(command) => command.run().map_err(Into::into),
         Command::Verify(command) => command.run().map_err(Into::into),
+        Command::Torture(command) => command.run().map_err(Into::into),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

@@ -1,0 +1,113 @@
+//! Random parameters in the ranges of engineering, and with some probability at their ends.
+
+use super::random::Random;
+use crate::parameters::{Control, FrictionLaw, Parameters, SlipSource, TABLE_POINTS, Wheel, WheelHeating};
+
+/// How much wider the contact window must fit the limits of [`Parameters::validate`]: for runs with a window wider than
+/// usual.
+pub const WIDEST_WINDOW: f64 = 3.0;
+
+/// Parameters that can be together. Those that are refused are drawn again.
+pub fn parameters(random: &mut Random) -> Parameters {
+    loop {
+        let drawn = draw(random);
+        if drawn.validate().is_ok() && with_window(&drawn, WIDEST_WINDOW).validate().is_ok() {
+            return drawn;
+        }
+    }
+}
+
+/// The same with `factor` times the window, at the same spacing of the nodes: the window grows with the root of
+/// `largest_load`.
+pub fn with_window(parameters: &Parameters, factor: f64) -> Parameters {
+    let intervals = factor * (parameters.contact_nodes - 1) as f64;
+    Parameters {
+        largest_load: factor * factor * parameters.largest_load,
+        contact_nodes: intervals.round() as usize + 1,
+        ..parameters.clone()
+    }
+}
+
+fn draw(random: &mut Random) -> Parameters {
+    let mut parameters = Parameters {
+        control: if random.chance(0.1) {
+            Control::Penetration
+        } else {
+            Control::Load
+        },
+        slip_source: random.one_of(SlipSource::ALL),
+        largest_load: random.between(50e3, 150e3),
+        contact_nodes: if random.chance(0.5) { 61 } else { random.count(31, 121) },
+        depth_nodes: if random.chance(0.5) { 41 } else { random.count(21, 61) },
+        wheel_radius: random.between(0.3, 0.6),
+        strip_height: random.between(0.2, 1.5),
+        strip_half_length: random.between(0.5, 3.0),
+        contact_width: random.between(3e-3, 30e-3),
+        thermal_expansion: if random.chance(0.1) {
+            0.0
+        } else {
+            random.between(10e-6, 15e-6)
+        },
+        heat_partition: if random.chance(0.1) {
+            1.0
+        } else {
+            random.between(0.3, 0.7)
+        },
+        contact_thermal_resistance: if random.chance(0.2) {
+            1e12
+        } else {
+            random.decades(10.0, 1e5)
+        },
+        // Archard's coefficient over the hardness, 3 GPa: from mild (1e-4) to severe wear (1e-2).
+        wear_coefficient: if random.chance(0.25) {
+            0.0
+        } else {
+            random.decades(0.03e-12, 3e-12)
+        },
+        friction_law: random.one_of(FrictionLaw::ALL),
+        wheel: random.one_of(Wheel::ALL),
+        wheel_heating: random.one_of(WheelHeating::ALL),
+        wheel_wear_coefficient: random.between(0.0, 1e-12),
+        skin_depth: random.decades(1e-3, 2e-2),
+        ..Parameters::default()
+    };
+    // A part of what the largest load sinks in, some 1e-11 m per N/m: the bulge of a hot rail adds to the load.
+    parameters.prescribed_penetration =
+        2e-9 * random.between(0.1, 0.5) * parameters.largest_load / (parameters.contact_width / 0.01);
+    if random.chance(0.5) {
+        parameters.wheel_lame_lambda *= random.between(0.5, 2.0);
+        parameters.wheel_shear_modulus *= random.between(0.5, 2.0);
+        parameters.wheel_density *= random.between(0.5, 1.5);
+    }
+    table(random, &mut parameters);
+    tune(random, &mut parameters);
+    parameters
+}
+
+/// A table of friction coefficients: temperatures between some degrees and some hundred degrees apart, so that some steps are
+/// steep, coefficients that rise or fall.
+fn table(random: &mut Random, parameters: &mut Parameters) {
+    parameters.friction_table_points = random.count(2, TABLE_POINTS);
+    let mut temperature = random.between(250.0, 400.0);
+    let points = parameters.friction_table_temperature.iter_mut();
+    for (point, coefficient) in points.zip(&mut parameters.friction_table_coefficient) {
+        *point = temperature;
+        *coefficient = random.between(0.05, 0.7);
+        temperature += random.decades(3.0, 300.0);
+    }
+}
+
+/// Draws the tunable parameters.
+pub fn tune(random: &mut Random, parameters: &mut Parameters) {
+    // Both ends of the range, and what lies between.
+    parameters.slip_regularisation = match random.count(0, 9) {
+        0 => 1e-6,
+        1 => 1.0,
+        2 => random.decades(1e-2, 1.0),
+        _ => random.decades(1e-6, 1e-2),
+    };
+    parameters.friction_cold = random.between(0.05, 0.7);
+    parameters.friction_hot = parameters.friction_cold * random.between(0.3, 1.0);
+    parameters.friction_temperature_cold = random.between(290.0, 600.0);
+    parameters.friction_temperature_hot = parameters.friction_temperature_cold + random.decades(10.0, 500.0);
+}

@@ -1,0 +1,274 @@
+//! Torture: wheels with random parameters are driven at random, through braking, spinning on the spot, reversing, standstill,
+//! lift-off and jumps. No step may fail, and what a step leaves must be finite and within its bounds.
+//!
+//! Where the rail gets hotter than the model answers for, it is replaced by a cold one.
+//!
+//! A run follows from a seed and its number: `wheelrail torture --seed S --run R` replays it.
+
+mod draw;
+mod drive;
+mod random;
+mod slow;
+
+use crate::error::Error;
+use crate::parameters::Parameters;
+use crate::signals::OUTPUTS;
+use crate::wheel_rail::{Model, State, Workspace};
+use drive::Drive;
+use random::Random;
+use std::fmt;
+use std::ops::Range;
+use std::time::Instant;
+
+pub use drive::DriveStep;
+pub use slow::{Slow, explain};
+
+/// Consecutive runs that differ in their tunable parameters and their drive share a model: it takes as long to build as many
+/// steps.
+const RUNS_PER_MODEL: u64 = 4;
+
+/// Absolute temperature up to which no run may fail, `K`. Rail steel is austenite above some 1000 K and melts at 1770 K; its
+/// properties are constants here, so that well above 1000 K the model answers for nothing.
+pub const LARGEST_TEMPERATURE: f64 = 1373.15;
+
+/// Runs of a seed.
+#[derive(Debug, Clone, Copy)]
+pub struct Torture {
+    /// The seed.
+    pub seed: u64,
+    /// Steps of a run.
+    pub steps: usize,
+    /// Half-width of the contact window in units of the usual one, at the same spacing of the nodes; at most 3.
+    pub window: f64,
+}
+
+/// How a run failed.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Failure {
+    /// No model, no first state or no step.
+    Model(Error),
+    /// A step that left the state neither as it was nor as far on as it said.
+    Changed,
+    /// An output, by its name, that is not finite or out of its bounds.
+    Output(&'static str, f64),
+    /// A state that the model would not accept.
+    State,
+}
+
+impl fmt::Display for Failure {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        match self {
+            Failure::Model(error) => write!(f, "{error}"),
+            Failure::Changed => write!(f, "a step that failed has changed the state"),
+            Failure::Output(name, value) => write!(f, "the output {name} is {value}"),
+            Failure::State => write!(f, "the model does not accept the state"),
+        }
+    }
+}
+
+impl Failure {
+    /// The kind: the name of the error.
+    pub fn kind(&self) -> String {
+        let text = match self {
+            Failure::Model(error) => format!("{error:?}"),
+            other => format!("{other:?}"),
+        };
+        let end = text.find([' ', '(', '{']).unwrap_or(text.len());
+        text[..end].to_owned()
+    }
+}
+
+/// What one step took.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct StepTime {
+    /// Number of the run.
+    pub run: u64,
+    /// Number of the step in its run, from 0.
+    pub step: usize,
+    /// Time that it took, `s`.
+    pub time: f64,
+    /// Iterations of the split over all sub-steps.
+    pub iterations: usize,
+}
+
+/// Where a run stood after a step.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Reach {
+    /// Outermost node under pressure in units of the Hertz half-length at `largest_load`.
+    pub outermost: f64,
+    /// Load that the contact carried over `largest_load`.
+    pub load: f64,
+    /// Largest temperature of the rail's surface, `K`.
+    pub temperature: f64,
+}
+
+/// One run.
+#[derive(Debug, Clone)]
+pub struct Run {
+    /// Its number.
+    pub number: u64,
+    /// The steps that were taken.
+    pub steps: Vec<StepTime>,
+    /// Where it stood after them.
+    pub reach: Vec<Reach>,
+    /// How often the rail was too hot and replaced by a cold one, after a step or because of one that failed.
+    pub replaced: usize,
+    /// Steps until it ended, those that found the rail too hot included.
+    pub length: usize,
+    /// How it ended, unless after all steps.
+    pub failure: Option<Failure>,
+}
+
+impl Torture {
+    /// Parameters of a run.
+    pub fn parameters(&self, run: u64) -> Parameters {
+        let mut parameters = draw::parameters(&mut Random::new(self.seed, 2 * (run / RUNS_PER_MODEL)));
+        draw::tune(&mut self.random(run), &mut parameters);
+        parameters
+    }
+
+    /// Random numbers of a run alone.
+    fn random(&self, run: u64) -> Random {
+        Random::new(self.seed, 2 * run + 1)
+    }
+
+    /// The drive of a run with its parameters.
+    fn drive<'a>(&self, run: u64, parameters: &'a Parameters) -> Drive<'a> {
+        let mut random = self.random(run);
+        draw::tune(&mut random, &mut parameters.clone());
+        Drive::new(random, parameters, parameters.largest_load)
+    }
+
+    /// The runs that share a model, by its number.
+    pub fn runs_of_model(model: u64) -> Range<u64> {
+        model * RUNS_PER_MODEL..(model + 1) * RUNS_PER_MODEL
+    }
+
+    /// Takes runs that share a model, or one of them.
+    pub fn runs(&self, numbers: Range<u64>) -> Vec<Run> {
+        let fixed = draw::with_window(&self.parameters(numbers.start), self.window);
+        let mut built = Model::new(fixed);
+        numbers
+            .map(|number| {
+                let mut run = Run {
+                    number,
+                    steps: Vec::with_capacity(self.steps),
+                    reach: Vec::with_capacity(self.steps),
+                    replaced: 0,
+                    length: 0,
+                    failure: None,
+                };
+                let outcome = match &mut built {
+                    Ok(model) => model
+                        .retune(&self.parameters(number))
+                        .map_err(Failure::Model)
+                        .and_then(|()| self.follow(model, &mut run)),
+                    Err(error) => Err(Failure::Model(error.clone())),
+                };
+                run.failure = outcome.err();
+                run
+            })
+            .collect()
+    }
+
+    /// Takes the steps of a run.
+    fn follow(&self, model: &Model, run: &mut Run) -> Result<(), Failure> {
+        // Those without the wider window.
+        let parameters = self.parameters(run.number);
+        let mut drive = self.drive(run.number, &parameters);
+        let mut workspace = model.workspace();
+        let mut state = model
+            .initial_state(&mut workspace, drive.inputs())
+            .map_err(Failure::Model)?;
+        for number in 0..self.steps {
+            run.length = number;
+            let step = drive.step();
+            let before = state.clone();
+            let start = Instant::now();
+            let outcome = take(model, &mut workspace, &mut state, &step);
+            let time = start.elapsed().as_secs_f64();
+            if let Err((committed, error)) = &outcome {
+                let stays = state.time == before.time + committed && (*committed > 0.0 || state == before);
+                if !stays {
+                    return Err(Failure::Changed);
+                }
+                if !is_too_hot(model, &before, &step) {
+                    return Err(Failure::Model(error.clone()));
+                }
+            } else {
+                check(model, &state)?;
+                run.steps.push(StepTime {
+                    run: run.number,
+                    step: number,
+                    time,
+                    iterations: state.convergence.iterations,
+                });
+                run.reach.push(reach(model, &parameters, &state));
+            }
+            if outcome.is_err() || is_hot(&state) {
+                run.replaced += 1;
+                state = model
+                    .initial_state(&mut workspace, drive.inputs())
+                    .map_err(Failure::Model)?;
+            }
+        }
+        run.length = self.steps;
+        Ok(())
+    }
+}
+
+/// Whether a step that fails would heat the rail to more than [`LARGEST_TEMPERATURE`]: taken by a rail that does not bulge,
+/// whose contact stays in its window. What that one cannot either is not excused.
+fn is_too_hot(model: &Model, before: &State, step: &DriveStep) -> bool {
+    let flat = Parameters {
+        thermal_expansion: 0.0,
+        ..model.parameters().clone()
+    };
+    let Ok(flat) = Model::new(flat) else { return false };
+    let mut state = before.clone();
+    let outcome = take(&flat, &mut flat.workspace(), &mut state, step);
+    outcome.is_ok() && is_hot(&state)
+}
+
+/// Whether the rail is hotter than the model answers for.
+fn is_hot(state: &State) -> bool {
+    state.outputs.peak_temperature > LARGEST_TEMPERATURE
+}
+
+/// One step; the error has the time that was committed before it.
+fn take(model: &Model, workspace: &mut Workspace, state: &mut State, step: &DriveStep) -> Result<(), (f64, Error)> {
+    model
+        .step(workspace, state, &step.inputs, &step.rates, step.duration)
+        .map_err(|interrupted| (interrupted.committed, interrupted.error))
+}
+
+/// Outputs within their bounds, a state that can be saved and resumed.
+fn check(model: &Model, state: &State) -> Result<(), Failure> {
+    for signal in OUTPUTS {
+        let value = (signal.get)(&state.outputs);
+        let above = signal.minimum.is_none_or(|minimum| value >= minimum);
+        let below = signal.maximum.is_none_or(|maximum| value <= maximum);
+        if !(value.is_finite() && above && below) {
+            return Err(Failure::Output(signal.name, value));
+        }
+    }
+    if model.accepts(state) {
+        Ok(())
+    } else {
+        Err(Failure::State)
+    }
+}
+
+/// How far the contact reaches, under which load.
+fn reach(model: &Model, parameters: &Parameters, state: &State) -> Reach {
+    let nodes = model.contact_nodes(state);
+    let spacing = nodes[1].position - nodes[0].position;
+    let pressed = || nodes.iter().filter(|node| node.pressure > 0.0);
+    let force: f64 = pressed().map(|node| node.pressure).sum();
+    let outermost = pressed().map(|node| node.position.abs()).fold(0.0, f64::max);
+    Reach {
+        outermost: outermost / parameters.hertz_half_length(parameters.largest_load),
+        load: force * spacing * parameters.contact_width / parameters.largest_load,
+        temperature: state.outputs.peak_temperature,
+    }
+}

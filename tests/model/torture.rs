@@ -1,0 +1,59 @@
+//! Some of the runs of `wheelrail torture`.
+
+use std::collections::BTreeMap;
+use wheelrail::torture::Torture;
+
+/// Models of these runs, of four runs each.
+const MODELS: u64 = 40;
+
+/// What still fails, as error and the largest number of these runs: a wheel that slips on the spot wears a groove which its
+/// window does not hold, and the split does not settle where the friction coefficient jumps within some kelvins. Each is to
+/// go; nothing is to be added.
+const KNOWN: [(&str, usize); 2] = [("ContactLeavesWindow", 9), ("SplitNotConverged", 8)];
+
+/// No other run fails, whatever the wheel goes through.
+#[test]
+fn wheels_driven_at_random_arrive() {
+    let torture = Torture {
+        seed: 1,
+        steps: 150,
+        window: 1.0,
+    };
+    let (mut failures, mut steps) = (BTreeMap::new(), 0);
+    for model in 0..MODELS {
+        for run in torture.runs(Torture::runs_of_model(model)) {
+            steps += run.steps.len();
+            if let Some(failure) = run.failure {
+                println!("wheelrail torture --run {}, step {}: {failure}", run.number, run.length);
+                *failures.entry(failure.kind()).or_insert(0) += 1;
+            }
+        }
+    }
+    // Most steps are taken, and not on rails that were too hot.
+    assert!(steps > 18_000, "{steps}");
+    for (kind, number) in failures {
+        let known = KNOWN.iter().find(|known| known.0 == kind).map_or(0, |known| known.1);
+        assert!(number <= known, "{number} times {kind}");
+    }
+}
+
+/// A run follows from its seed and number, alone or with those that share its model.
+#[test]
+fn a_run_is_replayed_with_the_same_bits() {
+    let torture = Torture {
+        seed: 7,
+        steps: 40,
+        window: 1.0,
+    };
+    let together = torture.runs(Torture::runs_of_model(3));
+    for run in &together {
+        let alone = torture.runs(run.number..run.number + 1).pop().unwrap();
+        assert_eq!(alone.reach, run.reach);
+        assert_eq!((alone.length, alone.failure), (run.length, run.failure.clone()));
+        let iterations = |steps: &[wheelrail::torture::StepTime]| steps.iter().map(|s| s.iterations).sum::<usize>();
+        assert_eq!(iterations(&alone.steps), iterations(&run.steps));
+    }
+    // And another seed is another drive.
+    let other = Torture { seed: 8, ..torture }.runs(Torture::runs_of_model(3));
+    assert_ne!(together[0].reach, other[0].reach);
+}
