@@ -74,6 +74,7 @@ impl Heat {
 mod tests {
     use super::*;
     use crate::friction::FrictionState;
+    use crate::friction::coulomb::Sliding;
     use crate::heat::factors::CellFactors;
     use crate::heat::march::HeatMarch;
     use crate::heat::surface::{SurfaceCondition, SurfaceExchange};
@@ -92,7 +93,7 @@ mod tests {
         let exchange = |heats: bool| -> Vec<SurfaceExchange> {
             (0..mesh.contact_nodes)
                 .map(|node| match heats && node.abs_diff(30) < 18 {
-                    true => SurfaceExchange::new(&parameters, 5e8, 2.0, 0.0),
+                    true => SurfaceExchange::new(&parameters, 5e8, Sliding::new(2.0, 1.0), 0.0),
                     false => SurfaceExchange::default(),
                 })
                 .collect()
