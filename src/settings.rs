@@ -38,7 +38,8 @@ pub struct StepSettings {
     /// Shortest time that a step takes, `s`: a rate of change over less would overflow, and no output tells the
     /// difference.
     pub shortest: f64,
-    /// How often in one step a sub-step that fails is tried again with a quarter of its length. 4: a 256th of the step.
+    /// How often in one step a sub-step that fails is tried again with a quarter of its length; those after it stay below half of
+    /// it. 8: a 65 000th of the step.
     pub retries: usize,
 }
 
@@ -70,6 +71,10 @@ pub struct SplitSettings {
     /// The error of an iteration is estimated as its change times the ratio of the last two changes. The estimate is used
     /// only where that ratio is below this one.
     pub trusted_contraction: f64,
+    /// Factor on the tolerance of the mechanics after an iteration that did not contract as much.
+    pub sharpening: f64,
+    /// Factor on the tolerances where a node has come under pressure or left it in the last iteration.
+    pub set_margin: f64,
     /// Nor is a ratio below this one believed: the first change contains what one iteration settles for good.
     pub least_contraction: f64,
 }
@@ -184,7 +189,7 @@ impl Default for StepSettings {
             first_substep: 0.25,
             ramp_substeps: 50.0,
             shortest: 1e-100,
-            retries: 4,
+            retries: 8,
         }
     }
 }
@@ -203,6 +208,8 @@ impl Default for SplitSettings {
             accelerate_after: 1,
             least_temperature: 1.0,
             trusted_contraction: 0.3,
+            sharpening: 0.1,
+            set_margin: 0.1,
             least_contraction: 1e-3,
         }
     }

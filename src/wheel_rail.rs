@@ -185,7 +185,7 @@ impl Model {
         let jump = self.change(&state.inputs, inputs);
         let ramp = self.change(inputs, &self.inputs_at(inputs, rates, duration));
         let mut substep = duration / (ramp / settings.jump).ceil().clamp(1.0, settings.ramp_substeps);
-        let largest_substep = substep;
+        let mut largest_substep = substep;
         if jump > settings.jump {
             substep = substep.min(settings.first_substep * self.passage_time(inputs));
         }
@@ -207,6 +207,7 @@ impl Model {
                 Err(error) if !matches!(error, Error::ContactLeavesWindow { .. }) && retries < settings.retries => {
                     retries += 1;
                     substep = 0.25 * length;
+                    largest_substep = largest_substep.min(0.5 * length);
                     continue;
                 }
                 Err(error) => return Err(interrupted(committed, error)),

@@ -108,7 +108,6 @@ impl HalfPlanes {
     }
 
     /// Of rail and wheel. A rigid wheel adds nothing.
-    #[allow(dead_code)]
     pub fn of_pair(parameters: &Parameters) -> HalfPlanes {
         let rail = HalfPlanes::of_body(&HalfPlane::new(parameters.lame_lambda, parameters.shear_modulus));
         let wheel = match parameters.wheel {
@@ -339,7 +338,10 @@ mod tests {
 
     #[test]
     fn the_pair_adds_along_and_subtracts_across() {
-        let rigid = Parameters::default();
+        let rigid = Parameters {
+            wheel: Wheel::Rigid,
+            ..Parameters::default()
+        };
         let mut elastic = Parameters {
             wheel: Wheel::Elastic,
             wheel_lame_lambda: 5e10,

@@ -84,16 +84,24 @@ fn draw(random: &mut Random) -> Parameters {
     parameters
 }
 
-/// A table of friction coefficients: temperatures between some degrees and some hundred degrees apart, so that some steps are
-/// steep, coefficients that rise or fall.
+/// The steepest friction, `1/K`: five times the paper's. Where the coefficient jumps within some kelvins, a contact has several
+/// temperatures, and no method finds the right one.
+const STEEPEST: f64 = 0.01;
+
+/// A table of friction coefficients that rise or fall between temperatures some degrees to some hundred degrees apart.
 fn table(random: &mut Random, parameters: &mut Parameters) {
     parameters.friction_table_points = random.count(2, TABLE_POINTS);
     let mut temperature = random.between(250.0, 400.0);
     let points = parameters.friction_table_temperature.iter_mut();
+    let mut before = None;
     for (point, coefficient) in points.zip(&mut parameters.friction_table_coefficient) {
-        *point = temperature;
         *coefficient = random.between(0.05, 0.7);
-        temperature += random.decades(3.0, 300.0);
+        if let Some(before) = before {
+            let change: f64 = *coefficient - before;
+            temperature += random.decades(3.0, 300.0).max(change.abs() / STEEPEST);
+        }
+        *point = temperature;
+        before = Some(*coefficient);
     }
 }
 
@@ -101,9 +109,10 @@ fn table(random: &mut Random, parameters: &mut Parameters) {
 pub fn tune(random: &mut Random, parameters: &mut Parameters) {
     // Both ends of the range, and what lies between.
     parameters.slip_regularisation = match random.count(0, 9) {
-        0 => 1e-6,
-        1 => 1.0,
-        2 => random.decades(1e-2, 1.0),
+        // Coulomb's law, the default.
+        0..=4 => 0.0,
+        5 => 1e-6,
+        6 => random.decades(1e-2, 1.0),
         _ => random.decades(1e-6, 1e-2),
     };
     parameters.friction_cold = random.between(0.05, 0.7);

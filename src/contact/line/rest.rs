@@ -14,6 +14,8 @@ pub struct Rest {
     settings: SplitSettings,
     /// Change of the last iteration; infinite before the first.
     change: f64,
+    /// Factor on the tolerance of the mechanics: smaller after iterations that did not contract.
+    sharpened: f64,
 }
 
 impl Rest {
@@ -22,24 +24,30 @@ impl Rest {
         Rest {
             settings,
             change: f64::INFINITY,
+            sharpened: 1.0,
         }
     }
 
-    /// Tolerance for the mechanics of the next iteration.
+    /// Tolerance for the mechanics of the next iteration. At high speed a small error of the shear is a large one of the slip,
+    /// and with it of the heat: where the split does not contract, it may be that error which it sees.
     pub fn mechanics_tolerance(&self) -> f64 {
-        (self.settings.mechanics_tolerance * self.change).clamp(
+        (self.sharpened * self.settings.mechanics_tolerance * self.change).clamp(
             self.settings.last_mechanics_tolerance,
-            self.settings.first_mechanics_tolerance,
+            (self.sharpened * self.settings.first_mechanics_tolerance).max(self.settings.last_mechanics_tolerance),
         )
     }
 
     /// Takes the change of an iteration and what its mechanics changed. Whether the split rests.
     pub fn is_reached(&mut self, change: f64, sweep: &Sweep) -> bool {
         let contraction = self.contraction(change);
+        if contraction == 1.0 && self.change.is_finite() {
+            self.sharpened *= self.settings.sharpening;
+        }
         self.change = change;
-        change * contraction <= self.settings.tolerance
-            && sweep.shear_change * contraction <= self.settings.shear_tolerance
-            && !sweep.set_changed
+        // A node that comes and goes with next to no pressure holds nothing up.
+        let margin = if sweep.set_changed { self.settings.set_margin } else { 1.0 };
+        change * contraction <= margin * self.settings.tolerance
+            && sweep.shear_change * contraction <= margin * self.settings.shear_tolerance
     }
 
     /// Ratio of this change to the last one, 1 where it cannot be trusted.
