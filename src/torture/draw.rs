@@ -84,9 +84,9 @@ fn draw(random: &mut Random) -> Parameters {
     parameters
 }
 
-/// The steepest friction, `1/K`: five times the paper's. Where the coefficient jumps within some kelvins, a contact has several
+/// The steepest friction, `1/K`: twice the paper's. Where the coefficient changes much faster, a contact has several
 /// temperatures, and no method finds the right one.
-const STEEPEST: f64 = 0.01;
+const STEEPEST: f64 = 0.004;
 
 /// A table of friction coefficients that rise or fall between temperatures some degrees to some hundred degrees apart.
 fn table(random: &mut Random, parameters: &mut Parameters) {

@@ -39,6 +39,8 @@ pub struct Scratch {
     pub(super) moments: Vec<f64>,
     /// The heat flux that the thermal map was last applied to.
     mapped_flux: Vec<f64>,
+    /// The surface temperature at the contact nodes then.
+    mapped_temperature: Vec<f64>,
     anderson: Anderson,
 }
 
@@ -57,6 +59,7 @@ impl Scratch {
             cells: CellFactors::new(&rail.heat.basis, &rail.mesh.x),
             moments: vec![0.0; rail.heat.displacement.scratch_len()],
             mapped_flux: vec![0.0; n],
+            mapped_temperature: vec![0.0; n],
             anderson: Anderson::new(iterate.values().len()),
             image: iterate.clone(),
             iterate,
@@ -93,7 +96,7 @@ pub fn solve(problem: &Problem, before: &Fields, fields: &mut Fields, scratch: &
         scratch.image.read(problem.rail, fields, &scratch.softening);
         // Step 4: at rest? Not after the first iteration: the mechanics have not seen yet what it changed.
         let unmapped = if iterations > 1 {
-            unmapped_displacement(fields, scratch)
+            unmapped_displacement(problem, fields, scratch)
         } else {
             f64::INFINITY
         };
@@ -294,17 +297,26 @@ fn warm_wheel(problem: &Problem, before: &Fields, fields: &mut Fields) {
 
 /// Bound of the thermal displacement that the heat of this iteration would add if the thermal map were applied. The flux
 /// has changed by some share since the map was applied last; the displacement changes by less than that share, because
-/// most of the heat was there before. The bound spares the last iteration of a step the map, the
+/// most of the heat was there before; and the same holds of the share by which the surface temperature has changed, which tells
+/// the noise of next to no flux from heat. The bound spares the last iteration of a step the map, the
 /// largest part of its work: the fields keep the displacement that the tractions have felt.
-fn unmapped_displacement(fields: &Fields, scratch: &Scratch) -> f64 {
-    let flux = largest(&scratch.mapped_flux);
-    let change = largest_change(&fields.heat_flux, &scratch.mapped_flux);
-    if change == 0.0 {
+fn unmapped_displacement(problem: &Problem, fields: &Fields, scratch: &Scratch) -> f64 {
+    let share = |now: &[f64], mapped: &[f64]| {
+        let (change, size) = (largest_change(now, mapped), largest(mapped));
+        if change == 0.0 {
+            0.0
+        } else if size == 0.0 {
+            f64::INFINITY
+        } else {
+            change / size
+        }
+    };
+    let temperature = &fields.surface_temperature[problem.rail.mesh.window()];
+    let share = share(&fields.heat_flux, &scratch.mapped_flux).min(share(temperature, &scratch.mapped_temperature));
+    if share == 0.0 {
         0.0
-    } else if flux == 0.0 {
-        f64::INFINITY
     } else {
-        change / flux * largest(&fields.thermal_displacement)
+        share * largest(&fields.thermal_displacement)
     }
 }
 
@@ -316,6 +328,10 @@ fn map_displacement(problem: &Problem, fields: &mut Fields, scratch: &mut Scratc
         &mut fields.thermal_displacement,
     );
     scratch.mapped_flux.copy_from_slice(&fields.heat_flux);
+    let window = problem.rail.mesh.window();
+    scratch
+        .mapped_temperature
+        .copy_from_slice(&fields.surface_temperature[window]);
     scratch.image.set_displacement(&fields.thermal_displacement);
 }
 
