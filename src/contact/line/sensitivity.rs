@@ -116,7 +116,7 @@ impl<'a> Linearisation<'a> {
                 tangent.wheel_temperature = direction.inputs.ambient_temperature;
             }
             image.read(rail, &tangent, &self.scratch.softening);
-            residual = tangent.relative_change(&last);
+            residual = tangent.relative_change(&last, direction.motion.rigid_slip);
             if residual <= settings.tolerance {
                 return Ok(tangent);
             }
@@ -327,18 +327,40 @@ impl<'a> Linearisation<'a> {
 }
 
 impl Fields {
-    /// Largest change of a vector from `last` to these fields, relative to its largest value now.
-    fn relative_change(&self, last: &Fields) -> f64 {
-        self.vectors()
-            .iter()
-            .zip(last.vectors())
-            .map(|(now, last)| relative_change(now, last))
-            .chain([relative_change(&[self.wheel_temperature], &[last.wheel_temperature])])
+    /// Largest change of a vector from `last` to these fields, relative to its largest value now; these are tangents, of a
+    /// direction in which the rigid slip changes by `rigid_slip`, `m/s`.
+    ///
+    /// Where the contact sticks, the slip is what round-off leaves of the rigid slip and the surface's own motion, and with like
+    /// bodies heat is all that moves the pressure. So the pressure counts relative to both tractions, and slip, heat and wear
+    /// no more than the slip is of the rigid slip: they follow from the tractions, so that they rest where those do.
+    fn relative_change(&self, last: &Fields, rigid_slip: f64) -> f64 {
+        let slip = largest(&self.slip);
+        let share = if slip < rigid_slip.abs() {
+            slip / rigid_slip.abs()
+        } else {
+            1.0
+        };
+        let traction = largest(&self.pressure).max(largest(&self.shear));
+        let vectors = self.vectors().into_iter().zip(last.vectors());
+        vectors
+            .map(|(now, last)| {
+                if std::ptr::eq(now, &self.pressure) {
+                    relative(largest_change(now, last), traction)
+                } else if std::ptr::eq(now, &self.shear) || std::ptr::eq(now, &self.saturation) {
+                    relative(largest_change(now, last), largest(now))
+                } else {
+                    share * relative(largest_change(now, last), largest(now))
+                }
+            })
+            .chain([share
+                * relative(
+                    (self.wheel_temperature - last.wheel_temperature).abs(),
+                    self.wheel_temperature.abs(),
+                )])
             .fold(0.0, f64::max)
     }
 }
 
-fn relative_change(now: &[f64], last: &[f64]) -> f64 {
-    let change = largest_change(now, last);
-    if change == 0.0 { 0.0 } else { change / largest(now) }
+fn relative(change: f64, size: f64) -> f64 {
+    if change == 0.0 { 0.0 } else { change / size }
 }
