@@ -20,6 +20,7 @@ pub mod power_balance;
 pub mod rigid_wheel;
 pub mod rolling_start;
 mod row;
+pub mod standstill;
 pub mod wheel_temperature;
 
 use crate::error::Result;
@@ -87,6 +88,10 @@ pub const CHECKS: &[Check] = &[
     Check {
         name: "Steps of an explicit master",
         rows: explicit_master::rows,
+    },
+    Check {
+        name: "Stop and hold",
+        rows: standstill::rows,
     },
     Check {
         name: "Rigid wheel on elastic rail",
