@@ -118,9 +118,10 @@ $(addprefix coupling-,$(COUPLINGS)): coupling-%: couplings-set-up
 	$(call say,Coupling: $*)
 	@$(PY) examples/$*.py
 
-# The pictures of the pages in docs/couplings/; commit what changes.
+# The pictures of the pages in docs/couplings/, and the tables of stiff.md; commit what changes.
 couplings-docs: couplings
-	@cp results/longitudinal.png results/stiff.png results/multibody.png results/train.png results/creep_curves.png docs/couplings/
+	@$(PY) tools/update_docs.py couplings
+	@cp results/longitudinal.png results/stiff.png results/stiff_stop.png results/multibody.png results/train.png results/creep_curves.png docs/couplings/
 
 # The time that the sweep takes on two workers against one.
 sweep-scaling: couplings-set-up

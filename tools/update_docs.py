@@ -3,6 +3,8 @@
 - the tables of variables, from `wheelrail describe`: all of them, and for README those to begin with;
 - the figures of the paper's cases, from results/paper_cases.csv, which examples/paper_cases.py writes;
 - the figures of the verification, from target/verification.txt, which `make verify` writes.
+
+With the argument `couplings` (`make couplings-docs`) the tables of docs/couplings/stiff.md, from results/stiff.md.
 """
 
 import csv
@@ -19,6 +21,8 @@ VARIABLES = REPOSITORY / "docs" / "variables.md"
 INDEX = REPOSITORY / "docs" / "index.md"
 PAGE = REPOSITORY / "modelDescription" / "documentation" / "index.html"
 VERIFICATION = REPOSITORY / "target" / "verification.txt"
+STIFF = REPOSITORY / "docs" / "couplings" / "stiff.md"
+STIFF_TABLES = REPOSITORY / "results" / "stiff.md"
 PAPER_CASES = REPOSITORY / "results" / "paper_cases.csv"
 
 # What one sets and reads first.
@@ -155,8 +159,16 @@ def write(path, parts):
     path.write_text(text)
 
 
+def blocks(text):
+    """What stands between markers, by marker."""
+    return dict(re.findall(r"<!-- (.+?) -->\n(.*?)<!-- end of \1 -->", text, re.DOTALL))
+
+
 def main():
     """Write all parts."""
+    if sys.argv[1:] == ["couplings"]:
+        write(STIFF, blocks(STIFF_TABLES.read_text()))
+        return
     write(README, {"first variables": first_variables_markdown()})
     write(VARIABLES, {"wheelrail describe": variables_markdown()})
     write(INDEX, {"examples/paper_cases.py": paper_cases_markdown()})
