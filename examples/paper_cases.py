@@ -38,6 +38,7 @@ def roll(case):
     names += profile_names("depth.z", 41) + profile_names("depth.temperature", 41)
     start_values = {
         "wheel": RIGID,
+        "slip_regularisation": 1e-3,
         "control": PENETRATION,
         "prescribed_penetration": 1e-4,
         "friction_law": law,

@@ -35,11 +35,11 @@
 //! | | equation | what | unit | where |
 //! |---|---|---|---|---|
 //! | (12), (13) | μ = μ₀ up to θ₀, linear to μ_F at θ_F, μ_F beyond | friction coefficient (the default law) | 1 | `friction` |
-//! | (16) | s = −V ∂u₁/∂x₁ + (ω r₀ − V) | slip velocity of the rail relative to the wheel, quasistatic | m/s | `mechanics::tangential` |
+//! | (16) | s = ∂u₁/∂t − V ∂u₁/∂x₁ + (ω r₀ − V) | slip velocity of the rail relative to the wheel; the paper drops ∂u₁/∂t | m/s | `mechanics::sweep`, `mechanics::transient` |
 //! | (18), (27) | div σ(u) − ρV² u,₁₁ − α(3λ+2γ) ∇θ = 0 in Ω, u = 0 on Γ₀ | displacement of the rail | N/m³ | `body`, `heat::thermal_map` |
 //! | (9), (22) | u₂ + g − W ≤ 0, p ≥ 0, p (u₂ + g − W) = 0, g = δ − r₀ + √(r₀² − x₁²) | contact | m, Pa | `contact::line` |
 //! | (37) | min ½ pᵀC p − (b + δ)ᵀp, p ≥ 0 | the discrete contact problem | scaled | `mechanics::normal` |
-//! | (10), (30) | τ = −μ(θ) p (2/π) arctan(s/ε) | friction | Pa | `friction::coulomb`, `mechanics::tangential` |
+//! | (10), (30) | Coulomb's law, or τ = −μ(θ) p (2/π) arctan(s/ε) | friction | Pa | `friction::coulomb`, `mechanics::tangential` |
 //! | (31) | (37) for given τ ↔ (30) for given p | mechanics for given temperature and wear | | `mechanics` |
 //! | (19) | ∂θ/∂t − V ∂θ/∂x₁ = κ ∂²θ/∂x₂² in Ω | temperature rise of the rail | K/s | `heat::march` |
 //! | (23) | κ ρ c_p ∂θ/∂n = ᾱ (\|τ s\| − k ρ c_p θ \|s\| p − (θ − θ_w) p / r) on Γ_C | friction power, heat carried off by debris, conduction into the wheel at θ_w | W/m² | `heat::march` |

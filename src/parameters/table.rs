@@ -143,7 +143,7 @@ parameters! {
     contact_thermal_resistance "r": f64 = real { "K.N.s/J", 1000.0, 1e-3, 1e12 }
     /// Archard wear coefficient; 0 switches wear off
     wear_coefficient "k": f64 = real { "1/Pa", 0.5e-12, 0.0, 1e-9 }
-    /// Slip speed at which the regularised Coulomb law reaches half the friction bound
+    /// Slip speed at which the regularised Coulomb law reaches half the friction bound; 0 is Coulomb's law itself
     slip_regularisation "ε": f64 = real { "m/s", 0.0, 0.0, 1.0, tunable }
     /// Friction coefficient against temperature: 1 constant, 2 piecewise_linear, 3 flow_stress, 4 table
     friction_law: FrictionLaw = choice { FrictionLaw::PiecewiseLinear }

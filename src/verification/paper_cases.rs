@@ -26,6 +26,7 @@ pub fn parameters(hot: Option<f64>) -> Parameters {
         control: Control::Penetration,
         slip_source: SlipSource::VehicleSpeed,
         friction_law: FrictionLaw::Constant,
+        slip_regularisation: 1e-3,
         ..Parameters::default()
     };
     if let Some(celsius) = hot {

@@ -28,7 +28,11 @@ fn the_settled_result_does_not_depend_on_the_step() {
     for (duration, steps) in [(1e-4, 15_000), (1e-2, 400), (0.1, 150)] {
         for ((name, expected), (_, computed)) in expected.iter().zip(settle(duration, steps)) {
             // Of the offset the half-length: like bodies have next to none.
-            let scale = expected.abs().max(if *name == "contact_offset" { 5e-3 } else { f64::MIN_POSITIVE });
+            let scale = expected.abs().max(if *name == "contact_offset" {
+                5e-3
+            } else {
+                f64::MIN_POSITIVE
+            });
             // The weights of the marches depend on the step as well as on the spacing: their steady states differ by a part of
             // the error of the spacing.
             assert!(

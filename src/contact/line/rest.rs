@@ -45,7 +45,11 @@ impl Rest {
         }
         self.change = change;
         // A node that comes and goes with next to no pressure holds nothing up.
-        let margin = if sweep.set_changed { self.settings.set_margin } else { 1.0 };
+        let margin = if sweep.set_changed {
+            self.settings.set_margin
+        } else {
+            1.0
+        };
         change * contraction <= margin * self.settings.tolerance
             && sweep.shear_change * contraction <= margin * self.settings.shear_tolerance
     }
