@@ -1,17 +1,27 @@
-"""A braking manoeuvre with a wheel slide, through FMPy.
+"""A braking manoeuvre with a wheel slide, to a stop on a gradient, through FMPy.
 
     .venv/bin/python examples/braking_demo.py       (after `make fmu`)
 
-Wheel speed, vehicle speed and load come from examples/braking.csv; examples/braking.py says how they were made.
+Up to `COUPLED` wheel speed, vehicle speed and load come from examples/braking.csv; examples/braking.py says how they
+were made. From there on they are those of a wheel with its share of a vehicle, coupled to the same instance by the
+iterating master of examples/stiff.py: the brake goes on with the torque that it has, the vehicle stops, and the locked
+wheel holds it on the gradient.
 """
+
+from types import SimpleNamespace
 
 import matplotlib.pyplot as plt
 import numpy as np
 from helpers import BLACK, BLUE, GREEN, ORANGE, RED, REPOSITORY, WHEEL_RADIUS, read_scenario, save, simulate, write_csv
+from stiff import LOAD, NAMES, SPEEDS, WHEEL_INERTIA, Contact, iterating
 
 SCENARIO = REPOSITORY / "examples" / "braking.csv"
 STEP = 1e-3  # s
-VEHICLE_SPEED = 2  # slip_source: wheel speed and vehicle speed define the motion
+COUPLED = 21.0  # s, at 2 m/s; after it the table lets the brake go
+COUPLED_STEP = 2e-3  # s
+END = 28.0  # s
+GRADIENT = 0.005  # uphill
+DECELERATION = 0.9  # m/s2, of the table
 # Output and unit.
 OUTPUTS = {
     "traction_force": "N",
@@ -25,71 +35,123 @@ OUTPUTS = {
     "friction_energy": "J",
     "distance": "m",
 }
+INPUTS = {"wheel_speed": "rad/s", "vehicle_speed": "m/s", "normal_load": "N"}
 
 
-def sliding(signals, result):
-    """First and last time at which the wheel turns at less than 98 % of the rolling speed."""
-    slow = result["time"][result["slip_creepage"] < -0.02]
+def driven(contact, signals):
+    """Follow the table up to where the vehicle takes over: a column for each input and output."""
+    result = simulate("braking", STEP, COUPLED, list(OUTPUTS), {}, signals, contact)
+    columns = {"time": result["time"]} | {name: result[name] for name in OUTPUTS}
+    return columns | {name: np.interp(result["time"], signals["time"], signals[name]) for name in INPUTS}
+
+
+def coupled(contact, before):
+    """Go on with wheel and vehicle as they are at the end, under the brake that slowed them down, to the end."""
+    torque, _ = contact.get(*NAMES)
+    brake = torque + WHEEL_INERTIA * DECELERATION / WHEEL_RADIUS
+    manoeuvre = SimpleNamespace(gradient=GRADIENT, drive=lambda now: 0.0, brake=lambda now: brake)
+    speeds, forces, memory = np.array([before[name][-1] for name in SPEEDS]), None, {}
+    load = before["normal_load"][-1]
+    contact.set(normal_load=load)
+    rows = []
+    for number in range(1, round((END - COUPLED) / COUPLED_STEP) + 1):
+        now = COUPLED + number * COUPLED_STEP
+        speeds, forces, _ = iterating(contact, speeds, forces, manoeuvre, now, COUPLED_STEP, memory)
+        rows.append((now, *speeds, load, *contact.get(*OUTPUTS)))
+    return dict(zip(("time", *INPUTS, *OUTPUTS), np.array(rows).T, strict=True))
+
+
+def sliding(result):
+    """First and last time at which the wheel turns at less than 98 % of the rolling speed, before the vehicle stops."""
+    slow = result["time"][(result["slip_creepage"] < -0.02) & (result["time"] < COUPLED)]
     return slow.min(), slow.max()
 
 
-def draw(signals, result):
+def standing(result):
+    """When the vehicle first stands."""
+    return result["time"][np.argmax(result["vehicle_speed"] <= 0.0)]
+
+
+def place(result):
+    """Place of the vehicle from where it is at the end [m], in the coupled part."""
+    after = result["time"] > COUPLED
+    way = np.cumsum(result["vehicle_speed"][after]) * COUPLED_STEP
+    return result["time"][after], way - way[-1]
+
+
+def draw(result):
     """Draw the manoeuvre, and what it does to the contact."""
     figure, panels = plt.subplots(6, 1, figsize=(8.4, 11.0), sharex=True, layout="constrained")
-    time = result["time"]
+    time, stood = result["time"], standing(result)
     speeds, traction, creepage, temperature, friction, wear = panels
 
-    speeds.plot(signals["time"], signals["vehicle_speed"], color=BLACK, label="vehicle")
-    speeds.plot(signals["time"], WHEEL_RADIUS * signals["wheel_speed"], color=BLUE, label="wheel circumference")
+    speeds.plot(time, result["vehicle_speed"], color=BLACK, label="vehicle")
+    speeds.plot(time, WHEEL_RADIUS * result["wheel_speed"], color=BLUE, label="wheel circumference")
     speeds.set_ylabel("speed [m/s]")
     speeds.legend(loc="upper right", ncols=2)
 
     traction.plot(time, result["traction_force"] / 1e3, color=BLACK, linewidth=1.0)
     traction.set_ylabel("traction force [kN]")
-    creepage.plot(time, -100 * result["slip_creepage"], color=GREEN)
+    rolling = time < stood
+    creepage.plot(time[rolling], -100 * result["slip_creepage"][rolling], color=GREEN)
     creepage.set(yscale="log", ylabel="creepage, negative [%]", ylim=(0.01, 150))
     temperature.plot(time, result["peak_temperature"] - 273.15, color=RED)
     temperature.set(ylabel="peak temperature [°C]", ylim=(0, None))
     friction.plot(time, result["friction_coefficient"], color=BLUE, label="friction coefficient")
     friction.plot(time, -result["traction_coefficient"], color=ORANGE, linewidth=1.0, label="braking force / load")
-    friction.set(ylabel="coefficient [1]", ylim=(0, 0.5))
+    friction.set(ylabel="coefficient [1]", ylim=(-0.05, 0.5))
     friction.legend(loc="center right")
     wear.plot(time, result["worn_volume"] * 1e9, color=BLACK)
     wear.set(ylabel="worn volume [mm³]", xlabel="time [s]", xlim=(time[0], time[-1]), ylim=(0, None))
 
-    start, end = sliding(signals, result)
+    # The swing of the vehicle on the contact's spring, some tenths of a second.
+    near = traction.inset_axes([0.815, 0.14, 0.17, 0.42])
+    near.plot(result["time"], result["traction_force"] / 1e3, color=BLACK, linewidth=0.8)
+    swing = result["traction_force"][(time > stood) & (time < stood + 0.4)] / 1e3
+    near.set(xlim=(stood - 0.1, stood + 0.4), ylim=(-7.0, 1.1 * swing.max() + 1.0))
+    near.tick_params(labelsize=7)
+    near.set_title("standstill", fontsize=8)
+
+    start, end = sliding(result)
     for axes in panels:
         axes.axvspan(start, end, color="#f0f0f0", zorder=0)
+        axes.axvspan(stood, END, color="#eef5ee", zorder=0)
     speeds.annotate("wheel slide", (0.5 * (start + end), 18), ha="center", color="#666666")
+    speeds.annotate(f"held on {GRADIENT:.1%}", (0.5 * (stood + END), 5), ha="center", color="#557755")
     figure.align_ylabels(panels)
-    speeds.set_title("Braking from 20 m/s with a wheel slide")
+    speeds.set_title("Braking from 20 m/s with a wheel slide, to a stop on a gradient")
     save(figure, "braking.png")
 
 
 def main():
     """Simulate, draw, write, report."""
     signals = read_scenario(SCENARIO)
-    result = simulate("braking", STEP, signals["time"][-1], list(OUTPUTS), {"slip_source": VEHICLE_SPEED}, signals)
-    inputs = {
-        f"{name} [{unit}]": np.interp(result["time"], signals["time"], signals[name])
-        for name, unit in {"wheel_speed": "rad/s", "vehicle_speed": "m/s", "normal_load": "N"}.items()
-    }
-    write_csv(
-        "braking.csv",
-        {"time [s]": result["time"]} | inputs | {f"{name} [{unit}]": result[name] for name, unit in OUTPUTS.items()},
-    )
-    draw(signals, result)
+    contact = Contact(signals["vehicle_speed"][0], signals["normal_load"][0])
+    first = driven(contact, signals)
+    then = coupled(contact, first)
+    contact.close()
+    result = {name: np.concatenate([first[name], then[name]]) for name in first}
+    units = {"time": "s"} | INPUTS | OUTPUTS
+    write_csv("braking.csv", {f"{name} [{unit}]": result[name] for name, unit in units.items()})
+    draw(result)
     hottest = np.argmax(result["peak_temperature"])
-    start, end = sliding(signals, result)
+    start, end = sliding(result)
     before = np.searchsorted(result["time"], start)
     after = np.searchsorted(result["time"], end)
     worn = result["worn_volume"]
-    print(f"  {result['distance'][-1]:.1f} m in {result['time'][-1]:.0f} s, {len(result)} rows")
+    print(f"  {result['distance'][-1]:.1f} m in {result['time'][-1]:.0f} s, {len(result['time'])} rows")
     print(f"  hottest: {result['peak_temperature'][hottest] - 273.15:.1f} °C at {result['time'][hottest]:.2f} s")
     friction = result["friction_coefficient"]
     print(f"  friction coefficient: {friction.min():.3f} to {friction.max():.3f}")
     print(f"  friction energy: {result['friction_energy'][-1] / 1e3:.1f} kJ")
     print(f"  worn: {worn[-1] * 1e9:.2f} mm³, {100 * (worn[after] - worn[before]) / worn[-1]:.0f} % of it in the slide")
+    stood, (time, way) = standing(result), place(result)
+    held, traction = time > stood + 1.0, then["traction_force"]
+    print(
+        f"  stands at {stood:.2f} s, swings {1e6 * np.ptp(way[time >= stood]):.1f} µm on the contact's spring;"
+        f" a second later it moves {1e9 * np.ptp(way[held]):.2g} nm in {END - stood - 1.0:.1f} s,"
+        f" held by {traction[held].min():.2f} to {traction[held].max():.2f} N, the gradient's {GRADIENT * LOAD:.0f} N"
+    )
 
 
 if __name__ == "__main__":

@@ -59,8 +59,8 @@ def read_scenario(path):
     return complete
 
 
-def simulate(title, step, stop_time, output, start_values, signals=None):
-    """Run the component in FMPy with a line of progress on the terminal."""
+def simulate(title, step, stop_time, output, start_values, signals=None, instance=None):
+    """Run the component in FMPy with a line of progress on the terminal; an instance is left as it is at the end."""
     if not FMU.exists():
         sys.exit(f"{FMU} is not there: run `make fmu` first")
     shown = 0
@@ -84,7 +84,10 @@ def simulate(title, step, stop_time, output, start_values, signals=None):
         input=signals,
         output=output,
         step_finished=progress,
+        **({} if instance is None else {"fmu_instance": instance.slave, "initialize": False, "terminate": False}),
     )
+    if instance is not None:
+        instance.time = stop_time
     if sys.stdout.isatty():
         print()
     return result

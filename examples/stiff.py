@@ -65,10 +65,11 @@ SPINNING = SimpleNamespace(**vars(ROLLING) | {"drive": lambda now: 14.5 / 12.0 *
 class Contact(Instance):
     """The component, its inputs and answers as vectors: speeds (ω, V) in, forces (M, T) out."""
 
-    def __init__(self, speed):
+    def __init__(self, speed, normal_load=LOAD):
         """Start with the wheel rolling freely; a wheel of the rail's material does so at a creepage of 0."""
         self.speeds = np.array([speed / WHEEL_RADIUS, speed])
-        super().__init__(FMU, slip_source=2, normal_load=LOAD, **dict(zip(SPEEDS, self.speeds, strict=True)))
+        speeds = dict(zip(SPEEDS, self.speeds, strict=True))
+        super().__init__(FMU, slip_source=2, normal_load=normal_load, **speeds)
         self.start()
 
     def forces(self, speeds, step):

@@ -51,8 +51,8 @@ def test_implicit_masters_beyond_the_limit(master, reference):
 def test_stop_hold_and_drive_off(master, step):
     """Held, it moves by less than a nanometre; off again, the books of energy close.
 
-    Missing may be what the spring loses where it is let go in one step, (μN)²/2k at most, and 3 % of the friction energy,
-    at a creepage of 1e-4; of the energy that is turned over that is a ten-thousandth.
+    Missing may be what the spring loses where it is let go in one step, (μN)²/2k at most, and 3 % of the friction
+    energy, at a creepage of 1e-4; of the energy that is turned over that is a ten-thousandth.
     """
     result = stiff.run(master, step, stiff.STOPPING)
     way, speed = stiff.held(result)
