@@ -130,8 +130,8 @@ fn input_derivatives_bring_a_long_step_closer_to_the_converged_solution() {
             order(interpolated)
         );
         assert!((order(held) - 1.0).abs() < 0.15, "{name}: {held:?}");
-        if ["traction_force", "friction_torque"].contains(&name) {
-            // The displacement of the step before makes it a state, whose step is of first order.
+        if !["peak_pressure", "penetration"].contains(&name) {
+            // The displacement of the step before makes the shear, and what it heats, a state, whose step is of first order.
             assert!(
                 interpolated[0] < 0.3 * held[0] && interpolated[2] < 0.5 * interpolated[0],
                 "{name}"

@@ -6,10 +6,9 @@ use wheelrail::torture::Torture;
 /// Models of these runs, of four runs each.
 const MODELS: u64 = 40;
 
-/// What still fails, as error and the largest number of these runs: a wheel that slips on the spot wears a groove which its
-/// window does not hold, and the split does not settle where the friction coefficient jumps within some kelvins. Each is to
-/// go; nothing is to be added.
-const KNOWN: [(&str, usize); 2] = [("ContactLeavesWindow", 9), ("SplitNotConverged", 8)];
+/// What ends a run as it should, with the largest number of these runs: a penetration that is given takes more than the largest
+/// load.
+const KNOWN: [(&str, usize); 1] = [("ContactLeavesWindow", 1)];
 
 /// No other run fails, whatever the wheel goes through.
 #[test]

@@ -342,6 +342,10 @@ impl Fields {
         };
         let traction = largest(&self.pressure).max(largest(&self.shear));
         let vectors = self.vectors().into_iter().zip(last.vectors());
+        let wheel = relative(
+            (self.wheel_temperature - last.wheel_temperature).abs(),
+            self.wheel_temperature.abs(),
+        );
         vectors
             .map(|(now, last)| {
                 if std::ptr::eq(now, &self.pressure) {
@@ -352,11 +356,7 @@ impl Fields {
                     share * relative(largest_change(now, last), largest(now))
                 }
             })
-            .chain([share
-                * relative(
-                    (self.wheel_temperature - last.wheel_temperature).abs(),
-                    self.wheel_temperature.abs(),
-                )])
+            .chain([share * wheel])
             .fold(0.0, f64::max)
     }
 }
