@@ -109,7 +109,7 @@ parameters! {
     /// Largest normal load: it sizes the contact window, and a larger load is refused
     largest_load: f64 = real { "N" shown in "kN", 100e3, 1.0, 1e7 }
     /// Number of evenly spaced surface nodes in the contact window of the graded mesh
-    contact_nodes: usize = count { 61, 13, 401 }
+    contact_nodes: usize = count { 51, 13, 401 }
     /// Number of nodes over the depth of the strip of the graded mesh
     depth_nodes: usize = count { 41, 9, 161 }
     /// Method for the normal contact problem: 1 active_set (primal-dual active set), 2 pschenichnyj (linearisation
