@@ -1,28 +1,19 @@
 //! The order in which rail material crosses the window, and the step from one column to the next: shared by the marches of
 //! heat and wear.
 //!
-//! What is carried along, decays at a rate κλ and is fed by f, ∂a/∂t − V ∂a/∂x₁ + κλ a = f, is stepped in time by
-//! ∂a/∂t ≈ (a − aⁿ)/Δt. On the way through the cell of length Δ from the column upstream (U) to the next one (O) this is an
-//! ordinary differential equation with the rate r = 1/Δt + κλ and the source S = aⁿ/Δt + f. With S linear over the cell its
-//! solution is exactly
+//! What is carried along without decay and is fed by f, ∂a/∂t − V ∂a/∂x₁ = f, passes the cell of length Δ from the column upstream
+//! (U) to the next one (O) in a step of Δt, with S = aⁿ + f Δt and the Courant number C = |V| Δt/Δ, by
 //!
-//! a_O = E a_U + g ω S_U + g (1 − ω) S_O,
+//! (C + 1 − ν) a_O = (C − ν) a_U + ν S_U + (1 − ν) S_O,  ν = min(½, C).
 //!
-//! z = r Δ/|V|,  E = e⁻ᶻ,  g = (1 − E)/r,  ω = 1/z − 1/(eᶻ − 1),
+//! With ν = ½ storage and f are linear over the cell: second order in Δ, and what is settled does not depend on Δt. Where
+//! the rail moves by less than half a cell in a step, that would take more from upstream than arrives; with ν = C the step is then the
+//! interpolation of S at the point that the material comes from. All weights are positive: nothing oscillates, and nothing falls
+//! below 0 that is fed by what is not. The cell is balanced to round-off,
 //!
-//! an exponential integrator (M. Hochbruck and A. Ostermann, *Exponential integrators*, Acta Numerica 19, 2010): of second
-//! order in Δ, and exact for what decays without being fed, however long the cell. All weights are positive: nothing
-//! oscillates, and nothing falls below 0 that is fed by what is not. Where material crosses less than a cell in a step, ω tends
-//! to 0 and the scheme to the upwind difference; at V = 0 it is the implicit Euler step of each column.
+//! Δ (ν (a − aⁿ)_U + (1 − ν) (a − aⁿ)_O)/Δt + |V| (a_O − a_U) = Δ (ν f_U + (1 − ν) f_O),
 //!
-//! What the cell holds is balanced to round-off with a weighted by ω upstream and by 1 − ω at the column:
-//!
-//! Δ (ω (a − aⁿ)_U + (1 − ω) (a − aⁿ)_O)/Δt + |V| (a_O − a_U) + κλ Δ (ω a_U + (1 − ω) a_O) = Δ (ω f_U + (1 − ω) f_O).
-//!
-//! Over cells of one length the weights of a column add up to 1, whatever V, Δt and λ.
-
-use crate::numerics::decay::{Decay, decay};
-use crate::numerics::dense::Arithmetic;
+//! and over cells of one length the weights of a column add up to 1, whatever V and Δt.
 
 /// Upwind differences −V ∂/∂x₁ over the columns, from the inflow side to the outflow side.
 #[derive(Debug, Clone, Copy)]
@@ -126,19 +117,16 @@ impl Cells {
     }
 }
 
-/// The step through one cell: factors on the value and on the sources at its two ends.
+/// The step through one cell: factors on the value and on the sources S/Δt = aⁿ/Δt + f at its two ends.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CellStep {
-    /// E: share of the value upstream that arrives.
+    /// Share of the value upstream that arrives.
     pub keep: f64,
-    /// g ω: of the source upstream, `s`.
+    /// Of the source upstream, `s`.
     pub upstream: f64,
-    /// g (1 − ω): of the column's own source, `s`.
+    /// Of the column's own source, `s`.
     pub own: f64,
 }
-
-/// Least rate r, `1/s`: stands for the 0 of what neither decays nor is stored, so that 1/r is finite.
-const LEAST_RATE: f64 = 1e-200;
 
 impl CellStep {
     /// Through no cell at all.
@@ -148,63 +136,45 @@ impl CellStep {
         own: 0.0,
     };
 
-    /// At the rate r `1/s`, through a cell of length Δ `spacing` `m` at |V| `speed` `m/s`.
-    pub fn new(rate: f64, spacing: f64, speed: f64) -> CellStep {
-        let rate = rate.max(LEAST_RATE);
-        CellStep::at(
-            Arithmetic::SEPARATE,
-            (rate, 1.0 / rate),
-            (spacing / speed, speed / spacing),
-        )
-    }
-
-    /// The same from r `1/s` and Δ/|V| `s`, each with its inverse, without branches: several at once vectorise.
-    #[inline(always)]
-    pub fn at(arithmetic: Arithmetic, (rate, duration): (f64, f64), (passage, passages): (f64, f64)) -> CellStep {
-        let Decay { keep, upstream, own } = decay(arithmetic, rate * passage, duration * passages);
+    /// In a step with 1/Δt `storage` `1/s`, through a cell of length Δ `spacing` `m` at |V| `speed` `m/s`.
+    pub fn new(storage: f64, spacing: f64, speed: f64) -> CellStep {
+        let passages = speed / spacing;
+        let share = if CellStep::is_short(storage, passages) {
+            passages / storage
+        } else {
+            0.5
+        };
+        let inverse = 1.0 / (passages + (1.0 - share) * storage);
         CellStep {
-            keep,
-            upstream: upstream * duration,
-            own: own * duration,
+            keep: (passages - share * storage).max(0.0) * inverse,
+            upstream: share * inverse,
+            own: (1.0 - share) * inverse,
         }
     }
 
-    /// ω.
-    #[cfg(any(test, feature = "verification"))]
-    pub fn upstream_share(&self) -> f64 {
-        self.upstream / (self.upstream + self.own)
+    /// Whether the rail moves by less than half a cell in a step.
+    fn is_short(storage: f64, passages: f64) -> bool {
+        2.0 * passages < storage
     }
 
-    /// ω a_U + (1 − ω) a_O: what the cell holds per length.
+    /// ν a_U + (1 − ν) a_O: what the cell holds per length.
     #[cfg(any(test, feature = "verification"))]
     pub fn mean(&self, upstream: f64, own: f64) -> f64 {
-        own + self.upstream_share() * (upstream - own)
+        own + self.upstream / (self.upstream + self.own) * (upstream - own)
     }
 
-    /// The source S_O at a column, from the values and the source upstream: what the step was made from.
+    /// The source at a column, from the values (upstream, own) and the source upstream: what the step was made from.
     pub fn own_source(&self, (upstream, own): (f64, f64), upstream_source: f64) -> f64 {
         (own - self.keep * upstream - self.upstream * upstream_source) / self.own
     }
 
-    /// Change of the value at a column with |V|, from the value upstream and the two sources (upstream, own).
-    pub fn speed_tangent(
-        &self,
-        rate: f64,
-        (spacing, speed): (f64, f64),
-        upstream: f64,
-        (upstream_source, own_source): (f64, f64),
-    ) -> f64 {
-        // dg ω/dV = (g ω − E Δ/V)/V and dg (1 − ω)/dV = −g ω/V. At V = 0 nothing arrives, and g ω/V is 1/(r² Δ).
-        if self.keep == 0.0 {
-            let per_speed = if speed > 0.0 {
-                self.upstream / speed
-            } else {
-                1.0 / (rate * rate * spacing)
-            };
-            return per_speed * (upstream_source - own_source);
+    /// Change of the value at a column with |V|, from the values and the sources (upstream, own).
+    pub fn speed_tangent(storage: f64, (spacing, speed): (f64, f64), values: (f64, f64), sources: (f64, f64)) -> f64 {
+        let passages = speed / spacing;
+        if CellStep::is_short(storage, passages) {
+            (sources.0 - sources.1) / (spacing * storage * storage)
+        } else {
+            (values.0 - values.1) / (spacing * (passages + 0.5 * storage))
         }
-        let passage = spacing / speed;
-        let arriving = self.keep * passage * (rate * upstream - upstream_source);
-        (arriving + self.upstream * (upstream_source - own_source)) / speed
     }
 }

@@ -84,7 +84,7 @@ impl WearMarch<'_> {
             let own_source = step.own_source((upstream, own), upstream_source);
             let own_change = self.at(rate_change, column.index);
             let cell = (column.spacing, speed);
-            let carried = step.speed_tangent(storage, cell, upstream, (upstream_source, own_source));
+            let carried = CellStep::speed_tangent(storage, cell, (upstream, own), (upstream_source, own_source));
             tangent[column.index] = step.keep * tangent[column.upstream]
                 + step.upstream * upstream_change
                 + step.own * own_change

@@ -5,8 +5,12 @@
 //! and computed for the cells that something warm crosses.
 
 use super::basis::DepthBasis;
+use super::step::ModeStep;
 use crate::numerics::dense::{Arithmetic, LANES};
-use crate::transport::{CellStep, Cells, Column};
+use crate::transport::{Cells, Column};
+
+/// The fields of [`ModeStep`], in their order, of as many modes as are computed at once.
+type Block = [[f64; LANES]; 5];
 
 /// Factors of all modes in the cells between columns; m modes. What they are depends on nothing that was asked before.
 #[derive(Debug, Clone)]
@@ -16,14 +20,14 @@ pub struct CellFactors {
     conditions: Conditions,
     /// Whether the factors of a length are known.
     known: Vec<bool>,
-    /// r and 1/r of the modes, m each.
-    rates: Vec<f64>,
-    durations: Vec<f64>,
-    /// E, g ω and g (1 − ω) of the modes, one after the other for each length.
-    steps: Vec<f64>,
+    /// r and 1/r of the modes, in blocks, the last one filled up.
+    rates: Vec<[[f64; LANES]; 2]>,
+    /// As many blocks for each length, one length after the other.
+    blocks: Vec<Block>,
     /// The length that `passed_on`, `taken` and `response` are of.
     heated: Option<usize>,
-    /// What the modes take of a flux upstream and of their column's own, m each, `K m^½ / (W/m²)`.
+    /// What feeds a mode, and what the modes take, of a flux upstream and of their column's own, m each, `K m^½ / (W/m²)`.
+    heating: Vec<f64>,
     passed_on: Vec<f64>,
     taken: Vec<f64>,
     response: f64,
@@ -42,90 +46,95 @@ pub struct Conditions {
     pub capacity: f64,
 }
 
-/// What the modes of a column take from the column upstream and from the step before, m each.
+/// The steps of all modes through a cell.
 #[derive(Debug, Clone, Copy)]
 pub struct Factors<'a> {
-    /// E.
-    pub keep: &'a [f64],
-    /// g ω, `s`.
-    pub upstream: &'a [f64],
-    /// g (1 − ω), `s`.
-    pub own: &'a [f64],
+    blocks: &'a [Block],
 }
 
 /// What a column takes of the heat flux, m each.
 #[derive(Debug, Clone, Copy)]
 pub struct HeatFactors<'a> {
-    /// r of the modes, `1/s`.
-    pub rates: &'a [f64],
-    /// Of the flux upstream.
+    /// f of a mode per heat flux, φ(0)/(ρ c_p).
+    pub heating: &'a [f64],
+    /// Amplitude per flux upstream.
     pub passed_on: &'a [f64],
-    /// Of its own.
+    /// Amplitude per own flux.
     pub taken: &'a [f64],
     /// Surface temperature per own flux, `K/(W/m²)`.
     pub response: f64,
 }
 
-/// What feeds the modes of a column but for its own heat flux, m each.
+/// What the modes of a column come from but for its own heat flux, m each.
 #[derive(Debug, Clone, Copy)]
 pub struct Sources<'a> {
-    /// 1/Δt, `1/s`.
-    pub storage: f64,
-    /// Amplitudes of the step before in the column upstream.
+    /// Amplitudes in the column upstream.
+    pub upstream: &'a [f64],
+    /// Those of the step before there.
     pub old_upstream: &'a [f64],
-    /// Those in the column itself.
+    /// Those of the step before in the column itself.
     pub old: &'a [f64],
     /// Heat flux into the column upstream, with what is taken of it.
     pub flux: Option<(f64, &'a [f64])>,
 }
 
 impl Factors<'_> {
-    /// own = E · upstream + g ω · (sources upstream) + g (1 − ω) · old/Δt, and the surface value of it: as [`Arithmetic::dot`], in
-    /// the same pass.
+    /// The step of one mode.
+    pub fn step(&self, mode: usize) -> ModeStep {
+        let block = &self.blocks[mode / LANES];
+        let [arriving, old_upstream, old, fed_upstream, fed] = std::array::from_fn(|which| block[which][mode % LANES]);
+        ModeStep {
+            arriving,
+            old_upstream,
+            old,
+            fed_upstream,
+            fed,
+        }
+    }
+
+    /// The step of the modes but for their own heat flux, and the surface value of what comes of it: as [`Arithmetic::dot`],
+    /// in the same pass.
     #[inline(always)]
-    pub fn carry_over(
-        &self,
-        arithmetic: Arithmetic,
-        own: &mut [f64],
-        upstream: &[f64],
-        sources: &Sources,
-        surface: &[f64],
-    ) -> f64 {
+    pub fn carry_over(&self, arithmetic: Arithmetic, own: &mut [f64], sources: &Sources, surface: &[f64]) -> f64 {
         let fma = |a, b, c| arithmetic.multiply_add(a, b, c);
-        let (heat, passed_on) = sources.flux.unwrap_or((0.0, &[]));
-        let is_heated = sources.flux.is_some();
+        let Sources {
+            upstream,
+            old_upstream,
+            old,
+            flux,
+        } = *sources;
+        let (heat, passed_on) = flux.unwrap_or((0.0, surface));
         let mut sums = [0.0; LANES];
         let (blocks, rest) = own.as_chunks_mut::<LANES>();
         let whole = LANES * blocks.len();
-        let old = chunks(self.own).zip(chunks(sources.old));
-        let old_upstream = chunks(self.upstream).zip(chunks(sources.old_upstream));
-        let carried = chunks(self.keep).zip(chunks(upstream));
-        // Without a flux upstream these are not read.
-        let passed = chunks(if is_heated { passed_on } else { surface });
-        let inputs = old.zip(old_upstream).zip(carried).zip(passed).zip(chunks(surface));
-        for (block, ((((old, old_upstream), carried), passed), surface)) in blocks.iter_mut().zip(inputs) {
-            let ((from_own, old), (from_upstream, old_upstream)) = (old, old_upstream);
-            let (keep, upstream) = carried;
+        let sources = chunks(upstream)
+            .zip(chunks(old_upstream))
+            .zip(chunks(old))
+            .zip(chunks(passed_on));
+        let inputs = self.blocks.iter().zip(sources).zip(chunks(surface));
+        for (own, ((factors, (((upstream, old_upstream), old), passed_on)), surface)) in blocks.iter_mut().zip(inputs) {
+            let [arriving, handed_on, kept, ..] = factors;
             // All values are loaded before one is stored: otherwise the compiler must assume that the slices overlap, and does
             // not vectorise.
             let mut values = [0.0; LANES];
             for lane in 0..LANES {
-                let stored = fma(from_own[lane], old[lane], from_upstream[lane] * old_upstream[lane]);
-                values[lane] = fma(sources.storage, stored, keep[lane] * upstream[lane]);
-                if is_heated {
-                    values[lane] = fma(heat, passed[lane], values[lane]);
+                // What waits for the column upstream comes last.
+                let stored = fma(kept[lane], old[lane], handed_on[lane] * old_upstream[lane]);
+                values[lane] = fma(arriving[lane], upstream[lane], stored);
+                if flux.is_some() {
+                    values[lane] = fma(heat, passed_on[lane], values[lane]);
                 }
             }
-            *block = values;
+            *own = values;
             for lane in 0..LANES {
                 sums[lane] = fma(values[lane], surface[lane], sums[lane]);
             }
         }
         let mut tail = 0.0;
         for (own, mode) in rest.iter_mut().zip(whole..) {
-            let stored = self.own[mode] * sources.old[mode] + self.upstream[mode] * sources.old_upstream[mode];
-            *own = sources.storage * stored + self.keep[mode] * upstream[mode];
-            if is_heated {
+            let step = self.step(mode);
+            *own = step.arriving * upstream[mode] + step.old_upstream * old_upstream[mode] + step.old * old[mode];
+            if flux.is_some() {
                 *own += heat * passed_on[mode];
             }
             tail += *own * surface[mode];
@@ -143,8 +152,9 @@ impl CellFactors {
     pub fn new(basis: &DepthBasis, x: &[f64]) -> CellFactors {
         let m = basis.len();
         let cells = Cells::new(x);
-        let lengths = cells.lengths.len();
+        let (lengths, blocks) = (cells.lengths.len(), m.div_ceil(LANES));
         CellFactors {
+            cells,
             conditions: Conditions {
                 speed: f64::NAN,
                 duration: f64::NAN,
@@ -152,11 +162,10 @@ impl CellFactors {
                 capacity: f64::NAN,
             },
             known: vec![false; lengths],
-            rates: vec![0.0; m],
-            durations: vec![0.0; m],
-            steps: vec![0.0; 3 * m * lengths],
-            cells,
+            rates: vec![[[1.0; LANES]; 2]; blocks],
+            blocks: vec![Block::default(); blocks * lengths],
             heated: None,
+            heating: vec![0.0; m],
             passed_on: vec![0.0; m],
             taken: vec![0.0; m],
             response: 0.0,
@@ -164,7 +173,6 @@ impl CellFactors {
     }
 
     /// Forgets what was computed under other conditions.
-    #[inline(always)]
     pub fn adapt(&mut self, basis: &DepthBasis, conditions: Conditions) {
         if self.conditions == conditions {
             return;
@@ -172,10 +180,11 @@ impl CellFactors {
         self.conditions = conditions;
         self.known.fill(false);
         self.heated = None;
-        let modes = self.rates.iter_mut().zip(&mut self.durations).zip(&basis.eigenvalues);
-        for ((rate, duration), eigenvalue) in modes {
-            *rate = 1.0 / conditions.duration + conditions.diffusivity * eigenvalue;
-            *duration = 1.0 / *rate;
+        for (mode, eigenvalue) in basis.eigenvalues.iter().enumerate() {
+            let rate = conditions.diffusivity * eigenvalue;
+            let [rates, lifetimes] = &mut self.rates[mode / LANES];
+            (rates[mode % LANES], lifetimes[mode % LANES]) = (rate, 1.0 / rate);
+            self.heating[mode] = basis.surface[mode] / conditions.capacity;
         }
     }
 
@@ -196,12 +205,9 @@ impl CellFactors {
 
     #[inline(always)]
     fn known_at(&self, length: usize) -> Factors<'_> {
-        let m = self.rates.len();
-        let steps = &self.steps[3 * m * length..][..3 * m];
+        let count = self.rates.len();
         Factors {
-            keep: &steps[..m],
-            upstream: &steps[m..2 * m],
-            own: &steps[2 * m..],
+            blocks: &self.blocks[count * length..][..count],
         }
     }
 
@@ -216,17 +222,15 @@ impl CellFactors {
         self.at(arithmetic, length);
         if self.heated != Some(length) {
             self.heated = Some(length);
-            let m = self.rates.len();
-            let steps = &self.steps[3 * m * length..][..3 * m];
-            for mode in 0..m {
-                let heating = basis.surface[mode] / self.conditions.capacity;
-                self.passed_on[mode] = heating * steps[m + mode];
-                self.taken[mode] = heating * steps[2 * m + mode];
+            for mode in 0..basis.len() {
+                let step = self.known_at(length).step(mode);
+                self.passed_on[mode] = self.heating[mode] * step.fed_upstream;
+                self.taken[mode] = self.heating[mode] * step.fed;
             }
             self.response = arithmetic.dot(&basis.surface, &self.taken);
         }
         let heat = HeatFactors {
-            rates: &self.rates,
+            heating: &self.heating,
             passed_on: &self.passed_on,
             taken: &self.taken,
             response: self.response,
@@ -234,38 +238,23 @@ impl CellFactors {
         (self.known_at(length), heat)
     }
 
-    /// [`CellStep`] of every mode.
+    /// [`ModeStep`] of every mode.
     #[inline(always)]
     fn compute(&mut self, arithmetic: Arithmetic, length: usize) {
-        let m = self.rates.len();
         let (length_of_cell, speed) = (self.cells.lengths[length], self.conditions.speed);
         let passage = (length_of_cell / speed, speed / length_of_cell);
-        let steps = &mut self.steps[3 * m * length..][..3 * m];
-        let (keep, rest) = steps.split_at_mut(m);
-        let (upstream, own) = rest.split_at_mut(m);
-        let (rates, rest_of_rates) = self.rates.as_chunks::<LANES>();
-        let (durations, rest_of_durations) = self.durations.as_chunks::<LANES>();
-        let (keep, rest_of_keep) = keep.as_chunks_mut::<LANES>();
-        let (upstream, rest_of_upstream) = upstream.as_chunks_mut::<LANES>();
-        let (own, rest_of_own) = own.as_chunks_mut::<LANES>();
-        let out = keep.iter_mut().zip(upstream).zip(own);
-        for ((rates, durations), ((keep, upstream), own)) in rates.iter().zip(durations).zip(out) {
-            // All values are loaded before one is stored: as in the march itself.
-            let (rates, durations) = (*rates, *durations);
-            let mut steps = [[0.0; LANES]; 3];
+        let storage = 1.0 / self.conditions.duration;
+        let count = self.rates.len();
+        for (block, [rates, lifetimes]) in self.blocks[count * length..].iter_mut().zip(&self.rates) {
+            let mut factors = Block::default();
             for lane in 0..LANES {
-                let step = CellStep::at(arithmetic, (rates[lane], durations[lane]), passage);
-                steps[0][lane] = step.keep;
-                steps[1][lane] = step.upstream;
-                steps[2][lane] = step.own;
+                let step = ModeStep::at(arithmetic, (rates[lane], lifetimes[lane]), storage, passage);
+                let step = [step.arriving, step.old_upstream, step.old, step.fed_upstream, step.fed];
+                for (factors, factor) in factors.iter_mut().zip(step) {
+                    factors[lane] = factor;
+                }
             }
-            [*keep, *upstream, *own] = steps;
-        }
-        let rest = rest_of_rates.iter().zip(rest_of_durations);
-        let out = rest_of_keep.iter_mut().zip(rest_of_upstream).zip(rest_of_own);
-        for ((rate, duration), ((keep, upstream), own)) in rest.zip(out) {
-            let step = CellStep::at(arithmetic, (*rate, *duration), passage);
-            (*keep, *upstream, *own) = (step.keep, step.upstream, step.own);
+            *block = factors;
         }
     }
 }
@@ -306,20 +295,22 @@ mod tests {
                 let (factors, heat) = cells.heated_at(Arithmetic::SEPARATE, &basis, length);
                 let mut response = 0.0;
                 for mode in 0..basis.len() {
-                    let rate = 1.0 / duration + 1.4e-5 * basis.eigenvalues[mode];
-                    let step = CellStep::new(rate, spacing, speed);
+                    let rate = 1.4e-5 * basis.eigenvalues[mode];
+                    let passage = (spacing / speed, speed / spacing);
+                    let step = ModeStep::at(Arithmetic::SEPARATE, (rate, 1.0 / rate), 1.0 / duration, passage);
+                    let kept = factors.step(mode);
                     let heating = basis.surface[mode] / 3.6e6;
-                    response += basis.surface[mode] * heating * step.own;
+                    response += basis.surface[mode] * heating * step.fed;
                     for (kept, exact) in [
-                        (factors.keep[mode], step.keep),
-                        (factors.upstream[mode], step.upstream),
-                        (factors.own[mode], step.own),
-                        (heat.passed_on[mode], heating * step.upstream),
-                        (heat.taken[mode], heating * step.own),
+                        (kept.arriving, step.arriving),
+                        (kept.old_upstream, step.old_upstream),
+                        (kept.old, step.old),
+                        (heat.passed_on[mode], heating * step.fed_upstream),
+                        (heat.taken[mode], heating * step.fed),
                     ] {
                         // The lengths differ by round-off.
                         assert!(
-                            (kept - exact).abs() <= 1e-12 * exact.abs(),
+                            (kept - exact).abs() <= 1e-12 * exact.abs() + 1e-20,
                             "{speed} {index} {mode}: {kept:e} {exact:e}"
                         );
                     }

@@ -1,6 +1,6 @@
 //! Temperature of the rail (19), (23), and the displacement that it causes.
 //!
-//! [`basis`] takes the depth apart into modes, [`march`] carries them through the columns, by [`factors`], under the condition of
+//! [`basis`] takes the depth apart into modes, [`march`] carries them through the columns, by [`step`] and [`factors`], under the condition of
 //! [`surface`], [`incoming`] is the rail that the wheel ahead has left, [`thermal_map`] the displacement of the contact
 //! nodes, compressed by [`compression`]. [`Heat`] holds what of this is computed once.
 
@@ -9,6 +9,7 @@ pub mod compression;
 pub mod factors;
 pub mod incoming;
 pub mod march;
+pub mod step;
 pub mod surface;
 pub mod thermal_map;
 

@@ -1,8 +1,8 @@
 //! Manufactured solutions: a smooth field is put into the equations, the load that it needs is computed from its exact
 //! derivatives, and the discrete solution must approach it at the order of the scheme.
 //!
-//! All of order 2 in L²: the displacement (P1), the temperature in depth (P1) and along x₁, and the wear, both by the exact step
-//! through a cell with sources linear over it.
+//! All of order 2 in L²: the displacement (P1), the temperature in depth (P1), and temperature and wear along x₁, by steps through a
+//! cell with sources linear over it.
 
 use super::row::Row;
 use crate::body::elasticity::Elasticity;

@@ -11,10 +11,12 @@ use super::row::Row;
 use crate::contact::line::fields::Fields;
 use crate::contact::rim;
 use crate::error::Result;
+use crate::heat::step::ModeStep;
+use crate::numerics::dense::Arithmetic;
 use crate::parameters::{FrictionLaw, Parameters, SlipSource, Wheel, WheelHeating};
 use crate::signals::Inputs;
 use crate::simulation::Simulation;
-use crate::transport::{CellStep, Upwind};
+use crate::transport::Upwind;
 
 const SOURCE: &str = "identity of the discrete equations";
 /// Round-off of the sums: after the operator split, friction is evaluated anew at the final temperature, so that the split's own
@@ -236,15 +238,22 @@ fn balance(run: &Simulation, before: &Fields, speed: f64, duration: f64) -> Bala
         let [upstream, own] = [column.upstream, column.index].map(|index| amplitudes(after, index));
         let [old_upstream, old_own] = [column.upstream, column.index].map(|index| amplitudes(before, index));
         for mode in 0..basis.len() {
-            let rate = 1.0 / duration + kappa * basis.eigenvalues[mode];
-            let step = CellStep::new(rate, column.spacing, speed);
-            let growth = step.mean(upstream[mode] - old_upstream[mode], own[mode] - old_own[mode]);
+            let rate = kappa * basis.eigenvalues[mode];
+            let passage = (column.spacing / speed, speed / column.spacing);
+            let step = ModeStep::at(Arithmetic::SEPARATE, (rate, 1.0 / rate), 1.0 / duration, passage);
+            let mean = |share: f64, upstream: f64, own: f64| own + share * (upstream - own);
+            let growth = mean(
+                step.stored_share(),
+                upstream[mode] - old_upstream[mode],
+                own[mode] - old_own[mode],
+            );
             let held = column.spacing * growth / duration;
             balance.stored += capacity * basis.integral[mode] * held;
             // Reaction of the bottom: conduction out of the last cell less what its share of the mass takes up.
             let lowest = basis.modes[(rail.mesh.rows() - 2, mode)];
             let taken_up = held + speed * (own[mode] - upstream[mode]);
-            let conducted = kappa * basis.bottom_flux[mode] * column.spacing * step.mean(upstream[mode], own[mode]);
+            let lost = mean(step.fed_share(), upstream[mode], own[mode]);
+            let conducted = kappa * basis.bottom_flux[mode] * column.spacing * lost;
             balance.bottom += capacity * (conducted - bottom_cell / 6.0 * lowest * taken_up);
         }
     }

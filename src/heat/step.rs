@@ -1,0 +1,254 @@
+//! One mode of the temperature on its way through the cell between two columns.
+//!
+//! A mode decays at the rate r = κλ and is fed by f = φ(0) q/(ρ c_p): ∂a/∂t − V ∂a/∂x₁ + r a = f. In the steady state, with f
+//! linear over the cell of length Δ from the column upstream (U) to the next one (O), this is solved exactly by an exponential
+//! integrator (M. Hochbruck and A. Ostermann, *Exponential integrators*, Acta Numerica 19, 2010),
+//!
+//! a_O = E a_U + G f_U + H f_O,  G = g ω,  H = g (1 − ω),
+//!
+//! z = r Δ/|V|,  E = e⁻ᶻ,  g = (1 − E)/r,  ω = 1/z − 1/(eᶻ − 1).
+//!
+//! It is of second order in Δ, and exact for what decays without being fed, however long the cell. What a step of Δt stores,
+//! (a − aⁿ)/Δt at both ends, is taken from f with weights c and d, c + d = g:
+//!
+//! (1 + d/Δt) a_O = (E − c/Δt) a_U + c/Δt aⁿ_U + d/Δt aⁿ_O + G f_U + H f_O,  c = min(G, E Δt).
+//!
+//! With c = G the storage is linear over the cell like f. Where the rail moves by less than about half a cell in a step, that would take
+//! more from upstream than arrives; c is then what arrives, and the scheme the upwind difference. So all weights are positive:
+//! nothing oscillates. At V = 0 it is the implicit Euler step of each column. What is settled, a = aⁿ, is the steady
+//! state, whatever Δt.
+//!
+//! With ν = c/g, what the cell stores, loses and takes is balanced to round-off,
+//!
+//! Δ (ν (a − aⁿ)_U + (1 − ν) (a − aⁿ)_O)/Δt + |V| (a_O − a_U) + r Δ (ω a_U + (1 − ω) a_O) = Δ (ω f_U + (1 − ω) f_O),
+//!
+//! and over cells of one length the weights of a column add up to 1, whatever V, Δt and λ.
+
+use crate::numerics::decay::{Decay, decay};
+use crate::numerics::dense::Arithmetic;
+
+/// Factors on what makes a column's amplitude in a step.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ModeStep {
+    /// On the amplitude upstream.
+    pub arriving: f64,
+    /// On that of the step before upstream.
+    pub old_upstream: f64,
+    /// On that of the step before.
+    pub old: f64,
+    /// On f upstream, `s`.
+    pub fed_upstream: f64,
+    /// On f, `s`.
+    pub fed: f64,
+}
+
+/// A mode and a cell.
+#[derive(Debug, Clone, Copy)]
+pub struct Crossing {
+    /// r, `1/s`.
+    pub rate: f64,
+    /// 1/Δt, `1/s`.
+    pub storage: f64,
+    /// Δ, `m`.
+    pub spacing: f64,
+    /// |V|, `m/s`.
+    pub speed: f64,
+}
+
+/// Amplitudes, those of the step before and f, each upstream and at the column.
+#[derive(Debug, Clone, Copy)]
+pub struct Ends {
+    /// a.
+    pub value: [f64; 2],
+    /// aⁿ.
+    pub old: [f64; 2],
+    /// f, per second.
+    pub feed: [f64; 2],
+}
+
+impl ModeStep {
+    /// From r `1/s` and Δ/|V| `s`, each with its inverse, and 1/Δt, without branches: several at once vectorise.
+    #[inline(always)]
+    pub fn at(
+        arithmetic: Arithmetic,
+        (rate, lifetime): (f64, f64),
+        storage: f64,
+        (passage, passages): (f64, f64),
+    ) -> ModeStep {
+        let Decay { keep, upstream, own } = decay(arithmetic, rate * passage, lifetime * passages);
+        let (fed_upstream, fed) = (upstream * lifetime, own * lifetime);
+        let stored_upstream = (fed_upstream * storage).min(keep);
+        let stored = arithmetic.multiply_add(fed_upstream + fed, storage, -stored_upstream);
+        let share = 1.0 / (1.0 + stored);
+        ModeStep {
+            arriving: (keep - stored_upstream) * share,
+            old_upstream: stored_upstream * share,
+            old: stored * share,
+            fed_upstream: fed_upstream * share,
+            fed: fed * share,
+        }
+    }
+
+    /// ν.
+    #[cfg(any(test, feature = "verification"))]
+    pub fn stored_share(&self) -> f64 {
+        self.old_upstream / (self.old_upstream + self.old)
+    }
+
+    /// ω.
+    #[cfg(any(test, feature = "verification"))]
+    pub fn fed_share(&self) -> f64 {
+        self.fed_upstream / (self.fed_upstream + self.fed)
+    }
+
+    /// The amplitude of the step before at the column, which the step was made from; `ends` holds all the others.
+    pub fn own_old(&self, ends: &Ends) -> f64 {
+        if self.old == 0.0 {
+            return 0.0;
+        }
+        let rest = self.arriving * ends.value[0]
+            + self.old_upstream * ends.old[0]
+            + self.fed_upstream * ends.feed[0]
+            + self.fed * ends.feed[1];
+        (ends.value[1] - rest) / self.old
+    }
+
+    /// Change of the column's amplitude with |V|.
+    pub fn speed_tangent(&self, crossing: &Crossing, ends: &Ends) -> f64 {
+        let Crossing {
+            rate,
+            storage,
+            spacing,
+            speed,
+        } = *crossing;
+        // 1/(1 + d/Δt), from E + r g = 1.
+        let share = self.arriving + self.old_upstream + rate * (self.fed_upstream + self.fed);
+        let keep = (self.arriving + self.old_upstream) / share;
+        let fed_upstream = self.fed_upstream / share;
+        // dE/dV = z E/V, dG/dV = (G − E Δ/V)/V and dH/dV = −G/V. At V = 0 nothing arrives, and G/V is 1/(r² Δ).
+        let per_speed = if speed > 0.0 {
+            fed_upstream / speed
+        } else {
+            1.0 / (rate * rate * spacing)
+        };
+        let delayed = if keep > 0.0 {
+            keep * spacing / (speed * speed)
+        } else {
+            0.0
+        };
+        let (keep, upstream, own) = (rate * delayed, per_speed - delayed, -per_speed);
+        let stored_upstream = if self.arriving > 0.0 { storage * upstream } else { keep };
+        let stored = storage * (upstream + own) - stored_upstream;
+        let Ends { value, old, feed } = ends;
+        let growth = stored_upstream * (value[0] - old[0]) + stored * (value[1] - old[1]);
+        share * (keep * value[0] + upstream * feed[0] + own * feed[1] - growth)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn step(crossing: &Crossing) -> ModeStep {
+        let Crossing {
+            rate,
+            storage,
+            spacing,
+            speed,
+        } = *crossing;
+        let passage = (spacing / speed, speed / spacing);
+        ModeStep::at(Arithmetic::SEPARATE, (rate, 1.0 / rate), storage, passage)
+    }
+
+    /// The amplitude at the column, from all else in `ends`.
+    fn advance(step: &ModeStep, ends: &Ends) -> f64 {
+        step.arriving * ends.value[0]
+            + step.old_upstream * ends.old[0]
+            + step.old * ends.old[1]
+            + step.fed_upstream * ends.feed[0]
+            + step.fed * ends.feed[1]
+    }
+
+    /// Decay, Courant number and their cell, from slow to fast.
+    fn crossings() -> impl Strategy<Value = Crossing> {
+        (-5.0..3.0, -3.0..3.0, -4.0..0.0, -3.0..2.0).prop_map(|(log_z, log_courant, log_spacing, log_speed)| {
+            let (spacing, speed) = (10.0_f64.powf(log_spacing), 10.0_f64.powf(log_speed));
+            let passages = speed / spacing;
+            Crossing {
+                rate: 10.0_f64.powf(log_z) * passages,
+                storage: passages / 10.0_f64.powf(log_courant),
+                spacing,
+                speed,
+            }
+        })
+    }
+
+    proptest! {
+        #[test]
+        fn weights_are_positive_and_the_cell_is_balanced(
+            crossing in crossings(),
+            upstream in 0.0..1.0, old in prop::array::uniform2(0.0..1.0), feed in prop::array::uniform2(0.0..1.0),
+        ) {
+            let step = step(&crossing);
+            let Crossing { rate, storage, spacing, speed } = crossing;
+            for weight in [step.arriving, step.old_upstream, step.old, step.fed_upstream, step.fed] {
+                prop_assert!(weight >= 0.0, "{step:?}");
+            }
+            let feed = feed.map(|f: f64| f * (rate + storage));
+            let mut ends = Ends { value: [upstream, 0.0], old, feed };
+            ends.value[1] = advance(&step, &ends);
+            let mean = |share: f64, [upstream, own]: [f64; 2]| share * upstream + (1.0 - share) * own;
+            let stored = |values: [f64; 2]| spacing * storage * mean(step.stored_share(), values);
+            let terms = [
+                stored(ends.value),
+                -stored(old),
+                speed * (ends.value[1] - upstream),
+                rate * spacing * mean(step.fed_share(), ends.value),
+                -spacing * mean(step.fed_share(), feed),
+            ];
+            let size: f64 = terms.iter().map(|term| term.abs()).sum::<f64>() + speed;
+            prop_assert!(terms.iter().sum::<f64>().abs() < 1e-13 * size, "{terms:?}");
+            // And what the step was made from is found again, to round-off over what is left of it.
+            let found = step.own_old(&Ends { old: [old[0], f64::NAN], ..ends });
+            prop_assert!((found - old[1]).abs() < 1e-14 * (1.0 + 1.0 / step.old), "{found} {}", old[1]);
+        }
+
+        /// With all Δt the same, that of the exact solution where nothing is fed.
+        #[test]
+        fn what_is_settled_is_the_steady_state(crossing in crossings(), feed in prop::array::uniform2(0.0..1.0)) {
+            let steady = step(&Crossing { storage: 0.0, ..crossing });
+            let feed = feed.map(|f: f64| f * crossing.rate);
+            let mut ends = Ends { value: [0.7, 0.0], old: [0.7, 0.0], feed };
+            let settled = advance(&steady, &ends);
+            prop_assert!((steady.arriving - (-crossing.rate * crossing.spacing / crossing.speed).exp()).abs() < 1e-14);
+            ends.old[1] = settled;
+            prop_assert!((advance(&step(&crossing), &ends) - settled).abs() < 1e-14);
+        }
+
+        #[test]
+        fn the_tangent_is_the_derivative(
+            crossing in crossings(),
+            value in prop::array::uniform2(0.0..1.0), old in prop::array::uniform2(0.0..1.0), feed in prop::array::uniform2(0.0..1.0),
+        ) {
+            let feed = feed.map(|f: f64| f * (crossing.rate + crossing.storage));
+            let ends = Ends { value, old, feed };
+            let at = |change: f64| {
+                let crossing = Crossing { speed: crossing.speed * (1.0 + change), ..crossing };
+                let step = step(&crossing);
+                (advance(&step, &ends), step.arriving > 0.0)
+            };
+            let h = 1e-4;
+            let (ahead, behind) = (at(h), at(-h));
+            // Not across the corner of the storage.
+            prop_assume!(ahead.1 == behind.1);
+            let mut here = ends;
+            let step = step(&crossing);
+            here.value[1] = advance(&step, &ends);
+            let exact = crossing.speed * step.speed_tangent(&crossing, &here);
+            let difference = (ahead.0 - behind.0) / (2.0 * h);
+            // Truncation h² with the third derivative of e⁻ᶻ, and round-off over h.
+            prop_assert!((exact - difference).abs() < 1e-6, "{exact} {difference}");
+        }
+    }
+}
