@@ -202,7 +202,7 @@ fn start_values_are_those_of_the_model() {
     assert_eq!(start("lame_lambda"), parameters.lame_lambda);
     assert_eq!(start("wear_coefficient"), 0.5e-12);
     assert_eq!(start("friction_temperature_hot"), 423.15);
-    assert_eq!(start("contact_nodes"), 61.0);
+    assert_eq!(start("contact_nodes"), 51.0);
     assert_eq!(start("ambient_temperature"), 293.15);
     assert_eq!(start("friction_scale"), 1.0);
 }

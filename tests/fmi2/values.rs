@@ -284,7 +284,7 @@ fn reset_brings_back_the_start_values() {
     assert_eq!(client.get("worn_volume"), 0.0);
     assert!(matches!(
         find("contact_nodes").kind,
-        Kind::Integer { start: Some(61), .. }
+        Kind::Integer { start: Some(51), .. }
     ));
     let fresh = Client::new(&api);
     fresh.expect(OK, fresh.setup(0.0, None));

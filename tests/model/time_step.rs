@@ -33,10 +33,9 @@ fn the_settled_result_does_not_depend_on_the_step() {
             } else {
                 f64::MIN_POSITIVE
             });
-            // The weights of the marches depend on the step as well as on the spacing: their steady states differ by a part of
-            // the error of the spacing.
+            // The split rests at 1e-9, and ∂u₁/∂t divides what is left of it by the step.
             assert!(
-                (computed - expected).abs() <= 5e-4 * scale,
+                (computed - expected).abs() <= 1e-8 * scale,
                 "{name} at {duration}: {computed} {expected}"
             );
         }
@@ -99,7 +98,8 @@ fn the_scheme_is_of_first_order_in_time() {
         let signal = OUTPUTS.iter().find(|signal| signal.name == name).unwrap();
         let [coarse, middle, fine] = outputs.map(|outputs| (signal.get)(&outputs));
         let order = ((coarse - middle) / (middle - fine)).log2();
-        assert!((order - 1.0).abs() < 0.15, "{name}: order {order}");
+        // Of steps of 200, 100 and 50 µs, which the transient of the shear is not long against.
+        assert!((order - 1.0).abs() < 0.2, "{name}: order {order}");
     }
 }
 
