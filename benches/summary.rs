@@ -188,7 +188,7 @@ fn interface_costs() -> [f64; 3] {
 }
 
 fn main() {
-    let mut meshes = [41, 61, 83, 165, 331].map(Mesh::first_round);
+    let mut meshes = [41, 51, 83, 165, 331].map(Mesh::first_round);
     for _ in 1..ROUNDS {
         meshes.iter_mut().for_each(Mesh::next_round);
     }
@@ -250,7 +250,7 @@ fn main() {
         true,
         "",
     );
-    target("cold start at default settings", default.cold_start, 60.0, true, "ms");
+    target("cold start at default settings", default.cold_start, 35.0, true, "ms");
     target("one more wheel of the same model", another_wheel(), 5.0, true, "ms");
     let [layer, save, restore] = interface_costs();
     target("the interface's share of a step", layer, 1.0, true, "us");
