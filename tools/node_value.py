@@ -1,7 +1,7 @@
 """Draw what a node is worth: error of the creep curve against the time of a step, for several numbers of contact nodes.
 
-    tools/node_value.py target/release/wheelrail                     docs/node_value.png and the table beside it, on standard output
-    tools/node_value.py target/release/wheelrail --before OTHER      the same beside the command line of an earlier commit
+    tools/node_value.py target/release/wheelrail                 docs/node_value.png, and its table on standard output
+    tools/node_value.py target/release/wheelrail --before OTHER  the same beside an earlier commit's command line
 
 The error is the largest of T/(mu N) over creepages from -0.5 % to 0.5 % and three loads, against 401 nodes of the first
 command; the time is that of the braking manoeuvre of the demo, by the processor's clock, less that of its start.
@@ -75,6 +75,7 @@ def step_time(command, nodes, settings, folder):
 
 
 def main():
+    """Measure, print and draw."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("command")
     parser.add_argument("--before", help="command line of an earlier commit")
@@ -99,8 +100,14 @@ def main():
                 time, error = zip(*points, strict=True)
                 line = axes.loglog(time, error, "o-" if build == "now" else "s--", label=f"{wheel} wheel, {build}")
                 for nodes, x, y in zip(NODES, time, error, strict=True):
-                    axes.annotate(str(nodes), (x, y), textcoords="offset points", xytext=(4, 4), fontsize=7,
-                                  color=line[0].get_color())
+                    axes.annotate(
+                        str(nodes),
+                        (x, y),
+                        textcoords="offset points",
+                        xytext=(4, 4),
+                        fontsize=7,
+                        color=line[0].get_color(),
+                    )
     axes.set_xlabel("processor time of a step of the braking manoeuvre [µs]")
     axes.set_ylabel("largest error of T/(μN)")
     axes.grid(True, which="both", alpha=0.3)
