@@ -8,6 +8,7 @@
 //! 1e-11 m/N beside a 1 would wreck the row of the load constraint.
 
 use super::half_plane::InertiaFactors;
+use crate::numerics::dense;
 use crate::parameters::Parameters;
 use nalgebra::DMatrix;
 
@@ -80,6 +81,18 @@ impl Compliance {
             tangential_normal: &self.tangential_normal * factors.mixed,
             tangential_tangential: &self.tangential_tangential * factors.tangential,
         }
+    }
+
+    /// Adds `factor` times the displacement along x₁ under pressure and shear, n each.
+    pub fn add_along(&self, factor: f64, pressure: &[f64], shear: &[f64], along: &mut [f64]) {
+        dense::multiply_add(&self.tangential_normal, pressure, -factor, along);
+        dense::multiply_add(&self.tangential_tangential, shear, factor, along);
+    }
+
+    /// Adds `factor` times the upward displacement under pressure and shear, n each.
+    pub fn add_upward(&self, factor: f64, pressure: &[f64], shear: &[f64], upward: &mut [f64]) {
+        dense::multiply_add(&self.normal_normal, pressure, -factor, upward);
+        dense::multiply_add(&self.normal_tangential, shear, factor, upward);
     }
 
     /// Adds the wheel's compliance, times a factor: the direct parts add, the mixed ones subtract.

@@ -254,7 +254,10 @@ impl Mechanics {
             clamped = clamped.max((*shear - within).abs());
             *shear = within;
         }
-        displacement_along(problem, tractions.pressure, tractions.shear, &mut self.displacement);
+        self.displacement.copy_from_slice(problem.displacement);
+        problem
+            .compliance
+            .add_along(1.0, tractions.pressure, tractions.shear, &mut self.displacement);
         self.update_slip_response(problem);
         let m = self.nodes.len();
         for (row, &node) in self.nodes.iter().enumerate() {
@@ -297,14 +300,6 @@ impl Mechanics {
         }
         Ok(change.max(clamped))
     }
-}
-
-/// Displacement along x₁, n.
-pub fn displacement_along(problem: &MechanicsProblem, pressure: &[f64], shear: &[f64], displacement: &mut [f64]) {
-    let compliance = problem.compliance;
-    displacement.copy_from_slice(problem.displacement);
-    dense::multiply_add(&compliance.tangential_normal, pressure, -1.0, displacement);
-    dense::multiply_add(&compliance.tangential_tangential, shear, 1.0, displacement);
 }
 
 /// Slip velocity of the law at a node, without what the leading edge adds, `m/s`.

@@ -153,10 +153,10 @@ impl Mechanics {
 
     /// du₁ of the changes of pressure and shear, n.
     fn displacement_tangent(&mut self, problem: &MechanicsProblem, change: &ProblemTangent, tractions: &Tractions) {
-        let compliance = problem.compliance;
         self.moved.copy_from_slice(change.displacement);
-        dense::multiply_add(&compliance.tangential_normal, tractions.pressure, -1.0, &mut self.moved);
-        dense::multiply_add(&compliance.tangential_tangential, tractions.shear, 1.0, &mut self.moved);
+        problem
+            .compliance
+            .add_along(1.0, tractions.pressure, tractions.shear, &mut self.moved);
     }
 
     /// Change of the law's slip with the data and with du₁, without what the leading edge adds.

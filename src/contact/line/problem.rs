@@ -14,7 +14,6 @@ use crate::mechanics::normal::problem::Constraint;
 use crate::mechanics::problem::{MechanicsProblem, Tractions};
 use crate::mechanics::softening::Softening;
 use crate::mechanics::transient::Transient;
-use crate::numerics::dense;
 use crate::parameters::{Control, Parameters, WheelHeating};
 use crate::settings::Settings;
 use crate::signals::Inputs;
@@ -232,31 +231,24 @@ impl<'a> Problem<'a> {
         );
     }
 
-    /// The displacement along x₁ of the fields at the end of the step, and its change, for the coupling's thermal displacement.
-    pub fn close_displacement(&self, coupling: &Coupling, fields: &mut Fields, data: &mut MechanicsData) {
-        data.displacement.copy_from_slice(coupling.along());
-        // The upward part is not used.
-        let MechanicsData {
-            displacement, profile, ..
-        } = data;
-        self.add_inertia(self.rho_v2(), &fields.pressure, &fields.shear, displacement, profile);
-        let compliance = &self.rail.compliance.at_rest;
-        dense::multiply_add(&compliance.tangential_normal, &fields.pressure, -1.0, displacement);
-        dense::multiply_add(&compliance.tangential_tangential, &fields.shear, 1.0, displacement);
-        let before = data.displacement_before.iter();
-        for ((change, now), before) in fields.displacement_change.iter_mut().zip(&*displacement).zip(before) {
+    /// The displacement along x₁ of the fields at the end of the step, and its change, with the coupling's thermal displacement.
+    pub fn close_displacement(&self, coupling: &Coupling, fields: &mut Fields, data: &MechanicsData) {
+        let compliance = &self.rail.compliance;
+        let (pressure, shear, displacement) = (&fields.pressure, &fields.shear, &mut fields.displacement);
+        displacement.copy_from_slice(coupling.along());
+        compliance.inertia.add_along(self.rho_v2(), pressure, shear, displacement);
+        compliance.at_rest.add_along(1.0, pressure, shear, displacement);
+        let nodes = fields.displacement.iter().zip(&data.displacement_before);
+        for (change, (now, before)) in fields.displacement_change.iter_mut().zip(nodes) {
             *change = now - before;
         }
-        fields.displacement.copy_from_slice(displacement);
     }
 
     /// Adds the displacement along x₁ and upward that the convective inertia of the given tractions causes.
     pub fn add_inertia(&self, rho_v2: f64, pressure: &[f64], shear: &[f64], along: &mut [f64], upward: &mut [f64]) {
         let inertia = &self.rail.compliance.inertia;
-        dense::multiply_add(&inertia.normal_normal, pressure, -rho_v2, upward);
-        dense::multiply_add(&inertia.normal_tangential, shear, rho_v2, upward);
-        dense::multiply_add(&inertia.tangential_normal, pressure, -rho_v2, along);
-        dense::multiply_add(&inertia.tangential_tangential, shear, rho_v2, along);
+        inertia.add_upward(rho_v2, pressure, shear, upward);
+        inertia.add_along(rho_v2, pressure, shear, along);
     }
 
     /// The mechanics problem over the data of [`Problem::update_mechanics_data`], and the tractions that it is solved from.

@@ -104,7 +104,7 @@ pub fn solve(problem: &Problem, before: &Fields, fields: &mut Fields, scratch: &
         if rest.is_reached(change.max(unmapped), &sweep) {
             let fills_window = fills_window(problem, fields, scratch)?;
             close_friction(problem, fields);
-            problem.close_displacement(&scratch.iterate, fields, &mut scratch.data);
+            problem.close_displacement(&scratch.iterate, fields, &scratch.data);
             warm_wheel(problem, before, fields);
             return Ok(Convergence {
                 iterations,
@@ -143,7 +143,7 @@ pub fn solve_mechanics(problem: &Problem, fields: &mut Fields, scratch: &mut Scr
         let sweep = solve_tractions(problem, fields, scratch, tolerance)?;
         residual = sweep.shear_change;
         if sweep.rests(tolerance) {
-            problem.close_displacement(&scratch.iterate, fields, &mut scratch.data);
+            problem.close_displacement(&scratch.iterate, fields, &scratch.data);
             // There was no step before it.
             fields.displacement_change.fill(0.0);
             return fills_window(problem, fields, scratch).map(|_| ());
