@@ -7,6 +7,7 @@ use crate::contact::task::{Conditions, Task};
 use crate::contact::{ContactState, ContactWorkspace, Engine};
 use crate::error::{Error, Result};
 use crate::friction;
+use crate::numerics::dense;
 use crate::parameters::Parameters;
 use crate::settings::Settings;
 use crate::signals::{Inputs, OUTPUTS, Outputs};
@@ -272,7 +273,7 @@ impl Model {
         let load = from.normal_load.max(to.normal_load);
         let saturation = friction::largest_coefficient(&self.parameters) * self.parameters.hertz_half_length(load)
             / self.parameters.wheel_radius;
-        let relative = |change: f64, scale: f64| if change == 0.0 { 0.0 } else { change.abs() / scale };
+        let relative = |change: f64, scale: f64| dense::relative(change.abs(), scale);
         relative(after.rolling_speed - before.rolling_speed, speed)
             .max(relative(
                 after.rigid_slip - before.rigid_slip,

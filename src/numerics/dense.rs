@@ -130,6 +130,11 @@ pub fn largest(values: &[f64]) -> f64 {
     values.iter().fold(0.0, |m: f64, v| v.abs().max(m))
 }
 
+/// A change relative to a size: 0 without change, infinite where something came of nothing.
+pub fn relative(change: f64, size: f64) -> f64 {
+    if change == 0.0 { 0.0 } else { change / size }
+}
+
 /// Largest magnitude of the difference.
 pub fn largest_change(now: &[f64], last: &[f64]) -> f64 {
     now.iter().zip(last).fold(0.0, |m: f64, (a, b)| (a - b).abs().max(m))

@@ -151,6 +151,8 @@ impl Line {
         same(&state.fields.vectors(), &Fields::new(&self.rail).vectors())
             && same(&state.trend.vectors(), &Trend::new(&self.rail).vectors())
             && state.fields.penetration.is_finite()
+            && state.fields.relaxation_length.is_finite()
+            && state.fields.relaxation_length > 0.0
             && state.fields.wheel_temperature.is_finite()
     }
 }

@@ -236,7 +236,9 @@ impl<'a> Problem<'a> {
         let compliance = &self.rail.compliance;
         let (pressure, shear, displacement) = (&fields.pressure, &fields.shear, &mut fields.displacement);
         displacement.copy_from_slice(coupling.along());
-        compliance.inertia.add_along(self.rho_v2(), pressure, shear, displacement);
+        compliance
+            .inertia
+            .add_along(self.rho_v2(), pressure, shear, displacement);
         compliance.at_rest.add_along(1.0, pressure, shear, displacement);
         let nodes = fields.displacement.iter().zip(&data.displacement_before);
         for (change, (now, before)) in fields.displacement_change.iter_mut().zip(nodes) {

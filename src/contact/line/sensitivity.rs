@@ -20,7 +20,7 @@ use crate::heat::surface::{CommonChange, ExchangeChange, ExchangeTangent, Surfac
 use crate::mechanics::normal::problem::Constraint;
 use crate::mechanics::problem::{ProblemTangent, Tractions};
 use crate::numerics::anderson::Anderson;
-use crate::numerics::dense::{largest, largest_change};
+use crate::numerics::dense::{largest, largest_change, relative};
 use crate::parameters::WheelHeating;
 use crate::signals::{INPUTS, Inputs, Motion, OUTPUTS, OutputKind, Outputs};
 
@@ -340,27 +340,26 @@ impl Fields {
         } else {
             1.0
         };
+        let own = |of: fn(&Fields) -> &Vec<f64>| relative(largest_change(of(self), of(last)), largest(of(self)));
         let traction = largest(&self.pressure).max(largest(&self.shear));
-        let vectors = self.vectors().into_iter().zip(last.vectors());
+        let pressure = relative(largest_change(&self.pressure, &last.pressure), traction);
         let wheel = relative(
             (self.wheel_temperature - last.wheel_temperature).abs(),
             self.wheel_temperature.abs(),
         );
-        vectors
-            .map(|(now, last)| {
-                if std::ptr::eq(now, &self.pressure) {
-                    relative(largest_change(now, last), traction)
-                } else if std::ptr::eq(now, &self.shear) || std::ptr::eq(now, &self.saturation) {
-                    relative(largest_change(now, last), largest(now))
-                } else {
-                    share * relative(largest_change(now, last), largest(now))
-                }
-            })
-            .chain([share * wheel])
-            .fold(0.0, f64::max)
+        let following = [
+            own(|fields| &fields.temperature),
+            own(|fields| &fields.surface_temperature),
+            own(|fields| &fields.thermal_displacement),
+            own(|fields| &fields.wear),
+            own(|fields| &fields.slip),
+            own(|fields| &fields.friction),
+            own(|fields| &fields.heat_flux),
+            wheel,
+        ];
+        pressure
+            .max(own(|fields| &fields.shear))
+            .max(own(|fields| &fields.saturation))
+            .max(share * following.into_iter().fold(0.0, f64::max))
     }
-}
-
-fn relative(change: f64, size: f64) -> f64 {
-    if change == 0.0 { 0.0 } else { change / size }
 }

@@ -16,7 +16,7 @@ use crate::mechanics::normal::problem::Constraint;
 use crate::mechanics::softening::Softening;
 use crate::mechanics::sweep::{Mechanics, Sweep};
 use crate::numerics::anderson::Anderson;
-use crate::numerics::dense::{largest, largest_change};
+use crate::numerics::dense::{largest, largest_change, relative};
 use crate::parameters::WheelHeating;
 use crate::settings::Settings;
 use crate::transport::CellStep;
@@ -301,20 +301,11 @@ fn warm_wheel(problem: &Problem, before: &Fields, fields: &mut Fields) {
 /// the noise of next to no flux from heat. The bound spares the last iteration of a step the map, the
 /// largest part of its work: the fields keep the displacement that the tractions have felt.
 fn unmapped_displacement(problem: &Problem, fields: &Fields, scratch: &Scratch) -> f64 {
-    let share = |now: &[f64], mapped: &[f64]| {
-        let (change, size) = (largest_change(now, mapped), largest(mapped));
-        if change == 0.0 {
-            0.0
-        } else if size == 0.0 {
-            f64::INFINITY
-        } else {
-            change / size
-        }
-    };
+    let share = |now: &[f64], mapped: &[f64]| relative(largest_change(now, mapped), largest(mapped));
     let temperature = &fields.surface_temperature[problem.rail.mesh.window()];
     let share = share(&fields.heat_flux, &scratch.mapped_flux).min(share(temperature, &scratch.mapped_temperature));
-    if share == 0.0 {
-        0.0
+    if share.is_infinite() {
+        share
     } else {
         share * largest(&fields.thermal_displacement)
     }
