@@ -219,7 +219,8 @@ fn main() {
         println!("{what:<58} {value:>8.2} {unit:<3} target {relation} {bound} {unit:<3} {verdict}");
     };
     println!();
-    let (moments, effects, gains) = Braking::new(61).simulation.model.thermal_map_size();
+    let map_size = Braking::new(61).simulation.model.thermal_map_size();
+    let (moments, effects, gains) = map_size.expect("the line engine has a thermal map");
     println!("thermal map at default settings: {moments} moments a column, {effects} effects, {gains} gains");
     println!();
     target(

@@ -33,6 +33,22 @@ pub enum Error {
         /// What must hold between them.
         requirement: &'static str,
     },
+    /// Lateral or spin motion, of which a line contact knows nothing.
+    #[error(
+        "{name} = {value}: must be 0 with contact_model = 1 (line), which has no lateral force and no spin; contact_model = 2 (patch) takes it"
+    )]
+    PatchOnly {
+        /// The input.
+        name: &'static str,
+        /// The refused value.
+        value: f64,
+    },
+    /// State or workspace come from a model with another `contact_model`.
+    #[error("the state or the workspace is not one of this contact_model")]
+    OtherContactModel,
+    /// The engine of `contact_model` 2 is still to come.
+    #[error("contact_model = 2 (patch) has no engine yet")]
+    PatchMissing,
     /// No parameter has this name.
     #[error("there is no parameter named {name:?}; `wheelrail describe` lists them")]
     UnknownParameter {

@@ -113,8 +113,8 @@ pub mod wheel_rail;
 
 pub use error::Error;
 pub use parameters::{
-    Control, FrictionLaw, INTEGER_PARAMETERS, MeshKind, NormalSolver, Parameters, REAL_PARAMETERS, SlipSource, Wheel,
-    WheelHeating,
+    ContactModel, Control, FrictionLaw, INTEGER_PARAMETERS, MeshKind, NormalSolver, Parameters, REAL_PARAMETERS,
+    SlipSource, Wheel, WheelHeating,
 };
 pub use settings::Settings;
 pub use signals::{INPUTS, Inputs, OUTPUTS, Outputs};

@@ -9,8 +9,8 @@
 //!
 //! where the symbol is that of the equations, where there is one. The order is that of the table and of a saved state.
 
-use crate::error::Result;
-use crate::parameters::{Parameters, SlipSource, check_range};
+use crate::error::{Error, Result};
+use crate::parameters::{ContactModel, Parameters, SlipSource, check_range};
 use serde::{Deserialize, Serialize};
 
 /// One row of the table of inputs.
@@ -29,6 +29,8 @@ pub struct InputSignal {
     pub maximum: f64,
     /// The range that the parameters leave; [`InputSignal::range`] reads it.
     limits: fn(&Parameters) -> (f64, f64),
+    /// Whether only a patch takes another value than 0.
+    pub patch_only: bool,
     /// Typical magnitude.
     pub nominal: f64,
     /// One sentence.
@@ -93,11 +95,20 @@ macro_rules! limits {
     };
 }
 
+macro_rules! is_there {
+    () => {
+        false
+    };
+    (patch) => {
+        true
+    };
+}
+
 macro_rules! inputs {
     ($(
         $(#[doc = $description:literal])+
         $field:ident $($symbol:literal)?: $unit:literal $(shown in $display:literal)?, start $default:expr,
-        range [$minimum:expr, $maximum:expr $(; $narrowed:expr)?], nominal $nominal:expr;
+        range [$minimum:expr, $maximum:expr $(; $narrowed:expr)?], nominal $nominal:expr $(, $patch:ident only)?;
     )+) => {
         /// The continuous inputs at one instant.
         #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -132,6 +143,7 @@ macro_rules! inputs {
                 minimum: $minimum,
                 maximum: $maximum,
                 limits: limits!($minimum, $maximum $(, $narrowed)?),
+                patch_only: is_there!($($patch)?),
                 nominal: $nominal,
                 description: concat!($($description),+).trim_ascii(),
                 get: |inputs| inputs.$field,
@@ -195,6 +207,18 @@ inputs! {
     /// Depth of wear of the rail entering at the leading edge of the strip: leaving_wear_depth of the wheel in
     /// front
     incoming_wear_depth: "m" shown in "µm", start 0.0, range [0.0, 1e-2], nominal 1e-7;
+    /// Lateral creepage: lateral velocity of the wheel relative to the rail over the speed of its axle, positive to the
+    /// left in the direction of x with z upward, used where slip_source is creepage; 0 unless contact_model is patch
+    lateral_creepage "η": "1", start 0.0, range [-10.0, 10.0], nominal 1e-2, patch only;
+    /// Spin creepage: angular velocity of the wheel relative to the rail about the upward normal over the speed of its
+    /// axle, positive anticlockwise seen from above, used where slip_source is creepage; 0 unless contact_model is patch
+    spin_creepage "φ": "1/m", start 0.0, range [-1e3, 1e3], nominal 1.0, patch only;
+    /// Lateral velocity of the wheel relative to the rail, positive to the left, used where slip_source is
+    /// vehicle_speed; 0 unless contact_model is patch
+    lateral_speed "v_y": "m/s", start 0.0, range [-100.0, 100.0], nominal 0.1, patch only;
+    /// Angular velocity of the wheel relative to the rail about the upward normal, positive anticlockwise seen from
+    /// above, used where slip_source is vehicle_speed; 0 unless contact_model is patch
+    spin_rate "ω_z": "rad/s", start 0.0, range [-1e3, 1e3], nominal 1.0, patch only;
 }
 
 outputs! {
@@ -246,6 +270,17 @@ outputs! {
     leaving_temperature: "K" shown in "degC", Instantaneous, nominal 300.0;
     /// Depth of wear of the rail leaving at the trailing edge of the strip
     leaving_wear_depth: "m" shown in "µm", Instantaneous, at least 0.0, nominal 1e-7;
+    /// Friction force on the wheel across the rail, positive to the left; 0 unless contact_model is patch
+    lateral_force "F_y": "N" shown in "kN", Instantaneous, nominal 1e4;
+    /// Moment of the shear traction on the wheel about the upward normal; 0 unless contact_model is patch
+    spin_moment "M_z": "N.m", Instantaneous, nominal 10.0;
+    /// Breadth of the contact across the rail; 0 unless contact_model is patch
+    contact_breadth: "m" shown in "mm", Instantaneous, at least 0.0, nominal 1e-2;
+    /// Area of the contact; 0 unless contact_model is patch
+    contact_area: "m2" shown in "mm2", Instantaneous, at least 0.0, nominal 1e-4;
+    /// Wear number: creep forces and spin moment times their creepages, work per distance rolled; 0 unless contact_model
+    /// is patch
+    wear_number "Tγ": "N", Instantaneous, nominal 100.0;
 }
 
 /// Rounding of a value at the end of a ramp, relative to the range.
@@ -258,6 +293,10 @@ pub struct Motion {
     pub rolling_speed: f64,
     /// Rigid slip ω r₀ − V, `m/s`.
     pub rigid_slip: f64,
+    /// Lateral velocity v_y of the wheel relative to the rail, to the left, `m/s`.
+    pub lateral_speed: f64,
+    /// Angular velocity ω_z of the wheel relative to the rail about the upward normal, `rad/s`.
+    pub spin_rate: f64,
 }
 
 impl Outputs {
@@ -273,11 +312,23 @@ impl InputSignal {
         (self.limits)(parameters)
     }
 
+    /// Refuses a value that is not finite or outside [`InputSignal::range`], and one that the contact model does not take.
+    ///
+    /// # Errors
+    /// [`Error::OutOfRange`], [`Error::PatchOnly`].
+    pub fn check(&self, value: f64, parameters: &Parameters) -> Result<()> {
+        self.check_range(value, parameters)?;
+        if self.patch_only && value != 0.0 && parameters.contact_model == ContactModel::Line {
+            return Err(Error::PatchOnly { name: self.name, value });
+        }
+        Ok(())
+    }
+
     /// Refuses a value that is not finite or outside [`InputSignal::range`].
     ///
     /// # Errors
-    /// [`crate::error::Error::OutOfRange`].
-    pub fn check(&self, value: f64, parameters: &Parameters) -> Result<()> {
+    /// [`Error::OutOfRange`].
+    pub fn check_range(&self, value: f64, parameters: &Parameters) -> Result<()> {
         let (minimum, maximum) = self.range(parameters);
         check_range(self.name, value, minimum, maximum, self.unit)
     }
@@ -287,7 +338,8 @@ impl Inputs {
     /// Checks every input, and the rolling speed that they make.
     ///
     /// # Errors
-    /// [`crate::error::Error::OutOfRange`] names the first input that is not finite or out of its range.
+    /// [`Error::OutOfRange`] names the first input that is not finite or out of its range, [`Error::PatchOnly`] one that the
+    /// contact model does not take.
     pub fn check(&self, parameters: &Parameters) -> Result<()> {
         for signal in INPUTS {
             signal.check((signal.get)(self), parameters)?;
@@ -311,7 +363,7 @@ impl Inputs {
         )
     }
 
-    /// The motion that the inputs define: V and ω r₀ − V.
+    /// The motion that the inputs define: V, ω r₀ − V, v_y and ω_z.
     pub fn motion(&self, parameters: &Parameters) -> Motion {
         let circumferential = self.wheel_speed * parameters.wheel_radius;
         let rolling_speed = match parameters.slip_source {
@@ -323,25 +375,41 @@ impl Inputs {
             SlipSource::Creepage => rolling_speed * self.creepage,
             SlipSource::VehicleSpeed => circumferential - rolling_speed,
         };
+        let (lateral_speed, spin_rate) = match parameters.slip_source {
+            SlipSource::Creepage => (
+                rolling_speed * self.lateral_creepage,
+                rolling_speed * self.spin_creepage,
+            ),
+            SlipSource::VehicleSpeed => (self.lateral_speed, self.spin_rate),
+        };
         Motion {
             rolling_speed,
             rigid_slip,
+            lateral_speed,
+            spin_rate,
         }
     }
 
-    /// The change of [`Inputs::motion`] with that of the inputs: dV and d(ω r₀ − V).
+    /// The change of [`Inputs::motion`] with that of the inputs: dV, d(ω r₀ − V), dv_y and dω_z.
     pub fn motion_tangent(&self, change: &Inputs, parameters: &Parameters) -> Motion {
         let circumferential = change.wheel_speed * parameters.wheel_radius;
-        let rolling_speed = match parameters.slip_source {
-            SlipSource::VehicleSpeed => change.vehicle_speed,
+        let (rolling_speed, lateral_speed, spin_rate) = match parameters.slip_source {
+            SlipSource::VehicleSpeed => (change.vehicle_speed, change.lateral_speed, change.spin_rate),
             SlipSource::Creepage => {
                 let speed = self.motion(parameters).rolling_speed;
-                (circumferential - speed * change.creepage) / (1.0 + self.creepage)
+                let rolling_speed = (circumferential - speed * change.creepage) / (1.0 + self.creepage);
+                (
+                    rolling_speed,
+                    rolling_speed * self.lateral_creepage + speed * change.lateral_creepage,
+                    rolling_speed * self.spin_creepage + speed * change.spin_creepage,
+                )
             }
         };
         Motion {
             rolling_speed,
             rigid_slip: circumferential - rolling_speed,
+            lateral_speed,
+            spin_rate,
         }
     }
 

@@ -1,7 +1,6 @@
 //! The stepped model: inputs in, state advanced, outputs out. It knows nothing of FMI.
 
 use crate::contact::line::fields::Fields;
-use crate::contact::line::profiles;
 use crate::contact::line::rail::Rail;
 use crate::contact::task::{Conditions, Task};
 use crate::contact::{ContactState, ContactWorkspace, Engine};
@@ -10,10 +9,10 @@ use crate::friction;
 use crate::numerics::dense;
 use crate::parameters::Parameters;
 use crate::settings::Settings;
-use crate::signals::{Inputs, OUTPUTS, Outputs};
+use crate::signals::{Inputs, Motion, OUTPUTS, Outputs};
 use serde::{Deserialize, Serialize};
 
-pub use crate::contact::line::profiles::{ContactNode, DEPTH_POINTS, PROFILE_POINTS, Profiles};
+pub use crate::contact::profiles::{ContactNode, DEPTH_POINTS, PROFILE_POINTS, Profiles, STRIP_POINTS, StripProfiles};
 pub use crate::contact::task::Convergence;
 
 /// Everything that does not change after initialisation: the contact engine, the parameters (but for the tunable ones), the
@@ -50,8 +49,11 @@ pub struct State {
 
 impl State {
     /// The fields of the line engine.
-    pub(crate) fn fields(&self) -> &Fields {
-        &self.contact.line().fields
+    ///
+    /// # Errors
+    /// [`Error::OtherContactModel`].
+    pub(crate) fn fields(&self) -> Result<&Fields> {
+        Ok(&self.contact.line()?.fields)
     }
 }
 
@@ -94,14 +96,20 @@ impl Model {
         &self.parameters
     }
 
-    /// Sizes of the compressed map from temperature to displacement: moments a column, effects, gains.
-    pub fn thermal_map_size(&self) -> (usize, usize, usize) {
-        self.rail().heat.displacement.size()
+    /// Sizes of the line engine's compressed map from temperature to displacement: moments a column, effects, gains.
+    ///
+    /// # Errors
+    /// [`Error::OtherContactModel`].
+    pub fn thermal_map_size(&self) -> Result<(usize, usize, usize)> {
+        Ok(self.rail()?.heat.displacement.size())
     }
 
     /// What the line engine has computed once: mesh, compliance, thermal maps.
-    pub(crate) fn rail(&self) -> &Rail {
-        self.engine.line().rail()
+    ///
+    /// # Errors
+    /// [`Error::OtherContactModel`].
+    pub(crate) fn rail(&self) -> Result<&Rail> {
+        Ok(self.engine.line()?.rail())
     }
 
     /// Takes the tunable parameters (slip regularisation and friction coefficients) from `parameters`; the others stay.
@@ -131,8 +139,8 @@ impl Model {
     pub fn initial_state(&self, workspace: &mut Workspace, inputs: &Inputs) -> Result<State> {
         inputs.check(&self.parameters)?;
         let task = self.task(inputs, f64::INFINITY);
-        let contact = self.engine.initial_state(&task, &mut workspace.contact)?;
-        let outputs = self.engine.readings(&task, &contact).outputs(&self.parameters, inputs);
+        let (contact, readings) = self.engine.initial_state(&task, &mut workspace.contact)?;
+        let outputs = readings.outputs(&self.parameters, inputs);
         Ok(State {
             time: 0.0,
             inputs: *inputs,
@@ -241,7 +249,7 @@ impl Model {
             let rate = ((signal.get)(&outputs) - (signal.get)(&state.outputs)) / duration;
             (signal.set)(&mut state.output_rates, rate);
         }
-        self.engine.commit(&mut workspace.contact, &mut state.contact, duration);
+        workspace.contact.commit(&mut state.contact, duration);
         state.inputs = *inputs;
         state.duration = duration;
         state.outputs = outputs;
@@ -271,15 +279,17 @@ impl Model {
         let speed = before.rolling_speed.abs().max(after.rolling_speed.abs());
         // Creepage at which the whole contact slides, μ a / r₀.
         let load = from.normal_load.max(to.normal_load);
-        let saturation = friction::largest_coefficient(&self.parameters) * self.parameters.hertz_half_length(load)
-            / self.parameters.wheel_radius;
+        let (half_length, half_breadth) = self.parameters.contact_half_axes(load);
+        let saturation = friction::largest_coefficient(&self.parameters) * half_length / self.parameters.wheel_radius;
+        // Slip along and across the rail, and that of the spin at the contact's side.
+        let slips = |motion: &Motion| [motion.rigid_slip, motion.lateral_speed, half_breadth * motion.spin_rate];
+        let (slips_before, slips_after) = (slips(&before), slips(&after));
+        let slip = dense::largest(&slips_before).max(dense::largest(&slips_after));
         let relative = |change: f64, scale: f64| dense::relative(change.abs(), scale);
         relative(after.rolling_speed - before.rolling_speed, speed)
             .max(relative(
-                after.rigid_slip - before.rigid_slip,
-                (saturation * speed)
-                    .max(after.rigid_slip.abs())
-                    .max(before.rigid_slip.abs()),
+                dense::largest_change(&slips_after, &slips_before),
+                (saturation * speed).max(slip),
             ))
             .max(relative(to.normal_load - from.normal_load, load))
             .max(relative(
@@ -324,7 +334,7 @@ impl Model {
 
     /// The fields at the nodes of the contact window, from the rear to the front for V > 0.
     pub fn contact_nodes(&self, state: &State) -> Vec<ContactNode> {
-        profiles::contact_nodes(self.rail(), state.fields())
+        self.engine.contact_nodes(&state.contact)
     }
 
     /// Profiles for plotting.
@@ -408,7 +418,7 @@ mod tests {
                     assert_eq!(state.time, before.time + interrupted.committed);
                     // The sub-steps that were committed are those of a sound step, so that going on from them leads where the
                     // sound step leads, to the order of its sub-steps.
-                    assert!(state.fields() != before.fields());
+                    assert!(state.contact != before.contact);
                     step(&sound, &mut state, 2e-3 - interrupted.committed).unwrap();
                     let (resumed, whole) = (state.outputs.traction_force, undisturbed.outputs.traction_force);
                     assert!((resumed / whole - 1.0).abs() < 1e-2, "{words}: {resumed} {whole}");

@@ -13,6 +13,7 @@ use super::forms;
 use super::half_plane::HalfPlane;
 use super::mesh::Mesh;
 use crate::error::Result;
+use crate::numerics::interpolation::between;
 use crate::parameters::Parameters;
 use nalgebra::DMatrix;
 
@@ -131,12 +132,6 @@ fn strip_mesh(parameters: &Parameters, refinement: usize) -> Mesh {
         refinement * DEPTH_CELLS,
         FIRST_CELL * height / refinement as f64,
     )
-}
-
-/// The interval of the ascending `points` that holds `x`, and the share of it that lies before `x`.
-fn between(points: &[f64], x: f64) -> (usize, f64) {
-    let first = points.partition_point(|&p| p <= x).clamp(1, points.len() - 1) - 1;
-    (first, (x - points[first]) / (points[first + 1] - points[first]))
 }
 
 #[cfg(test)]

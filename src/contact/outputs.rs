@@ -4,7 +4,7 @@ use super::resultants::Resultants;
 use super::rim::{self, ContactHeat};
 use super::task::Conditions;
 use crate::friction;
-use crate::parameters::Parameters;
+use crate::parameters::{ContactModel, Parameters};
 use crate::signals::{Inputs, Motion, Outputs};
 
 /// What an engine reads off its fields for the outputs.
@@ -20,6 +20,10 @@ pub struct Readings {
     pub penetration: f64,
     /// Length of the contact, `m`.
     pub contact_length: f64,
+    /// Breadth of the contact across the rail, `m`; 0 of a line contact.
+    pub contact_breadth: f64,
+    /// Area of the contact, `m²`; 0 of a line contact.
+    pub contact_area: f64,
     /// Largest temperature rise of the rail's surface, `K`.
     pub peak_rise: f64,
     /// Wear depth behind the contact, `m`.
@@ -55,6 +59,28 @@ impl Readings {
         parameters.wear_coefficient * self.sliding_power()
     }
 
+    /// Width of the tread in contact, `m`.
+    fn width(&self, parameters: &Parameters) -> f64 {
+        match parameters.contact_model {
+            ContactModel::Line => parameters.contact_width,
+            ContactModel::Patch => self.contact_breadth,
+        }
+    }
+
+    /// Writes what a line contact has none of: forces across the rail and about its normal, the contact's extent across.
+    fn add_patch(&self, motion: &Motion, outputs: &mut Outputs) {
+        let force = self.unit_force();
+        outputs.lateral_force = -force * self.resultants.lateral_shear;
+        outputs.spin_moment = -force * self.resultants.spin_moment;
+        outputs.contact_breadth = self.contact_breadth;
+        outputs.contact_area = self.contact_area;
+        // The signs are those of the forces on the wheel and of its motion; |V| makes it the work per distance either way.
+        outputs.wear_number = (outputs.traction_force * motion.rigid_slip
+            - outputs.lateral_force * motion.lateral_speed
+            - outputs.spin_moment * motion.spin_rate)
+            / motion.rolling_speed.abs().max(LEAST_CREEPAGE_SPEED);
+    }
+
     /// The outputs at one instant; the totals are 0.
     pub fn outputs(&self, parameters: &Parameters, inputs: &Inputs) -> Outputs {
         let motion = inputs.motion(parameters);
@@ -66,7 +92,7 @@ impl Readings {
         let offset = sums.per_pressure(sums.moment);
         // Without contact the coefficient is that of the hottest spot.
         let free = friction::coefficient(parameters, ambient + self.peak_rise).0 * inputs.friction_scale;
-        Outputs {
+        let mut outputs = Outputs {
             traction_force,
             friction_torque: -(traction_force * parameters.wheel_radius + load * offset),
             peak_temperature: ambient + self.peak_rise,
@@ -96,7 +122,11 @@ impl Readings {
             leaving_temperature: ambient + self.leaving_rise,
             leaving_wear_depth: self.leaving_wear_depth,
             ..Outputs::default()
+        };
+        if parameters.contact_model == ContactModel::Patch {
+            self.add_patch(&motion, &mut outputs);
         }
+        outputs
     }
 
     /// The totals' rates of growth per second, in the fields of the totals; the other outputs are 0.
@@ -105,7 +135,7 @@ impl Readings {
             worn_volume: self.wear_rate(parameters),
             friction_energy: self.friction_power(),
             distance: inputs.motion(parameters).rolling_speed.abs(),
-            wheel_wear_depth: rim::wear_rate(parameters, self.sliding_power()),
+            wheel_wear_depth: rim::wear_rate(parameters, self.sliding_power(), self.width(parameters)),
             ..Outputs::default()
         }
     }
@@ -130,6 +160,7 @@ fn creepage(motion: &Motion) -> f64 {
     let Motion {
         rolling_speed,
         rigid_slip,
+        ..
     } = *motion;
     if rolling_speed.abs() >= LEAST_CREEPAGE_SPEED {
         rigid_slip / rolling_speed

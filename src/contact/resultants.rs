@@ -7,12 +7,18 @@ use crate::friction::coulomb;
 pub struct Node {
     /// Position ahead of the axle, `m`.
     pub position: f64,
+    /// Position to the left of the axle's middle, `m`; 0 of a line contact, as all across the rail.
+    pub lateral: f64,
     /// Pressure, scaled.
     pub pressure: f64,
-    /// Shear traction on the rail, scaled.
+    /// Shear traction on the rail along it, scaled.
     pub shear: f64,
-    /// Slip velocity, `m/s`.
+    /// Shear traction on the rail across it, to the left, scaled.
+    pub lateral_shear: f64,
+    /// Slip velocity along the rail, `m/s`.
     pub slip: f64,
+    /// Slip velocity across the rail, to the left, `m/s`.
+    pub lateral_slip: f64,
     /// Friction coefficient.
     pub friction: f64,
     /// Heat flux into the rail, `W/m²`.
@@ -28,11 +34,15 @@ pub struct Resultants {
     pub pressure: f64,
     /// Σ p x, `m`.
     pub moment: f64,
-    /// Σ τ.
+    /// Σ τ_x.
     pub shear: f64,
+    /// Σ τ_y.
+    pub lateral_shear: f64,
+    /// Σ (x τ_y − y τ_x), `m`.
+    pub spin_moment: f64,
     /// Σ p μ.
     pub friction: f64,
-    /// Σ |τ s|, `m/s`.
+    /// Σ |τ·s|, `m/s`.
     pub friction_power: f64,
     /// Σ p |s|, `m/s`.
     pub sliding: f64,
@@ -61,10 +71,13 @@ impl Resultants {
             sum.moment += node.pressure * node.position;
             sum.shear += node.shear;
             sum.friction += node.pressure * node.friction;
-            sum.friction_power += coulomb::power(node.shear, node.slip);
-            sum.sliding += node.pressure * node.slip.abs();
+            let (shear, slip) = ([node.shear, node.lateral_shear], [node.slip, node.lateral_slip]);
+            sum.lateral_shear += node.lateral_shear;
+            sum.spin_moment += node.position * node.lateral_shear - node.lateral * node.shear;
+            sum.friction_power += coulomb::vector_power(shear, slip);
+            sum.sliding += node.pressure * coulomb::magnitude(slip);
             sum.peak_pressure = sum.peak_pressure.max(node.pressure);
-            sum.peak_shear = sum.peak_shear.max(node.shear.abs());
+            sum.peak_shear = sum.peak_shear.max(coulomb::magnitude(shear));
             sum.nodes += 1.0;
             if node.sticks {
                 sum.sticking += 1.0;

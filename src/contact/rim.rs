@@ -66,10 +66,10 @@ pub struct ContactHeat {
 pub struct HeatedNode {
     /// Pressure.
     pub pressure: f64,
-    /// Shear traction.
-    pub shear: f64,
-    /// Slip velocity, `m/s`.
-    pub slip: f64,
+    /// Shear traction along the rail and across it.
+    pub shear: [f64; 2],
+    /// Slip velocity along the rail and across it, `m/s`.
+    pub slip: [f64; 2],
     /// Temperature rise of the rail's surface, `K`.
     pub rise: f64,
 }
@@ -80,7 +80,7 @@ impl ContactHeat {
         let weights = Weights::new(parameters, unit_force);
         let mut heat = ContactHeat::default();
         for node in nodes {
-            heat.friction += weights.friction * coulomb::power(node.shear, node.slip);
+            heat.friction += weights.friction * coulomb::vector_power(node.shear, node.slip);
             heat.conducted += weights.conduction * node.pressure * node.rise;
             heat.conductance += weights.conduction * node.pressure;
         }
@@ -96,7 +96,7 @@ impl ContactHeat {
         let weights = Weights::new(parameters, unit_force);
         let mut heat = ContactHeat::default();
         for (node, change) in nodes {
-            let power = coulomb::power_tangent((node.shear, node.slip), (change.shear, change.slip));
+            let power = coulomb::vector_power_tangent((node.shear, node.slip), (change.shear, change.slip));
             heat.friction += weights.friction * power;
             heat.conducted += weights.conduction * (change.pressure * node.rise + node.pressure * change.rise);
             heat.conductance += weights.conduction * change.pressure;
@@ -214,9 +214,14 @@ impl FixedPoint {
     }
 }
 
-/// Radius that the wheel loses per time, `m/s`, to the `sliding` power b ∫ |s| p dx, `W`.
-pub fn wear_rate(parameters: &Parameters, sliding: f64) -> f64 {
-    parameters.wheel_wear_coefficient * sliding / (2.0 * PI * parameters.wheel_radius * parameters.contact_width)
+/// Radius that the wheel loses per time, `m/s`, to the `sliding` power ∫ |s| p dA, `W`, on a contact of the given width,
+/// `m`; 0 without contact, which has no width.
+pub fn wear_rate(parameters: &Parameters, sliding: f64, width: f64) -> f64 {
+    if width > 0.0 {
+        parameters.wheel_wear_coefficient * sliding / (2.0 * PI * parameters.wheel_radius * width)
+    } else {
+        0.0
+    }
 }
 
 #[cfg(test)]
@@ -238,8 +243,8 @@ mod tests {
                 let x = f64::from(i);
                 HeatedNode {
                     pressure: 1.0 - 0.2 * x + step * 0.3,
-                    shear: -0.3 + 0.05 * x + step * 0.1 * x,
-                    slip: 0.2 - 0.03 * x + step * 0.05,
+                    shear: [-0.3 + 0.05 * x + step * 0.1 * x, 0.1 - step * 0.02 * x],
+                    slip: [0.2 - 0.03 * x + step * 0.05, -0.05 + step * 0.03],
                     rise: 50.0 + 10.0 * x + step * 7.0,
                 }
             })
@@ -274,8 +279,8 @@ mod tests {
         let h = 1e-6;
         let changes = nodes(1.0).into_iter().zip(nodes(0.0)).map(|(moved, node)| HeatedNode {
             pressure: moved.pressure - node.pressure,
-            shear: moved.shear - node.shear,
-            slip: moved.slip - node.slip,
+            shear: [0, 1].map(|i| moved.shear[i] - node.shear[i]),
+            slip: [0, 1].map(|i| moved.slip[i] - node.slip[i]),
             rise: moved.rise - node.rise,
         });
         let heat = ContactHeat::new(&parameters, 1e3, nodes(0.0).into_iter());

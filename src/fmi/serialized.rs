@@ -15,7 +15,7 @@ use super::snapshot::Snapshot;
 use crate::parameters::Parameters;
 
 const MAGIC: [u8; 8] = *b"WHLRAIL\0";
-const VERSION: u32 = 4;
+const VERSION: u32 = 5;
 const HEADER: usize = 8 + 4 + 8 + 8;
 const CHECKSUM: usize = 4;
 

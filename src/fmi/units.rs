@@ -62,6 +62,8 @@ const ONE: Powers = Powers {
 units! {
     "1" [];
     "m" [m 1] "mm" = 1e3, "µm" = 1e6, "km" = 1e-3;
+    "1/m" [m -1];
+    "m2" [m 2] "mm2" = 1e6;
     "m/s" [m 1 s -1] "km/h" = 3.6;
     "rad/s" [rad 1 s -1] "rpm" = 30.0 / std::f64::consts::PI;
     "N" [kg 1 m 1 s -2] "kN" = 1e-3;
@@ -70,6 +72,7 @@ units! {
     "1/Pa" [kg -1 m 1 s 2];
     "J" [kg 1 m 2 s -2] "kJ" = 1e-3;
     "W" [kg 1 m 2 s -3] "kW" = 1e-3;
+    "W/m" [kg 1 m 1 s -3] "kW/m" = 1e-3;
     "K" [k 1] "degC" = 1.0 => -273.15;
     "1/K" [k -1];
     "kg/m3" [kg 1 m -3];

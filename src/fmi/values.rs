@@ -5,7 +5,7 @@ use super::failures::Failure;
 use super::modes::Mode;
 use super::variables::{Integer, IntegerVariable, PROFILES, Real, RealVariable};
 use crate::parameters::{INTEGER_PARAMETERS, REAL_PARAMETERS};
-use crate::signals::{INPUTS, OUTPUTS};
+use crate::signals::{INPUTS, InputSignal, OUTPUTS};
 
 impl Component {
     /// The value of a real variable. In *initializationMode* the contact is solved where an output asks for it.
@@ -70,7 +70,13 @@ impl Component {
         for entry in entries {
             let (variable, value) = entry?;
             if let RealVariable::Input(row) = variable.variable {
-                INPUTS[row].check(value, &parameters).map_err(Failure::Value)?;
+                // Until the start contact_model may still follow, a call of its own because it is an Integer; the
+                // inputs are checked with it then.
+                let check = match self.mode {
+                    Mode::StepComplete => InputSignal::check,
+                    _ => InputSignal::check_range,
+                };
+                check(&INPUTS[row], value, &parameters).map_err(Failure::Value)?;
             }
         }
         if inputs != self.inputs {

@@ -3,7 +3,7 @@
 
 use crate::parameters::{INTEGER_PARAMETERS, REAL_PARAMETERS};
 use crate::signals::{INPUTS, OUTPUTS};
-use crate::wheel_rail::{DEPTH_POINTS, PROFILE_POINTS, Profiles};
+use crate::wheel_rail::{DEPTH_POINTS, PROFILE_POINTS, Profiles, STRIP_POINTS};
 
 /// Number of a variable, or of an element of an array, in the calls of an importer. Each version of FMI gives its own.
 pub type ValueReference = u32;
@@ -28,7 +28,7 @@ pub struct ProfileColumn {
 
 /// The profiles.
 #[rustfmt::skip]
-pub const PROFILES: [ProfileColumn; 8] = [
+pub const PROFILES: [ProfileColumn; 13] = [
     ProfileColumn { name: "profile.x", unit: "m", display_unit: Some("mm"), nominal: 1e-2, points: PROFILE_POINTS,
         description: "Position along the rail ahead of the axle", values: |p| &p.x },
     ProfileColumn { name: "profile.pressure", unit: "Pa", display_unit: Some("MPa"), nominal: 1e9, points: PROFILE_POINTS,
@@ -45,6 +45,16 @@ pub const PROFILES: [ProfileColumn; 8] = [
         description: "Depth below the hottest contact point", values: |p| &p.depth },
     ProfileColumn { name: "depth.temperature", unit: "K", display_unit: Some("degC"), nominal: 300.0, points: DEPTH_POINTS,
         description: "Absolute temperature below the hottest contact point", values: |p| &p.depth_temperature },
+    ProfileColumn { name: "strip.position", unit: "m", display_unit: Some("mm"), nominal: 1e-2, points: STRIP_POINTS,
+        description: "Position across the rail to the left", values: |p| &p.strips.position },
+    ProfileColumn { name: "strip.pressure", unit: "Pa", display_unit: Some("MPa"), nominal: 1e9, points: STRIP_POINTS,
+        description: "Largest contact pressure along the strip", values: |p| &p.strips.pressure },
+    ProfileColumn { name: "strip.temperature", unit: "K", display_unit: Some("degC"), nominal: 300.0, points: STRIP_POINTS,
+        description: "Largest absolute temperature of the rail surface along the strip", values: |p| &p.strips.temperature },
+    ProfileColumn { name: "strip.wear_depth", unit: "m", display_unit: Some("µm"), nominal: 1e-7, points: STRIP_POINTS,
+        description: "Depth of wear of the strip behind the contact", values: |p| &p.strips.wear_depth },
+    ProfileColumn { name: "strip.friction_power", unit: "W/m", display_unit: Some("kW/m"), nominal: 1e6, points: STRIP_POINTS,
+        description: "Power dissipated by friction in the strip per width", values: |p| &p.strips.friction_power },
 ];
 
 /// Who sets a variable.

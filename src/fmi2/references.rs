@@ -11,9 +11,21 @@ const INPUT_BLOCK: u32 = 0;
 const OUTPUT_BLOCK: u32 = 1;
 const REAL_PARAMETER_BLOCK: u32 = 2;
 const INTEGER_PARAMETER_BLOCK: u32 = 3;
-/// One block for each profile.
+/// One block for each profile, the solver's passed over.
 const FIRST_PROFILE_BLOCK: u32 = 4;
 const SOLVER_BLOCK: u32 = 12;
+
+/// The block of a row of [`PROFILES`].
+fn profile_block(row: usize) -> u32 {
+    let block = FIRST_PROFILE_BLOCK + row as u32;
+    if block < SOLVER_BLOCK { block } else { block + 1 }
+}
+
+/// The row of [`PROFILES`] of a block that is neither below theirs nor the solver's.
+fn profile_row(block: u32) -> usize {
+    let row = (block - FIRST_PROFILE_BLOCK) as usize;
+    if block < SOLVER_BLOCK { row } else { row - 1 }
+}
 
 const RESIDUAL: ValueReference = SOLVER_BLOCK * BLOCK;
 const ITERATIONS: ValueReference = SOLVER_BLOCK * BLOCK + 1;
@@ -53,7 +65,7 @@ pub fn of_real(variable: RealVariable, element: usize) -> ValueReference {
             let before: usize = REAL_PARAMETERS[..row].iter().map(|entry| entry.start.len()).sum();
             REAL_PARAMETER_BLOCK * BLOCK + (before + element) as u32
         }
-        RealVariable::Profile(row) => (FIRST_PROFILE_BLOCK + row as u32) * BLOCK + element as u32,
+        RealVariable::Profile(row) => profile_block(row) * BLOCK + element as u32,
         RealVariable::Residual => RESIDUAL,
     }
 }
@@ -78,9 +90,9 @@ pub fn real(reference: ValueReference) -> Result<Real, Failure> {
         REAL_PARAMETER_BLOCK => REAL_PARAMETER_ELEMENTS
             .get(place)
             .map(|(row, element)| (RealVariable::Parameter(*row), *element)),
-        SOLVER_BLOCK if reference == RESIDUAL => Some((RealVariable::Residual, 0)),
+        SOLVER_BLOCK => (reference == RESIDUAL).then_some((RealVariable::Residual, 0)),
         FIRST_PROFILE_BLOCK.. => {
-            let row = (block - FIRST_PROFILE_BLOCK) as usize;
+            let row = profile_row(block);
             let points = PROFILES.get(row).map_or(0, |column| column.points);
             (place < points).then_some((RealVariable::Profile(row), place))
         }

@@ -41,6 +41,33 @@ pub fn power(shear: f64, slip: f64) -> f64 {
     (-shear * slip).max(0.0)
 }
 
+/// The same of vectors, −τ·s along the rail and across it; with none across, [`power`] to the bit.
+pub fn vector_power(shear: [f64; 2], slip: [f64; 2]) -> f64 {
+    (-shear[0] * slip[0] - shear[1] * slip[1]).max(0.0)
+}
+
+/// Change of [`vector_power`].
+pub fn vector_power_tangent(
+    (shear, slip): ([f64; 2], [f64; 2]),
+    (shear_change, slip_change): ([f64; 2], [f64; 2]),
+) -> f64 {
+    if shear[0] * slip[0] + shear[1] * slip[1] < 0.0 {
+        -(shear_change[0] * slip[0] + shear[0] * slip_change[0])
+            - (shear_change[1] * slip[1] + shear[1] * slip_change[1])
+    } else {
+        0.0
+    }
+}
+
+/// Length of a vector along the rail and across it; with nothing across, the magnitude of the rest to the bit.
+pub fn magnitude([along, across]: [f64; 2]) -> f64 {
+    if across == 0.0 {
+        along.abs()
+    } else {
+        (along * along + across * across).sqrt()
+    }
+}
+
 /// Change of [`power`].
 pub fn power_tangent((shear, slip): (f64, f64), (shear_change, slip_change): (f64, f64)) -> f64 {
     if shear * slip < 0.0 {

@@ -77,11 +77,6 @@ impl DepthBasis {
         self.eigenvalues.len()
     }
 
-    /// Never: a depth has at least one cell.
-    pub fn is_empty(&self) -> bool {
-        self.eigenvalues.is_empty()
-    }
-
     /// Surface value of a column given by its modal amplitudes.
     pub fn surface_value(&self, amplitudes: &[f64]) -> f64 {
         amplitudes.iter().zip(&self.surface).map(|(a, s)| a * s).sum()

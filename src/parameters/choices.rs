@@ -19,6 +19,14 @@ macro_rules! choices {
 }
 
 choices! {
+    /// How the contact is resolved.
+    ContactModel {
+        /// Along the rail, uniform over `contact_width`: the paper's.
+        Line,
+        /// Along the rail and across it: lateral force and spin moment.
+        Patch,
+    }
+
     /// What is prescribed in the normal direction.
     Control {
         /// The normal load is given, the penetration follows (the component's normal use).

@@ -9,7 +9,7 @@
 //!
 //! where the symbol is that of the equations, where there is one. The order is that of the table and of a saved state.
 
-use super::choices::{Control, FrictionLaw, MeshKind, NormalSolver, SlipSource, Wheel, WheelHeating};
+use super::choices::{ContactModel, Control, FrictionLaw, MeshKind, NormalSolver, SlipSource, Wheel, WheelHeating};
 use super::range::check_range;
 use crate::error::{Error, Result};
 use serde::{Deserialize, Serialize};
@@ -189,6 +189,17 @@ parameters! {
     /// Depth over which incoming_temperature and leaving_temperature spread the rail's heat:
     /// sqrt(pi*thermal_diffusivity*t) for rail that was heated the time t before it enters
     skin_depth: f64 = real { "m" shown in "mm", 5e-3, 1e-4, 0.1 }
+    /// How the contact is resolved: 1 line (along the rail, uniform over contact_width: the paper's), 2 patch (along and
+    /// across the rail, with lateral force and spin moment)
+    contact_model: ContactModel = choice { ContactModel::Line }
+    /// Curvature of the rail's head across the rail, used where contact_model is patch; negative is hollow
+    rail_transverse_curvature: f64 = real { "1/m", 1.0 / 0.3, -1e3, 1e3 }
+    /// Curvature of the wheel's tread across the rail, used where contact_model is patch; negative is hollow, 0 is a cone
+    wheel_transverse_curvature: f64 = real { "1/m", 0.0, -1e3, 1e3 }
+    /// Number of cells along the contact window, used where contact_model is patch
+    patch_nodes: usize = count { 34, 8, 201 }
+    /// Number of strips across the contact window, used where contact_model is patch
+    patch_strips: usize = count { 21, 3, 101 }
 }
 
 /// The start values of the friction table: the default piecewise linear law, its hot end repeated.
@@ -344,6 +355,7 @@ mod tests {
     #[test]
     fn every_choice_is_in_the_description_of_its_row() {
         let choices = [
+            ("contact_model", numbered(ContactModel::ALL)),
             ("control", numbered(Control::ALL)),
             ("slip_source", numbered(SlipSource::ALL)),
             ("normal_solver", numbered(NormalSolver::ALL)),

@@ -1,6 +1,7 @@
 //! Checks of the parameters, once, before a model is built.
 
-use super::choices::FrictionLaw;
+use super::choices::{ContactModel, FrictionLaw, MeshKind, NormalSolver};
+use super::hertz::LARGEST_CURVATURE_RATIO;
 use super::table::{INTEGER_PARAMETERS, Parameters, REAL_PARAMETERS};
 use crate::error::{Error, Result};
 
@@ -30,32 +31,78 @@ impl Parameters {
             entry.check((entry.get)(self))?;
         }
         self.validate_friction()?;
-        let window = self.window_half_width();
+        match self.contact_model {
+            ContactModel::Line => {
+                let window = self.window_half_width();
+                self.validate_window(window)?;
+                if window > 0.5 * self.strip_height {
+                    return combination(
+                        ("largest_load", self.largest_load),
+                        ("strip_height", self.strip_height),
+                        "the contact window of the largest load must stay below half the strip's height",
+                    );
+                }
+            }
+            ContactModel::Patch => self.validate_patch()?,
+        }
+        self.validate_sizes()
+    }
+
+    /// A contact window of the given half-length along the rail, `m`.
+    fn validate_window(&self, half_length: f64) -> Result<()> {
         let too_large = |second, second_value, requirement| {
             combination(("largest_load", self.largest_load), (second, second_value), requirement)
         };
-        if window > 0.1 * self.wheel_radius {
+        if half_length > 0.1 * self.wheel_radius {
             return too_large(
                 "wheel_radius",
                 self.wheel_radius,
                 "the contact of the largest load must stay below a tenth of the wheel radius (small displacements)",
             );
         }
-        if window > 0.1 * self.strip_half_length {
+        if half_length > 0.1 * self.strip_half_length {
             return too_large(
                 "strip_half_length",
                 self.strip_half_length,
                 "the contact window of the largest load must stay below a tenth of the strip's half-length",
             );
         }
-        if window > 0.5 * self.strip_height {
-            return too_large(
-                "strip_height",
-                self.strip_height,
-                "the contact window of the largest load must stay below half the strip's height",
+        Ok(())
+    }
+
+    /// What a patch needs of the curvatures, and what it does without.
+    fn validate_patch(&self) -> Result<()> {
+        let curvatures = |requirement| {
+            combination(
+                ("rail_transverse_curvature", self.rail_transverse_curvature),
+                ("wheel_transverse_curvature", self.wheel_transverse_curvature),
+                requirement,
+            )
+        };
+        let (along, across) = self.gap_curvatures();
+        if across <= 0.0 {
+            return curvatures("their sum must be positive with contact_model = 2 (patch)");
+        }
+        let ratio = across / along;
+        if !(1.0 / LARGEST_CURVATURE_RATIO..=LARGEST_CURVATURE_RATIO).contains(&ratio) {
+            return curvatures("their sum must be 1e-4 to 1e4 times 1/wheel_radius with contact_model = 2 (patch)");
+        }
+        let model = ("contact_model", f64::from(self.contact_model as i32 + 1));
+        if self.mesh != MeshKind::Graded {
+            return combination(
+                model,
+                ("mesh", f64::from(self.mesh as i32 + 1)),
+                "the patch has its own grid; mesh must be 1 (graded)",
             );
         }
-        self.validate_sizes()
+        if self.normal_solver != NormalSolver::ActiveSet {
+            return combination(
+                model,
+                ("normal_solver", f64::from(self.normal_solver as i32 + 1)),
+                "the patch is solved by an active set; normal_solver must be 1 (active_set)",
+            );
+        }
+        self.validate_window(self.patch_window().0)
     }
 
     /// Lengths that must fit into others.

@@ -85,18 +85,18 @@ impl Ramp {
     }
 
     /// Mean and largest difference of τ/(μ p₀) from `exact` of the positions over the half-length, at the nodes in contact.
-    fn deviation(&self, exact: impl Fn(f64) -> f64) -> [f64; 2] {
+    fn deviation(&self, exact: impl Fn(f64) -> f64) -> Result<[f64; 2]> {
         let parameters = parameters();
         let half_length = parameters.hertz_half_length(LOAD);
         let largest = parameters.friction_cold * parameters.hertz_peak_pressure(LOAD);
-        let spacing = self.run.model.rail().mesh.contact_spacing() / half_length;
+        let spacing = self.run.model.rail()?.mesh.contact_spacing() / half_length;
         let (mut sum, mut worst, mut count) = (0.0, 0.0_f64, 0.0);
         for node in self.run.contact_nodes().iter().filter(|node| node.pressure > 0.0) {
             let shear = -node.shear / largest;
             let difference = (shear - cell_mean(&exact, node.position / half_length, spacing)).abs();
             (sum, worst, count) = (sum + difference, worst.max(difference), count + 1.0);
         }
-        [sum / count, worst]
+        Ok([sum / count, worst])
     }
 }
 
@@ -173,12 +173,12 @@ pub fn rows() -> Result<Vec<Row>> {
         ));
     };
     ramp.go_to(0.5)?;
-    profile("forth, T = 0.5 mu N", ramp.deviation(|x| forth(ramp.share, x)));
+    profile("forth, T = 0.5 mu N", ramp.deviation(|x| forth(ramp.share, x))?);
     ramp.go_to(TURN)?;
     let turn = ramp.share;
-    profile("forth, T = 0.9 mu N", ramp.deviation(|x| forth(turn, x)));
+    profile("forth, T = 0.9 mu N", ramp.deviation(|x| forth(turn, x))?);
     ramp.go_to(0.0)?;
-    profile("back to T = 0", ramp.deviation(|x| back(turn, ramp.share, x)));
+    profile("back to T = 0", ramp.deviation(|x| back(turn, ramp.share, x))?);
     ramp.go_to(-turn)?;
     ramp.work = 0.0;
     let friction_energy = ramp.run.state.outputs.friction_energy;

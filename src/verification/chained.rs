@@ -95,7 +95,7 @@ pub fn rows() -> Result<Vec<Row>> {
     for _ in 0..200 {
         pair.step(load)?;
     }
-    let mut rows = vec![volume(&pair)];
+    let mut rows = vec![volume(&pair)?];
     for _ in 0..200 {
         pair.step(load)?;
     }
@@ -145,13 +145,13 @@ pub fn rows() -> Result<Vec<Row>> {
     ));
     let per_area = front.rail_heat_flow / (SPEED * aged.contact_width);
     let diffused = (PI * aged.thermal_diffusivity * DISTANCE / SPEED).sqrt();
-    let mesh = &pair.rear.model.rail().mesh;
+    let mesh = &pair.rear.model.rail()?.mesh;
     let middle = mesh.contact_column(mesh.contact_nodes / 2);
     rows.push(Row::relative(
         "rail under the second axle over ambient, 0.25 s after the first",
         "K",
         per_area / (aged.volumetric_heat_capacity() * diffused),
-        pair.rear.state.fields().surface_temperature[middle],
+        pair.rear.state.fields()?.surface_temperature[middle],
         // The wake that was handed on is not quite a Gaussian, and the rows in depth are a third apart from one to the next.
         0.02,
         "Q/(rho c sqrt(pi kappa t)), Carslaw and Jaeger 10.3",
@@ -160,28 +160,27 @@ pub fn rows() -> Result<Vec<Row>> {
 }
 
 /// Volume worn by both wheels against the wear that lies on the rail: in both strips, between them and behind.
-fn volume(pair: &Pair) -> Row {
+fn volume(pair: &Pair) -> Result<Row> {
     // As the march holds it, at the one speed and step.
-    let on_the_rail = |run: &Simulation| -> f64 {
-        let wear = &run.state.fields().wear;
-        let columns = Upwind::new(&run.model.rail().mesh.x, SPEED).columns();
-        columns
-            .map(|column| {
-                let step = CellStep::new(1.0 / STEP, column.spacing, SPEED);
-                column.spacing * step.mean(wear[column.upstream], wear[column.index])
-            })
-            .sum()
+    let on_the_rail = |run: &Simulation| -> Result<f64> {
+        let wear = &run.state.fields()?.wear;
+        let columns = Upwind::new(&run.model.rail()?.mesh.x, SPEED).columns();
+        let cells = columns.map(|column| {
+            let step = CellStep::new(1.0 / STEP, column.spacing, SPEED);
+            column.spacing * step.mean(wear[column.upstream], wear[column.index])
+        });
+        Ok(cells.sum())
     };
     let per_step = SPEED * STEP;
     let between: f64 = pair.between.iter().map(|(_, depth)| depth * per_step).sum();
-    let area = on_the_rail(&pair.front) + between + on_the_rail(&pair.rear) + pair.gone * per_step;
+    let area = on_the_rail(&pair.front)? + between + on_the_rail(&pair.rear)? + pair.gone * per_step;
     let (front, rear) = pair.outputs();
-    Row::relative(
+    Ok(Row::relative(
         "volume of wear on the rail of two wheels, between and behind them",
         "m3",
         front.worn_volume + rear.worn_volume,
         pair.front.model.parameters().contact_width * area,
         1e-10,
         "conservation",
-    )
+    ))
 }

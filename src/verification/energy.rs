@@ -205,10 +205,10 @@ fn largest_defect(
     // The balance is one of implicit steps: of a step that was divided it would compare the wrong states, and is NaN.
     let (mut defect, mut total_defect, mut shares) = (0.0_f64, 0.0_f64, Balance::default());
     for step in steps {
-        let before = run.state.fields().clone();
+        let before = run.state.fields()?.clone();
         let inputs = inputs(step);
         run.step(&inputs, duration)?;
-        let balance = balance(&run, &before, step.0, duration);
+        let balance = balance(&run, &before, step.0, duration)?;
         // Not f64::max, which would lose a NaN.
         let divided = run.state.duration != duration;
         let worse = |own: f64, worst: f64| match own <= worst {
@@ -223,9 +223,9 @@ fn largest_defect(
     Ok((defect, total_defect, shares))
 }
 
-fn balance(run: &Simulation, before: &Fields, speed: f64, duration: f64) -> Balance {
-    let (rail, parameters) = (run.model.rail(), run.model.parameters());
-    let after = run.state.fields();
+fn balance(run: &Simulation, before: &Fields, speed: f64, duration: f64) -> Result<Balance> {
+    let (rail, parameters) = (run.model.rail()?, run.model.parameters());
+    let after = run.state.fields()?;
     let ambient = run.state.inputs.ambient_temperature;
     let capacity = parameters.volumetric_heat_capacity() * parameters.contact_width;
     let mut balance = Balance::default();
@@ -278,5 +278,5 @@ fn balance(run: &Simulation, before: &Fields, speed: f64, duration: f64) -> Bala
             rim::heat_capacity(parameters) * rate + rim::convection(parameters) * (after.wheel_temperature - ambient)
         }
     };
-    balance
+    Ok(balance)
 }

@@ -61,25 +61,24 @@ fn pair(pair: &str, parameters: &Parameters) -> Result<Vec<Row>> {
     };
     let pairs = || nodes.iter().zip(&mirrored);
     let outputs = (&forward.state.outputs, &backward.state.outputs);
-    let rail = forward.model.rail();
-    let columns = rail.mesh.columns();
-    let surface = |run: &Simulation, column: usize| run.state.fields().surface_temperature[column];
+    let columns = forward.model.rail()?.mesh.columns();
+    let fields = (forward.state.fields()?, backward.state.fields()?);
     Ok(vec![
         row("pressure", &mut pairs().map(|(a, b)| (a.pressure, b.pressure))),
         row("shear traction", &mut pairs().map(|(a, b)| (a.shear, -b.shear))),
         row("slip velocity", &mut pairs().map(|(a, b)| (a.slip, -b.slip))),
         row(
             "surface temperature",
-            &mut (0..columns).map(|c| (surface(&forward, c), surface(&backward, columns - 1 - c))),
+            &mut (0..columns).map(|c| {
+                (
+                    fields.0.surface_temperature[c],
+                    fields.1.surface_temperature[columns - 1 - c],
+                )
+            }),
         ),
         row(
             "wear depth",
-            &mut (0..columns).map(|c| {
-                (
-                    forward.state.fields().wear[c],
-                    backward.state.fields().wear[columns - 1 - c],
-                )
-            }),
+            &mut (0..columns).map(|c| (fields.0.wear[c], fields.1.wear[columns - 1 - c])),
         ),
         row(
             "traction force and friction torque",

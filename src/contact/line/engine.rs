@@ -2,12 +2,13 @@
 
 use super::fields::{Fields, Trend};
 use super::problem::Problem;
-use super::profiles::Profiles;
+use super::profiles;
 use super::rail::Rail;
 use super::readings::readings;
 use super::sensitivity::Linearisation;
 use super::split::{self, Scratch};
 use crate::contact::outputs::Readings;
+use crate::contact::profiles::{ContactNode, Profiles};
 use crate::contact::task::{Convergence, Task};
 use crate::error::Result;
 use crate::parameters::Parameters;
@@ -58,6 +59,11 @@ impl Line {
     /// What was computed once.
     pub fn rail(&self) -> &Rail {
         &self.rail
+    }
+
+    /// Length along the rail of the window in which the contact is sought, `m`.
+    pub fn window_length(&self) -> f64 {
+        2.0 * self.rail.mesh.window_half_width()
     }
 
     /// Scratch for the steps.
@@ -138,7 +144,12 @@ impl Line {
 
     /// Profiles for plotting.
     pub fn profiles(&self, state: &LineState, ambient: f64) -> Profiles {
-        Profiles::new(&self.rail, &state.fields, ambient)
+        profiles::profiles(&self.rail, &state.fields, ambient)
+    }
+
+    /// The fields at the nodes of the contact window, from the rear to the front for V > 0.
+    pub fn contact_nodes(&self, state: &LineState) -> Vec<ContactNode> {
+        profiles::contact_nodes(&self.rail, &state.fields)
     }
 
     /// Whether a state (of another source) has the sizes of this rail and finite content.
@@ -206,12 +217,12 @@ mod tests {
             let mut run = Run::new(&parameters, &inputs(0)).unwrap();
             let (mut on_the_rail, mut left) = (0.0, 0.0);
             for step in 0..100 {
-                let before = run.state.fields().wear.clone();
+                let before = run.state.fields().unwrap().wear.clone();
                 run.step(&inputs(step), 5e-3).unwrap();
                 // The first step after the cold start is no jump: none is divided.
                 assert_eq!(run.state.duration, 5e-3);
                 let speed = inputs(step).vehicle_speed;
-                let (x, after) = (&run.model.rail().mesh.x, &run.state.fields().wear);
+                let (x, after) = (&run.model.rail().unwrap().mesh.x, &run.state.fields().unwrap().wear);
                 left += speed.abs() * 5e-3 * after[Upwind::new(x, speed).outflow()];
                 on_the_rail += deposited(x, speed, 5e-3, &before, after);
             }
@@ -223,7 +234,7 @@ mod tests {
             );
             assert!((volume / expected - 1.0).abs() < 1e-10, "{volume} {expected}");
             // The depth as it lies there at last, between columns linear, but for the order of the march.
-            let (x, wear) = (&run.model.rail().mesh.x, &run.state.fields().wear);
+            let (x, wear) = (&run.model.rail().unwrap().mesh.x, &run.state.fields().unwrap().wear);
             let cells = x.windows(2).zip(wear.windows(2));
             let area: f64 = cells.map(|(x, w)| (x[1] - x[0]) * 0.5 * (w[0] + w[1])).sum();
             assert!((area / on_the_rail - 1.0).abs() < 0.01, "{area} {on_the_rail}");
@@ -271,7 +282,7 @@ mod tests {
             let mut run = Run::new(&parameters, &inputs(steps[0])).unwrap();
             for &step in &steps {
                 run.hold(&inputs(step), 2e-3, 5).unwrap();
-                assert_signs(run.state.fields());
+                assert_signs(run.state.fields().unwrap());
             }
         }
     }
@@ -338,7 +349,7 @@ mod tests {
                     run_with(NormalSolver::ActiveSet, control),
                     run_with(NormalSolver::Pschenichnyj, control),
                 );
-                let (a, b) = (active.state.fields(), linearised.state.fields());
+                let (a, b) = (active.state.fields().unwrap(), linearised.state.fields().unwrap());
                 for (name, a, b) in [
                     ("pressure", &a.pressure, &b.pressure),
                     ("shear", &a.shear, &b.shear),

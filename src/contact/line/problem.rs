@@ -172,8 +172,8 @@ impl<'a> Problem<'a> {
         let surface = &fields.surface_temperature[self.rail.mesh.window()];
         (0..fields.pressure.len()).map(move |node| HeatedNode {
             pressure: fields.pressure[node],
-            shear: fields.shear[node],
-            slip: fields.slip[node],
+            shear: [fields.shear[node], 0.0],
+            slip: [fields.slip[node], 0.0],
             rise: surface[node],
         })
     }

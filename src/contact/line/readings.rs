@@ -19,6 +19,8 @@ pub fn readings(problem: &Problem, fields: &Fields) -> Readings {
         pressure_scale: rail.scales.pressure,
         penetration: fields.penetration * rail.scales.displacement,
         contact_length: contact_length(rail, fields),
+        contact_breadth: 0.0,
+        contact_area: 0.0,
         peak_rise: surface.fold(f64::NEG_INFINITY, |m: f64, t| t.max(m)),
         wear_depth: wear_left_behind(rail, fields, problem.conditions.motion.rolling_speed),
         leaving_rise: rail.heat.equivalent_rise(fields.column(rail, transport.outflow())),
@@ -35,9 +37,12 @@ fn nodes(problem: &Problem, fields: &Fields) -> impl Iterator<Item = Node> {
         let (pressure, slip) = (fields.pressure[node], fields.slip[node]);
         Node {
             position: mesh.contact_position(node),
+            lateral: 0.0,
             pressure,
             shear: fields.shear[node],
+            lateral_shear: 0.0,
             slip,
+            lateral_slip: 0.0,
             friction: fields.friction[node],
             heat_flux: fields.heat_flux[node],
             sticks: pressure > 0.0 && coulomb::sticks(fields.saturation[node], regularisation),

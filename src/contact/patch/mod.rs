@@ -1,0 +1,3 @@
+//! The patch engine: half-spaces, the contact resolved along the rail and across it.
+
+pub mod engine;

@@ -1,0 +1,118 @@
+//! Profiles for plotting, sampled at fixed numbers of points whatever the mesh is: what every engine fills in.
+
+/// Points along the contact window.
+pub const PROFILE_POINTS: usize = 61;
+/// Points below the hottest contact point.
+pub const DEPTH_POINTS: usize = 41;
+/// Points across the window of a patch.
+pub const STRIP_POINTS: usize = 21;
+/// Depth of the lowest point below the surface, `m`.
+const LARGEST_DEPTH: f64 = 10e-3;
+
+/// Profiles along the contact window, [`PROFILE_POINTS`] points each, the temperature in depth, and, of a patch, profiles
+/// across the window, [`STRIP_POINTS`] points each. Along the rail those of a patch are of its middle strip.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Profiles {
+    /// Position, `m`.
+    pub x: Vec<f64>,
+    /// Pressure, `Pa`.
+    pub pressure: Vec<f64>,
+    /// Shear traction on the rail, `Pa`.
+    pub shear: Vec<f64>,
+    /// Slip velocity, `m/s`, 0 outside the contact.
+    pub slip: Vec<f64>,
+    /// Absolute surface temperature, `K`.
+    pub temperature: Vec<f64>,
+    /// Wear depth, `m`.
+    pub wear_depth: Vec<f64>,
+    /// Depth below the hottest contact point, [`DEPTH_POINTS`] points, `m`.
+    pub depth: Vec<f64>,
+    /// Absolute temperature at that depth, `K`.
+    pub depth_temperature: Vec<f64>,
+    /// Across the window.
+    pub strips: StripProfiles,
+}
+
+/// Profiles across the window of a patch, [`STRIP_POINTS`] points each.
+#[derive(Debug, Clone, PartialEq)]
+pub struct StripProfiles {
+    /// Position to the left, `m`.
+    pub position: Vec<f64>,
+    /// Largest pressure along the strip, `Pa`.
+    pub pressure: Vec<f64>,
+    /// Largest absolute surface temperature along the strip, `K`.
+    pub temperature: Vec<f64>,
+    /// Wear depth behind the contact, `m`.
+    pub wear_depth: Vec<f64>,
+    /// Friction power per width, `W/m`.
+    pub friction_power: Vec<f64>,
+}
+
+impl StripProfiles {
+    /// Without strips: a line contact, or a rail that nothing has touched.
+    pub fn none(ambient: f64) -> StripProfiles {
+        StripProfiles {
+            position: vec![0.0; STRIP_POINTS],
+            pressure: vec![0.0; STRIP_POINTS],
+            temperature: vec![ambient; STRIP_POINTS],
+            wear_depth: vec![0.0; STRIP_POINTS],
+            friction_power: vec![0.0; STRIP_POINTS],
+        }
+    }
+}
+
+impl Profiles {
+    /// Of a rail that nothing has touched, all in one place.
+    pub fn untouched(ambient: f64) -> Profiles {
+        let along = || vec![0.0; PROFILE_POINTS];
+        Profiles {
+            x: along(),
+            pressure: along(),
+            shear: along(),
+            slip: along(),
+            temperature: vec![ambient; PROFILE_POINTS],
+            wear_depth: along(),
+            depth: vec![0.0; DEPTH_POINTS],
+            depth_temperature: vec![ambient; DEPTH_POINTS],
+            strips: StripProfiles::none(ambient),
+        }
+    }
+}
+
+/// The values of evenly spaced nodes at evenly spaced points, both from the first node to the last, linear between the nodes.
+pub fn sample(values: &[f64], points: usize) -> Vec<f64> {
+    let n = values.len();
+    (0..points)
+        .map(|i| {
+            let position = i as f64 * (n - 1) as f64 / (points - 1) as f64;
+            let left = (position as usize).min(n - 2);
+            let weight = position - left as f64;
+            values[left] * (1.0 - weight) + values[left + 1] * weight
+        })
+        .collect()
+}
+
+/// The depths of [`Profiles::depth`] in a body of the given height, `m`. Their spacing grows with the square of the index: most
+/// lie in the heated skin.
+pub fn depths(height: f64) -> Vec<f64> {
+    (0..DEPTH_POINTS)
+        .map(|i| LARGEST_DEPTH.min(0.5 * height) * (i as f64 / (DEPTH_POINTS - 1) as f64).powi(3))
+        .collect()
+}
+
+/// The fields at one surface node of the contact window.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ContactNode {
+    /// x₁, `m`.
+    pub position: f64,
+    /// Pressure, `Pa`.
+    pub pressure: f64,
+    /// Shear traction on the rail, `Pa`.
+    pub shear: f64,
+    /// Slip velocity, `m/s`; 0 outside the contact.
+    pub slip: f64,
+    /// Share −τ/(μ p) of Coulomb's bound.
+    pub saturation: f64,
+    /// Temperature rise over the ambient, `K`.
+    pub temperature: f64,
+}
