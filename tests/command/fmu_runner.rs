@@ -53,6 +53,7 @@ fn the_importer_gets_the_results_of_the_native_simulation() {
         ambient_temperature: 280.0,
         incoming_temperature: 285.0,
         incoming_wear_depth: 1e-7,
+        ..Inputs::default()
     };
     let parameters = Parameters {
         friction_cold: 0.4,

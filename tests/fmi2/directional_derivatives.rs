@@ -161,6 +161,15 @@ fn directional_derivatives_are_the_differences_of_a_rolled_back_step() {
         let columns: Vec<_> = (0..INPUTS.len()).map(|input| point.derivatives(input)).collect();
         for (input, column) in columns.iter().enumerate() {
             let signal = &INPUTS[input];
+            // No difference can be taken of what a line contact refuses.
+            if signal.patch_only {
+                assert!(
+                    column.iter().all(|derivative| *derivative == 0.0),
+                    "{}: {column:?}",
+                    signal.name
+                );
+                continue;
+            }
             let nominal = match signal.name {
                 "creepage" => 1e-3,
                 "wheel_speed" | "vehicle_speed" if vehicle => 1e-2,

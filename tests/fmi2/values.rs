@@ -58,6 +58,10 @@ fn inputs_outside_their_range_are_discarded_while_running() {
         "ambient_temperature",
         "incoming_temperature",
         "incoming_wear_depth",
+        "lateral_creepage",
+        "spin_creepage",
+        "lateral_speed",
+        "spin_rate",
     ] {
         for value in NOT_FINITE {
             expect_discard(&client, name, value);
@@ -87,6 +91,42 @@ fn inputs_outside_their_range_are_discarded_while_running() {
     client.expect(OK, client.step(0.0, 1e-3));
     untouched.expect(OK, untouched.step(0.0, 1e-3));
     assert_eq!(client.outputs(), untouched.outputs());
+}
+
+/// Lateral and spin motion of a line contact: a value that cannot be while running, and a combination with contact_model before,
+/// where that may still follow.
+#[test]
+fn a_line_contact_takes_no_lateral_and_no_spin_motion() {
+    let api = Api::load();
+    let names = ["lateral_creepage", "spin_creepage", "lateral_speed", "spin_rate"];
+    let running = Client::running(&api, &[]);
+    let refused = |client: &Client, call: &str, name: &str, value: f64| {
+        let message = client.last_message();
+        for part in [
+            call,
+            &format!("{name} = {value}"),
+            "contact_model = 1 (line)",
+            "contact_model = 2",
+        ] {
+            assert!(message.contains(part), "{message} lacks {part}");
+        }
+    };
+    for name in names {
+        running.expect(DISCARD, running.set(&[("creepage", 0.01), (name, 0.002)]));
+        refused(&running, "fmi2SetReal", name, 0.002);
+        assert_eq!((running.get(name), running.get("creepage")), (0.0, 0.0));
+
+        let starting = Client::initializing(&api);
+        starting.expect(OK, starting.set(&[(name, 0.002)]));
+        starting.expect(ERROR, starting.exit());
+        refused(&starting, "fmi2ExitInitializationMode", name, 0.002);
+    }
+    // A rate takes the input there within the step, of which nothing is committed.
+    let before = running.outputs();
+    running.expect(OK, running.set_rates(&[("lateral_creepage", 1, 1.0)]));
+    running.expect(ERROR, running.step(0.0, 1e-3));
+    refused(&running, "fmi2DoStep", "lateral_creepage", 1e-3);
+    assert_eq!(running.outputs(), before);
 }
 
 #[test]

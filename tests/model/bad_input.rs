@@ -1,7 +1,9 @@
 //! Values that cannot be: the error names the variable, the value and what is allowed, and nothing else changes.
 
 use wheelrail::error::Error;
-use wheelrail::parameters::{FrictionLaw, INTEGER_PARAMETERS, Parameters, REAL_PARAMETERS, SlipSource};
+use wheelrail::parameters::{
+    ContactModel, FrictionLaw, INTEGER_PARAMETERS, MeshKind, NormalSolver, Parameters, REAL_PARAMETERS, SlipSource,
+};
 use wheelrail::signals::{INPUTS, Inputs};
 use wheelrail::simulation::Simulation as Run;
 use wheelrail::wheel_rail::Model;
@@ -78,6 +80,64 @@ fn every_input_out_of_its_range_is_refused_and_changes_nothing() {
                 .unwrap_err();
             assert_eq!(interrupted.committed, 0.0);
             assert_eq!(run.state, before);
+        }
+    }
+}
+
+/// A line contact ignores no lateral or spin motion, whichever inputs define the motion: it refuses them, held and as a ramp.
+#[test]
+fn a_line_contact_refuses_lateral_and_spin_motion() {
+    for slip_source in SlipSource::ALL {
+        let parameters = Parameters {
+            slip_source: *slip_source,
+            contact_nodes: 21,
+            depth_nodes: 11,
+            ..Parameters::default()
+        };
+        let mut run = Run::new(&parameters, &Inputs::default()).unwrap();
+        run.hold(&Inputs::default(), 1e-3, 1).unwrap();
+        let before = run.state.clone();
+        let patch_only: Vec<_> = INPUTS.iter().filter(|signal| signal.patch_only).collect();
+        assert_eq!(patch_only.len(), 4);
+        for signal in patch_only {
+            let mut inputs = Inputs::default();
+            (signal.set)(&mut inputs, 0.001);
+            let expected = Error::PatchOnly {
+                name: signal.name,
+                value: 0.001,
+            };
+            let error = run.step(&inputs, 1e-3).unwrap_err();
+            assert_eq!(error, expected);
+            let message = error.to_string();
+            assert_eq!(
+                message,
+                format!(
+                    "{} = 0.001: must be 0 with contact_model = 1 (line), which has no lateral force and no spin; \
+                     contact_model = 2 (patch) takes it",
+                    signal.name
+                )
+            );
+            assert_eq!(
+                run.model.initial_state(&mut run.workspace, &inputs).unwrap_err(),
+                expected
+            );
+            let mut rates = Inputs::ZERO;
+            (signal.set)(&mut rates, 1.0);
+            let interrupted = run
+                .model
+                .step(&mut run.workspace, &mut run.state, &Inputs::default(), &rates, 1e-3)
+                .unwrap_err();
+            assert_eq!((interrupted.committed, interrupted.error), (0.0, expected));
+            assert_eq!(run.state, before);
+            // What is 0 is nothing, whatever its sign; a patch takes more.
+            (signal.set)(&mut inputs, -0.0);
+            assert!(inputs.check(&parameters).is_ok());
+            (signal.set)(&mut inputs, 0.001);
+            let patch = Parameters {
+                contact_model: ContactModel::Patch,
+                ..parameters.clone()
+            };
+            assert!(inputs.check(&patch).is_ok());
         }
     }
 }
@@ -212,6 +272,75 @@ fn combinations_that_cannot_be_are_refused() {
     ] {
         assert_combination(&changed, &["largest_load", part]);
     }
+}
+
+#[test]
+fn combinations_that_a_patch_cannot_have_are_refused() {
+    let patch = || Parameters {
+        contact_model: ContactModel::Patch,
+        ..Parameters::default()
+    };
+    assert!(patch().validate().is_ok());
+    for (rail, wheel, part) in [
+        (2.0, -2.0, "positive"),
+        (1.0, -2.0, "positive"),
+        (1e-5, 0.0, "1e-4 to 1e4"),
+    ] {
+        let curved = Parameters {
+            rail_transverse_curvature: rail,
+            wheel_transverse_curvature: wheel,
+            ..patch()
+        };
+        assert_combination(
+            &curved,
+            &[
+                &format!("rail_transverse_curvature = {rail}"),
+                &format!("wheel_transverse_curvature = {wheel}"),
+                part,
+            ],
+        );
+        let line = Parameters {
+            contact_model: ContactModel::Line,
+            ..curved
+        };
+        assert!(line.validate().is_ok());
+    }
+    let other_mesh = Parameters {
+        mesh: MeshKind::Paper,
+        ..patch()
+    };
+    assert_combination(&other_mesh, &["contact_model = 2", "mesh = 2"]);
+    let other_solver = Parameters {
+        normal_solver: NormalSolver::Pschenichnyj,
+        ..patch()
+    };
+    assert_combination(&other_solver, &["contact_model = 2", "normal_solver = 2"]);
+    let small_wheel = Parameters {
+        wheel_radius: 0.05,
+        largest_load: 1e6,
+        ..patch()
+    };
+    assert_combination(&small_wheel, &["largest_load", "wheel_radius = 0.05"]);
+    let short_strip = Parameters {
+        strip_half_length: 0.1,
+        largest_load: 1e6,
+        ..patch()
+    };
+    assert_combination(&short_strip, &["largest_load", "strip_half_length = 0.1"]);
+    // A width that no line contact could have.
+    let narrow = Parameters {
+        contact_width: 1e-4,
+        ..Parameters::default()
+    };
+    assert!(narrow.validate().is_err());
+    assert!(
+        Parameters {
+            contact_model: ContactModel::Patch,
+            ..narrow
+        }
+        .validate()
+        .is_ok()
+    );
 }
 
 #[test]

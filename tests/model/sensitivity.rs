@@ -2,9 +2,9 @@
 //! back to the same state, over operating points in stick, partial slip and sliding.
 
 use proptest::prelude::*;
-use wheelrail::parameters::{FrictionLaw, Parameters, SlipSource, Wheel, WheelHeating};
+use wheelrail::parameters::{ContactModel, FrictionLaw, Parameters, SlipSource, Wheel, WheelHeating};
 use wheelrail::settings::Settings;
-use wheelrail::signals::{INPUTS, Inputs, OUTPUTS, OutputKind};
+use wheelrail::signals::{INPUTS, Inputs, OUTPUTS, OutputKind, Outputs};
 use wheelrail::wheel_rail::{Model, State, Workspace};
 
 /// Relative change of the inputs in the step that is differentiated. Without it the operator split would rest after two
@@ -115,6 +115,11 @@ fn check(parameters: Parameters, inputs: Inputs, step: f64) -> usize {
         .unwrap();
     let mut compared = 0;
     for (row, input) in INPUTS.iter().enumerate() {
+        // No difference can be taken of what a line contact refuses.
+        if input.patch_only && model.parameters().contact_model == ContactModel::Line {
+            assert_eq!(sensitivities[row], Outputs::default(), "{}", input.name);
+            continue;
+        }
         let (differences, smooth) = difference(&model, &mut workspace, &before, &inputs, (row, step));
         for (index, output) in OUTPUTS.iter().enumerate() {
             let exact = (output.get)(&sensitivities[row]);
