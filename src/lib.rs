@@ -62,6 +62,10 @@
 //! | friction torque −(T r₀ + N e) | about the axle in the sense of ω for travel along +x₁ |
 //! | offset e of the pressure's resultant | ahead of the axle |
 //! | creepage ξ = (ω r₀ − V)/V | the wheel turns faster than it rolls |
+//! | lateral force F_y = −∫ τ_y dA | on the wheel, to the left (y, with z upward) |
+//! | spin moment M_z = −∫ (x τ_y − y τ_x) dA | on the wheel about the upward normal |
+//! | lateral creepage η = v_y/V | the wheel moves to the left |
+//! | spin creepage φ = ω_z/V | the wheel turns anticlockwise seen from above |
 //! | slip velocity s | of the rail's surface relative to the wheel's, as V and ω r₀ count |
 //! | penetration δ | into the rail |
 //! | displacement u₂ | upward: the thermal bulge closes the gap |
@@ -77,8 +81,8 @@
 //! 3. `friction`: the laws of μ(θ), and Coulomb's law. `mechanics`: tractions for given temperature and wear.
 //! 4. `transport`, `heat`, `wear`: temperature and wear of the rail for given tractions; `heat::incoming`: the rail that the
 //!    wheel ahead has left.
-//! 5. `contact`: one implicit step, by an engine. `contact::line` is the engine that there is, the operator split over
-//!    mechanics, heat and wear, with its derivatives; `contact::rim` is the wheel's temperature and wear, `contact::outputs` what
+//! 5. `contact`: one implicit step, by an engine. `contact::line` is the paper's, the operator split over
+//!    mechanics, heat and wear, with its derivatives; `contact::patch` resolves the contact across the rail as well; `contact::rim` is the wheel's temperature and wear, `contact::outputs` what
 //!    all this sums up to.
 //! 6. `wheel_rail`: the stepped model. `simulation`: a wheel's way through time.
 //! 7. `verification`: the closed forms and published numbers that all this is held against.

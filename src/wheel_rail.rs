@@ -213,7 +213,10 @@ impl Model {
             let solved = match self.advance(workspace, state, &at_end, length) {
                 Ok(solved) => solved,
                 // A shorter sub-step starts closer to its solution; what the window cannot hold no step can.
-                Err(error) if !matches!(error, Error::ContactLeavesWindow { .. }) && retries < settings.retries => {
+                Err(error)
+                    if !matches!(error, Error::ContactLeavesWindow { .. } | Error::OtherContactModel)
+                        && retries < settings.retries =>
+                {
                     retries += 1;
                     substep = 0.25 * length;
                     largest_substep = largest_substep.min(0.5 * length);
@@ -346,7 +349,7 @@ impl Model {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::parameters::{NormalSolver, Wheel, WheelHeating};
+    use crate::parameters::{ContactModel, NormalSolver, Wheel, WheelHeating};
     use crate::settings::limits::LIMITS;
 
     /// A small model of a rigid wheel, whose normal and tangential problem are coupled, that is heated, and a state from which
@@ -361,6 +364,42 @@ mod tests {
             ..Parameters::default()
         };
         Model::with_settings(parameters, settings).unwrap()
+    }
+
+    /// State and workspace of another contact model are refused, and nothing of them is read.
+    #[test]
+    fn contact_models_do_not_mix() {
+        let line = model(NormalSolver::ActiveSet, Settings::default());
+        let patch = Model::new(Parameters {
+            contact_model: ContactModel::Patch,
+            ..Parameters::default()
+        })
+        .unwrap();
+        let inputs = Inputs::default();
+        let state = line.initial_state(&mut line.workspace(), &inputs).unwrap();
+        let mut other = state.clone();
+        assert!(line.accepts(&state) && !patch.accepts(&state));
+        let step = |model: &Model, workspace: &mut Workspace, state: &mut State| {
+            let interrupted = model.step(workspace, state, &inputs, &Inputs::ZERO, 1e-3).unwrap_err();
+            assert_eq!(
+                (interrupted.committed, interrupted.error),
+                (0.0, Error::OtherContactModel)
+            );
+        };
+        step(&patch, &mut patch.workspace(), &mut other);
+        step(&patch, &mut line.workspace(), &mut other);
+        step(&line, &mut patch.workspace(), &mut other);
+        assert!(other == state);
+        let foreign = Error::OtherContactModel;
+        assert!(
+            line.initial_state(&mut patch.workspace(), &inputs)
+                .is_err_and(|error| error == foreign)
+        );
+        let sensitivities = patch.output_sensitivities(&mut patch.workspace(), &state, 0..1);
+        assert!(sensitivities.is_err_and(|error| error == foreign));
+        assert!(patch.thermal_map_size().is_err() && line.thermal_map_size().is_ok());
+        assert!(patch.contact_nodes(&state).is_empty());
+        assert_eq!(patch.profiles(&state), Profiles::untouched(inputs.ambient_temperature));
     }
 
     const JUMPED: fn() -> Inputs = || Inputs {

@@ -26,6 +26,7 @@ use serde::{Deserialize, Serialize};
 use task::{Convergence, Task};
 
 /// What is computed once.
+#[allow(clippy::large_enum_variant, reason = "there are few, and they are not moved")]
 pub enum Engine {
     /// A line contact.
     Line(Line),
@@ -35,6 +36,10 @@ pub enum Engine {
 
 /// The fields of a contact, all that a step changes.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[allow(
+    clippy::large_enum_variant,
+    reason = "there are few, and what they hold is elsewhere"
+)]
 pub enum ContactState {
     /// Of a line contact.
     Line(LineState),
@@ -43,6 +48,7 @@ pub enum ContactState {
 }
 
 /// Scratch of a step.
+#[allow(clippy::large_enum_variant, reason = "there are few, and they are not moved")]
 pub enum ContactWorkspace {
     /// Of a line contact.
     Line(LineWorkspace),
