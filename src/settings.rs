@@ -23,6 +23,8 @@ pub struct Settings {
     pub heat: HeatSettings,
     /// Derivatives of the outputs.
     pub sensitivity: SensitivitySettings,
+    /// The mechanics of the patch.
+    pub patch: PatchSettings,
 }
 
 /// How a step is divided into sub-steps.
@@ -285,6 +287,66 @@ impl Default for SensitivitySettings {
             output_step: 1e-7,
             linear_output_step: 1e-5,
             least_output_step: 1e-9,
+        }
+    }
+}
+
+/// Pressure and shear of a patch.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PatchSettings {
+    /// Limit of the sets of cells under pressure that are tried. In the second half of them only the worst cell joins.
+    pub normal_passes: usize,
+    /// Limit of the conjugate gradients on one set.
+    pub normal_iterations: usize,
+    /// Error of the pressure to which a set is solved while it still changes.
+    pub set_tolerance: f64,
+    /// Overlap, scaled, below which a cell without pressure counts as touching.
+    pub overlap: f64,
+    /// Pressure of a cell that joins, relative to the largest.
+    pub trace: f64,
+    /// Depth of the first set of cells, in displacements of a cell under a pressure of 1 by itself.
+    pub first_pressure: f64,
+    /// Limit of the Newton steps of the friction law.
+    pub newton_steps: usize,
+    /// Limit of the Krylov iterations of one of them.
+    pub krylov_iterations: usize,
+    /// Residual of a correction relative to that of the law: as much as is needed, between these.
+    pub least_forcing: f32,
+    /// The largest of it.
+    pub largest_forcing: f32,
+    /// Krylov iterations above which the blocks are factorised anew for the next Newton step.
+    pub renewal: usize,
+    /// Limit of the halvings of a Newton step.
+    pub halvings: usize,
+    /// Limit of the regularisations on the way to the law, from the largest slip on.
+    pub continuation: usize,
+    /// Ratio of two of them.
+    pub continuation_step: f64,
+    /// Residual at which the next one is taken.
+    pub continuation_tolerance: f64,
+    /// The last of them, relative to the largest slip.
+    pub least_regularisation: f64,
+}
+
+impl Default for PatchSettings {
+    fn default() -> Self {
+        PatchSettings {
+            normal_passes: 60,
+            normal_iterations: 200,
+            set_tolerance: 1e-4,
+            overlap: 1e-10,
+            trace: 1e-6,
+            first_pressure: 4.0,
+            newton_steps: 40,
+            krylov_iterations: 60,
+            least_forcing: 1e-5,
+            largest_forcing: 1e-2,
+            renewal: 12,
+            halvings: 12,
+            continuation: 12,
+            continuation_step: 0.2,
+            continuation_tolerance: 1e-4,
+            least_regularisation: 1e-4,
         }
     }
 }

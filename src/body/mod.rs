@@ -8,7 +8,10 @@
 pub mod compliance;
 pub mod elasticity;
 pub mod forms;
+pub mod grid;
 pub mod half_plane;
+pub mod half_space;
+pub mod influence;
 pub mod mesh;
 pub mod pair;
 pub mod remainder;

@@ -28,7 +28,7 @@ pub fn saturation_slope(slip: f64, regularisation: f64) -> f64 {
 }
 
 /// By the regularised law a node sticks below this value of |φ|: |s| < 6.3 ε. By Coulomb's it sticks below 1.
-const STICK_SATURATION: f64 = 0.9;
+pub const STICK_SATURATION: f64 = 0.9;
 
 /// Whether a node that takes this share of Coulomb's bound counts as sticking.
 pub fn sticks(saturation: f64, regularisation: f64) -> bool {

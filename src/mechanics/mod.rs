@@ -7,6 +7,7 @@
 
 pub mod front;
 pub mod normal;
+pub mod patch;
 pub mod problem;
 pub mod response;
 pub mod softening;

@@ -36,9 +36,21 @@ impl Arithmetic {
     /// In two, for code outside the hot loops.
     pub const SEPARATE: Arithmetic = Arithmetic { fused: false };
 
+    /// Whether it takes one instruction.
+    #[inline(always)]
+    pub fn is_fused(self) -> bool {
+        self.fused
+    }
+
     /// a · b + c.
     #[inline(always)]
     pub fn multiply_add(self, a: f64, b: f64, c: f64) -> f64 {
+        if self.fused { a.mul_add(b, c) } else { a * b + c }
+    }
+
+    /// a · b + c in single precision.
+    #[inline(always)]
+    pub fn multiply_add_single(self, a: f32, b: f32, c: f32) -> f32 {
         if self.fused { a.mul_add(b, c) } else { a * b + c }
     }
 

@@ -1,0 +1,445 @@
+//! Displacement of all cells of a grid by uniform loads on all cells, as a product.
+//!
+//! The influence of a cell on another depends on the difference of their places only. Across the strips the product is
+//! therefore a discrete convolution, which Fourier's transform over the strips makes a product of each harmonic with its own: exact
+//! to round-off, and its work grows as the strips times their logarithm. Along the strips it is summed directly, cell by cell: at
+//! some 24 cells that is quicker than a second transform.
+//!
+//! A kernel that is even in y has real harmonics K̂ = Σ K cos, one that is odd has −i times the real Ŝ = Σ K sin. All products
+//! that a contact needs have the form
+//!
+//! out_x = A τ_x + B τ_y,  out_y = B τ_x + C τ_y,  A and C even, B odd in y,
+//!
+//! so that the two components travel as real and imaginary part through one transform, and there is one product:
+//! A, B, C are those of displacement by shear; displacement by pressure has p for τ_x and nothing for τ_y; lift by
+//! shear is out_x of the same tables; approach by pressure has A alone.
+
+use super::grid::Grid;
+use crate::numerics::dense::{self, Arithmetic};
+use crate::numerics::fourier::{Fourier, Rows, good_size};
+use crate::numerics::real::Real;
+use std::f64::consts::TAU;
+use std::ops::Range;
+
+/// Cells whose sums are built up together, in registers.
+const BLOCK: usize = 8;
+
+/// A place in a grid relative to another: cells ahead and strips to the left.
+type Lag = (isize, isize);
+
+/// The harmonics of the three kernels of a product: row by row over the harmonics, each with the lags along x.
+#[derive(Debug, Clone)]
+pub struct Tables<T> {
+    /// A and C.
+    even: [Vec<T>; 2],
+    /// B.
+    odd: Vec<T>,
+    /// Whether only A is not 0.
+    scalar: bool,
+}
+
+/// Everything that products on a grid share for one number of harmonics.
+#[derive(Debug, Clone)]
+pub struct Transform {
+    /// Lags along x in a row of a table, of which that with number `stride` is 0.
+    lags: usize,
+    stride: usize,
+    single: Fourier<f32>,
+    double: Fourier<f64>,
+}
+
+/// Scratch of a product.
+#[derive(Debug, Clone)]
+pub struct Scratch<T> {
+    rows: Rows<T>,
+    other: Rows<T>,
+    /// Of one harmonic the transforms of the x and of the y component, real and imaginary part.
+    parts: [Vec<T>; 4],
+}
+
+/// The part of a grid that a product reads and writes.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Window {
+    /// Strips that are loaded and read.
+    pub strips: Range<usize>,
+    /// Cells that are loaded in any of them.
+    pub loaded: Range<usize>,
+    /// Cells that are read in any of them.
+    pub read: Range<usize>,
+}
+
+impl Window {
+    /// All of a grid.
+    pub fn whole(grid: &Grid) -> Window {
+        Window {
+            strips: 0..grid.strips,
+            loaded: 0..grid.cells,
+            read: 0..grid.cells,
+        }
+    }
+}
+
+impl Transform {
+    /// For loads and displacements on up to so many neighbouring strips of a grid.
+    pub fn new(grid: &Grid, strips: usize) -> Transform {
+        let (stride, size) = (grid.stride(), good_size(2 * strips - 1));
+        Transform {
+            lags: 2 * stride + BLOCK,
+            stride,
+            single: Fourier::new(size),
+            double: Fourier::new(size),
+        }
+    }
+
+    /// Number of neighbouring strips that it serves.
+    pub fn strips(&self) -> usize {
+        self.double.size().div_ceil(2)
+    }
+
+    /// Harmonics 0 … P/2.
+    fn harmonics(&self) -> usize {
+        self.double.size() / 2 + 1
+    }
+
+    /// Scratch for products in single or double precision.
+    pub fn scratch<T: Real>(&self) -> Scratch<T> {
+        let rows = Rows::new(self.double.size(), self.stride);
+        Scratch {
+            other: rows.clone(),
+            rows,
+            parts: std::array::from_fn(|_| vec![T::default(); self.stride]),
+        }
+    }
+
+    /// Values of one of a table's kernels.
+    pub fn table_len(&self) -> usize {
+        self.harmonics() * self.lags
+    }
+
+    /// The tables of the kernels A, B and C, as functions of the lag.
+    pub fn tables(&self, a: impl Fn(Lag) -> f64, b: impl Fn(Lag) -> f64, c: impl Fn(Lag) -> f64) -> Tables<f64> {
+        let size = self.double.size();
+        // The inverse transform lacks 1/P.
+        let share = 1.0 / size as f64;
+        let sum = |wave: fn(f64) -> f64, kernel: &dyn Fn(Lag) -> f64| {
+            let mut table = vec![0.0; self.table_len()];
+            let largest = ((size - 1) / 2) as isize;
+            for lag in 0..self.lags {
+                let along = lag as isize - self.stride as isize;
+                let values: Vec<f64> = (-largest..=largest).map(|across| kernel((along, across))).collect();
+                for harmonic in 0..self.harmonics() {
+                    let terms = (-largest..=largest).zip(&values).map(|(across, value)| {
+                        let turn = (harmonic as isize * across).rem_euclid(size as isize);
+                        value * wave(TAU * turn as f64 / size as f64)
+                    });
+                    table[harmonic * self.lags + lag] = share * terms.sum::<f64>();
+                }
+            }
+            table
+        };
+        Tables {
+            even: [sum(f64::cos, &a), sum(f64::cos, &c)],
+            odd: sum(f64::sin, &b),
+            scalar: false,
+        }
+    }
+
+    /// The tables of a kernel A alone.
+    pub fn scalar_tables(&self, a: impl Fn(Lag) -> f64) -> Tables<f64> {
+        Tables {
+            scalar: true,
+            ..self.tables(a, |_| 0.0, |_| 0.0)
+        }
+    }
+
+    /// The product in double precision: `out` = tables · `load`, both as x and y components on the grid. What is not read stays.
+    pub fn apply(
+        &self,
+        tables: &Tables<f64>,
+        window: &Window,
+        load: [&[f64]; 2],
+        out: [&mut [f64]; 2],
+        scratch: &mut Scratch<f64>,
+    ) {
+        dense::vectorised(
+            #[inline(always)]
+            |arithmetic| self.apply_kernel(arithmetic, &self.double, tables, window, load, out, scratch),
+        );
+    }
+
+    /// The product in single precision.
+    pub fn apply_single(
+        &self,
+        tables: &Tables<f32>,
+        window: &Window,
+        load: [&[f32]; 2],
+        out: [&mut [f32]; 2],
+        scratch: &mut Scratch<f32>,
+    ) {
+        dense::vectorised(
+            #[inline(always)]
+            |arithmetic| self.apply_kernel(arithmetic, &self.single, tables, window, load, out, scratch),
+        );
+    }
+
+    #[inline(always)]
+    fn apply_kernel<T: Real>(
+        &self,
+        arithmetic: Arithmetic,
+        fourier: &Fourier<T>,
+        tables: &Tables<T>,
+        window: &Window,
+        load: [&[T]; 2],
+        out: [&mut [T]; 2],
+        scratch: &mut Scratch<T>,
+    ) {
+        let stride = self.stride;
+        let strips = window.strips.clone();
+        let Scratch { rows, other, parts } = scratch;
+        for (rows, load) in [&mut rows.re, &mut rows.im].into_iter().zip(load) {
+            let (given, rest) = rows.split_at_mut(strips.len() * stride);
+            given.copy_from_slice(&load[strips.start * stride..strips.end * stride]);
+            rest.fill(T::default());
+        }
+        fourier.forward(arithmetic, stride, rows, other);
+        let size = fourier.size();
+        for harmonic in 0..self.harmonics() {
+            let own = harmonic * stride..(harmonic + 1) * stride;
+            let opposite = (size - harmonic) % size * stride;
+            let lags = harmonic * self.lags..(harmonic + 1) * self.lags;
+            let kernels = [
+                &tables.even[0][lags.clone()],
+                &tables.even[1][lags.clone()],
+                &tables.odd[lags],
+            ];
+            let mirror = opposite..opposite + stride;
+            if tables.scalar {
+                self.scalar_harmonic(arithmetic, kernels[0], window, &own, &mirror, rows, other);
+            } else {
+                take_apart(rows, &own, &mirror, parts);
+                self.harmonic(arithmetic, kernels, window, (&own, &mirror), parts, other);
+            }
+        }
+        fourier.backward(arithmetic, stride, other, rows);
+        for (component, out) in [&other.re, &other.im].into_iter().zip(out) {
+            for (row, strip) in component.chunks_exact(stride).zip(strips.clone()) {
+                let read = window.read.clone();
+                out[strip * stride..][read.clone()].copy_from_slice(&row[read]);
+            }
+        }
+    }
+
+    /// One harmonic of the product, from its parts into `to`.
+    #[inline(always)]
+    fn harmonic<T: Real>(
+        &self,
+        arithmetic: Arithmetic,
+        [a, c, b]: [&[T]; 3],
+        window: &Window,
+        (own, mirror): (&Range<usize>, &Range<usize>),
+        [xr, xi, yr, yi]: &[Vec<T>; 4],
+        to: &mut Rows<T>,
+    ) {
+        let first = window.read.start / BLOCK * BLOCK;
+        for start in (first..window.read.end).step_by(BLOCK) {
+            let mut sums = [[T::default(); BLOCK]; 4];
+            for cell in window.loaded.clone() {
+                let (x, y) = ((xr[cell], xi[cell]), (yr[cell], yi[cell]));
+                let lag = start + self.stride - cell;
+                let [a, b, c] = [a, b, c].map(|kernel| &kernel[lag..lag + BLOCK]);
+                for lane in 0..BLOCK {
+                    let fma = |k, value, sum| T::multiply_add(arithmetic, k, value, sum);
+                    sums[0][lane] = fma(a[lane], x.0, fma(b[lane], y.1, sums[0][lane]));
+                    sums[1][lane] = fma(a[lane], x.1, fma(b[lane], -y.0, sums[1][lane]));
+                    sums[2][lane] = fma(c[lane], y.0, fma(b[lane], x.1, sums[2][lane]));
+                    sums[3][lane] = fma(c[lane], y.1, fma(b[lane], -x.0, sums[3][lane]));
+                }
+            }
+            let [xr, xi, yr, yi] = sums;
+            let (own, mirror) = (own.start + start, mirror.start + start);
+            for lane in 0..BLOCK {
+                to.re[own + lane] = xr[lane].plus(-yi[lane]);
+                to.im[own + lane] = xi[lane].plus(yr[lane]);
+            }
+            if mirror != own {
+                for lane in 0..BLOCK {
+                    to.re[mirror + lane] = xr[lane].plus(yi[lane]);
+                    to.im[mirror + lane] = yr[lane].plus(-xi[lane]);
+                }
+            }
+        }
+    }
+
+    /// As [`Transform::harmonic`] where A alone is not 0: both components pass through it.
+    #[inline(always)]
+    fn scalar_harmonic<T: Real>(
+        &self,
+        arithmetic: Arithmetic,
+        a: &[T],
+        window: &Window,
+        own: &Range<usize>,
+        mirror: &Range<usize>,
+        from: &Rows<T>,
+        to: &mut Rows<T>,
+    ) {
+        let first = window.read.start / BLOCK * BLOCK;
+        let both = if own == mirror { 1 } else { 2 };
+        for place in [own, mirror].into_iter().take(both) {
+            let (re, im) = (&from.re[place.clone()], &from.im[place.clone()]);
+            for start in (first..window.read.end).step_by(BLOCK) {
+                let mut sums = [[T::default(); BLOCK]; 2];
+                for cell in window.loaded.clone() {
+                    let lag = start + self.stride - cell;
+                    let a = &a[lag..lag + BLOCK];
+                    for lane in 0..BLOCK {
+                        sums[0][lane] = T::multiply_add(arithmetic, a[lane], re[cell], sums[0][lane]);
+                        sums[1][lane] = T::multiply_add(arithmetic, a[lane], im[cell], sums[1][lane]);
+                    }
+                }
+                let start = place.start + start;
+                to.re[start..start + BLOCK].copy_from_slice(&sums[0]);
+                to.im[start..start + BLOCK].copy_from_slice(&sums[1]);
+            }
+        }
+    }
+}
+
+/// Of Z = X + iY the transforms of the real X and Y: (Z + Z̄')/2 and (Z − Z̄')/2i, with Z' at the opposite harmonic.
+#[inline(always)]
+fn take_apart<T: Real>(rows: &Rows<T>, own: &Range<usize>, mirror: &Range<usize>, [xr, xi, yr, yi]: &mut [Vec<T>; 4]) {
+    let half = T::new(0.5);
+    let own = rows.re[own.clone()].iter().zip(&rows.im[own.clone()]);
+    let mirror = rows.re[mirror.clone()].iter().zip(&rows.im[mirror.clone()]);
+    let x = xr.iter_mut().zip(xi.iter_mut());
+    let y = yr.iter_mut().zip(yi.iter_mut());
+    for (((&a, &b), (&c, &d)), ((xr, xi), (yr, yi))) in own.zip(mirror).zip(x.zip(y)) {
+        *xr = half.times(a.plus(c));
+        *xi = half.times(b.plus(-d));
+        *yr = half.times(b.plus(d));
+        *yi = half.times(c.plus(-a));
+    }
+}
+
+impl Tables<f64> {
+    /// `own` · K(lag) + `ahead` · K(lag + `shift` cells), kernel by kernel, in double and single precision.
+    pub fn combine(
+        &self,
+        transform: &Transform,
+        (own, ahead, shift): (f64, f64, isize),
+        double: &mut Tables<f64>,
+        single: &mut Tables<f32>,
+    ) {
+        let from = [&self.even[0], &self.even[1], &self.odd];
+        let [first, second] = &mut double.even;
+        let [first_single, second_single] = &mut single.even;
+        let to = [
+            (first, first_single),
+            (second, second_single),
+            (&mut double.odd, &mut single.odd),
+        ];
+        for (from, (double, single)) in from.into_iter().zip(to) {
+            let rows = from.chunks_exact(transform.lags);
+            let outs = double
+                .chunks_exact_mut(transform.lags)
+                .zip(single.chunks_exact_mut(transform.lags));
+            for (from, (double, single)) in rows.zip(outs) {
+                let count = transform.lags;
+                for lag in 0..count {
+                    let shifted = (lag as isize + shift).clamp(0, count as isize - 1) as usize;
+                    double[lag] = own * from[lag] + ahead * from[shifted];
+                    single[lag] = double[lag] as f32;
+                }
+            }
+        }
+    }
+
+    /// The same in single precision.
+    pub fn single(&self) -> Tables<f32> {
+        let single = |table: &Vec<f64>| table.iter().map(|&value| value as f32).collect();
+        Tables {
+            even: [single(&self.even[0]), single(&self.even[1])],
+            odd: single(&self.odd),
+            scalar: self.scalar,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    /// Kernels without symmetry along x, even and odd across.
+    fn kernels() -> [fn(Lag) -> f64; 3] {
+        [
+            |(x, y)| 1.0 / (2.0 + (x as f64 - 0.3).powi(2) + (y * y) as f64),
+            |(x, y)| y as f64 / (1.0 + (x as f64 + 0.7).powi(2) + (y * y) as f64),
+            |(x, y)| (-(0.1 * x as f64 - 0.2).powi(2)).exp() / (1.0 + y.abs() as f64),
+        ]
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(30))]
+        /// Against the whole matrix, in both precisions, for any part of any grid.
+        #[test]
+        fn the_product_is_that_of_the_whole_matrix(
+            cells in 3_usize..30, strips in 1_usize..14, from in 0.0..0.5_f64, to in 0.5..1.0_f64, seed in 0.0..6.0_f64,
+        ) {
+            let grid = Grid::new(cells, strips, 1.0, 1.0);
+            let part = |count: usize| -> Range<usize> {
+                let size = count as f64;
+                let (first, end): (f64, f64) = (from * size, to * size);
+                first as usize..(end.ceil() as usize).max(1)
+            };
+            let window = Window { strips: part(strips), loaded: part(cells), read: 0..cells };
+            let transform = Transform::new(&grid, window.strips.len());
+            let [a, b, c] = kernels();
+            let tables = transform.tables(a, b, c);
+            let scalar = transform.scalar_tables(a);
+            let loaded = |strip: usize, cell: usize| window.strips.contains(&strip) && window.loaded.contains(&cell);
+            let mut load = [vec![0.0; grid.len()], vec![0.0; grid.len()]];
+            for strip in 0..strips {
+                for cell in (0..cells).filter(|&cell| loaded(strip, cell)) {
+                    let place = grid.place(strip, cell);
+                    load[0][place] = (seed + place as f64).sin();
+                    load[1][place] = (2.0 * seed + 1.3 * place as f64).cos();
+                }
+            }
+            let mut out = [vec![f64::NAN; grid.len()], vec![f64::NAN; grid.len()]];
+            let mut scalars = out.clone();
+            let mut singles = [vec![f32::NAN; grid.len()], vec![f32::NAN; grid.len()]];
+            let given = load.clone().map(|load| load.iter().map(|&value| value as f32).collect::<Vec<f32>>());
+            {
+                let [x, y] = &mut out;
+                transform.apply(&tables, &window, [&load[0], &load[1]], [x, y], &mut transform.scratch());
+                let [x, y] = &mut scalars;
+                transform.apply(&scalar, &window, [&load[0], &load[1]], [x, y], &mut transform.scratch());
+                let [x, y] = &mut singles;
+                transform.apply_single(&tables.single(), &window, [&given[0], &given[1]], [x, y], &mut transform.scratch());
+            }
+            for strip in window.strips.clone() {
+                for cell in window.read.clone() {
+                    let (mut sum, mut alone) = ([0.0; 2], [0.0; 2]);
+                    for strip_loaded in 0..strips {
+                        for cell_loaded in 0..cells {
+                            let lag = (cell as isize - cell_loaded as isize, strip as isize - strip_loaded as isize);
+                            let place = grid.place(strip_loaded, cell_loaded);
+                            let (x, y) = (load[0][place], load[1][place]);
+                            sum[0] += a(lag) * x + b(lag) * y;
+                            sum[1] += b(lag) * x + c(lag) * y;
+                            alone[0] += a(lag) * x;
+                            alone[1] += a(lag) * y;
+                        }
+                    }
+                    let place = grid.place(strip, cell);
+                    for component in 0..2 {
+                        // Round-off of sums over a few hundred terms of order 1.
+                        prop_assert!((out[component][place] - sum[component]).abs() < 1e-12);
+                        prop_assert!((scalars[component][place] - alone[component]).abs() < 1e-12);
+                        prop_assert!((f64::from(singles[component][place]) - sum[component]).abs() < 1e-4);
+                    }
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,376 @@
+//! Friction of all cells of a patch for given pressure: Newton's method on the law of the cells, its corrections by GMRES with
+//! the strips' blocks as preconditioner.
+//!
+//! The slip is an affine function of the shear, S = S₀ + T τ: T is a product with tables, [`super::super::super::body::influence`], and
+//! what the leading edge adds to its cells. Residuals are in double precision, corrections in single: a correction is needed
+//! to a few digits only, because the next residual shows what it missed.
+
+use super::blocks::{Blocks, OwnResponse};
+use super::contact::Contact;
+use super::law::{Cell, Row, Scheme, Vector};
+use crate::body::grid::Grid;
+use crate::body::influence::{self, Tables, Transform, Window};
+use crate::error::{Error, Result};
+use crate::numerics::gmres::Gmres;
+use crate::settings::PatchSettings;
+
+/// How the slip responds to the shear: of the cells ahead.
+#[derive(Debug, Clone)]
+pub struct SlipResponse {
+    /// In double and single precision.
+    pub double: Tables<f64>,
+    /// In single precision.
+    pub single: Tables<f32>,
+    /// Of a strip to itself, along x and across.
+    pub own: [Vec<f32>; 2],
+    /// Place of lag 0 in them.
+    pub origin: usize,
+    /// Whether the leading side is that of +x.
+    pub forward: bool,
+}
+
+/// The data of one problem.
+#[derive(Clone, Copy)]
+pub struct FrictionProblem<'a> {
+    /// The grid.
+    pub grid: &'a Grid,
+    /// The transform of the tables.
+    pub transform: &'a Transform,
+    /// The cells under pressure.
+    pub contact: &'a Contact,
+    /// T, without the leading edge.
+    pub response: &'a SlipResponse,
+    /// What the leading edge adds to the slip of a cell per its own shear, along x and y, cells.
+    pub edge: &'a [Vector],
+    /// S₀ on the grid, x and y.
+    pub free_slip: [&'a [f64]; 2],
+    /// μp, cells.
+    pub bound: &'a [f64],
+    /// r, shear per slip.
+    pub scale: f64,
+    /// w.
+    pub noise: f64,
+    /// ε, `m/s`; 0 is Coulomb's law.
+    pub regularisation: f64,
+    /// Residual to be reached, in units of the shear.
+    pub tolerance: f64,
+}
+
+/// Solver and scratch.
+pub struct Friction {
+    settings: PatchSettings,
+    gmres: Gmres,
+    blocks: Blocks,
+    factorised: bool,
+    /// T τ and T of a correction on the grid.
+    response: [Vec<f64>; 2],
+    correction_response: [Vec<f64>; 2],
+    /// A correction on the grid.
+    correction: [Vec<f64>; 2],
+    load_single: [Vec<f32>; 2],
+    response_single: [Vec<f32>; 2],
+    scratch: influence::Scratch<f64>,
+    scratch_single: influence::Scratch<f32>,
+    /// Of the cells.
+    rows: Vec<Row>,
+    step: Vec<f32>,
+    /// Products with the response since the counters were read: Newton steps, products of the Krylov method.
+    pub counts: [usize; 2],
+}
+
+impl Friction {
+    /// For a grid.
+    pub fn new(grid: &Grid, transform: &Transform, settings: PatchSettings) -> Friction {
+        let (cells, total) = (grid.cells, grid.cells * grid.strips);
+        let double = || [vec![0.0; grid.len()], vec![0.0; grid.len()]];
+        let single = || [vec![0.0; grid.len()], vec![0.0; grid.len()]];
+        Friction {
+            settings,
+            gmres: Gmres::new(2 * total, settings.krylov_iterations),
+            blocks: Blocks::new(cells, total),
+            factorised: false,
+            response: double(),
+            correction_response: double(),
+            correction: double(),
+            load_single: single(),
+            response_single: single(),
+            scratch: transform.scratch(),
+            scratch_single: transform.scratch(),
+            rows: vec![Row::default(); total],
+            step: vec![0.0; 2 * total],
+            counts: [0; 2],
+        }
+    }
+
+    /// Forgets what was factorised for another step.
+    pub fn start_step(&mut self) {
+        self.factorised = false;
+    }
+
+    /// Solves for the shear on the grid, x and y, from the given one. Cells that are not under pressure must have none.
+    ///
+    /// # Errors
+    /// [`Error::TangentialNotConverged`].
+    pub fn solve(&mut self, problem: &FrictionProblem, shear: &mut [Vec<f64>; 2]) -> Result<()> {
+        let scheme = Scheme {
+            scale: problem.scale,
+            noise: problem.noise,
+            regularisation: problem.regularisation,
+        };
+        if self.newton(problem, &scheme, shear, problem.tolerance).is_ok() {
+            return Ok(());
+        }
+        // From nothing, or after a jump: first with a law that is smooth on the scale of all the slip, then step by step with that
+        // which is asked for.
+        for component in shear.iter_mut() {
+            component.fill(0.0);
+        }
+        let largest = problem
+            .contact
+            .places(problem.grid)
+            .map(|place| problem.free_slip[0][place].hypot(problem.free_slip[1][place]))
+            .fold(0.0, f64::max);
+        let mut epsilon = largest;
+        for _ in 0..self.settings.continuation {
+            if epsilon <= problem.regularisation.max(self.settings.least_regularisation * largest) {
+                break;
+            }
+            let smooth = Scheme {
+                noise: f64::INFINITY,
+                regularisation: epsilon,
+                ..scheme
+            };
+            self.factorised = false;
+            // A smoother law that stalls still leads closer.
+            let _ = self.newton(problem, &smooth, shear, self.settings.continuation_tolerance);
+            epsilon *= self.settings.continuation_step;
+        }
+        for noise in [f64::INFINITY, 1e2 * problem.noise, problem.noise] {
+            self.factorised = false;
+            let last = self.newton(problem, &Scheme { noise, ..scheme }, shear, problem.tolerance);
+            if noise == problem.noise {
+                return last.map_err(|(iterations, residual)| Error::TangentialNotConverged {
+                    iterations,
+                    residual,
+                    tolerance: problem.tolerance,
+                });
+            }
+        }
+        Ok(())
+    }
+
+    /// Newton's method. Where it does not reach the tolerance, the iterations and the residual.
+    fn newton(
+        &mut self,
+        problem: &FrictionProblem,
+        scheme: &Scheme,
+        shear: &mut [Vec<f64>; 2],
+        tolerance: f64,
+    ) -> std::result::Result<(), (usize, f64)> {
+        let n = problem.contact.cells();
+        let window = problem.contact.window(problem.grid, 1);
+        {
+            let [x, y] = &mut self.response;
+            let load = [&shear[0][..], &shear[1][..]];
+            problem
+                .transform
+                .apply(&problem.response.double, &window, load, [x, y], &mut self.scratch);
+        }
+        let mut size = self.update_rows(problem, scheme, shear, 0.0);
+        let mut largest = self.largest_residual(n);
+        for iterations in 0..self.settings.newton_steps {
+            if largest <= tolerance {
+                return Ok(());
+            }
+            let fresh = !self.factorised;
+            if !self.factorised {
+                self.factorised = self.factorise(problem);
+            }
+            if !self.factorised {
+                return Err((iterations, largest));
+            }
+            let solved = self.correct(problem, &window, (tolerance / largest) as f32);
+            // A kept factorisation that no longer serves is made anew for the next correction.
+            if solved > self.settings.renewal && !fresh {
+                self.factorised = false;
+            }
+            {
+                let [x, y] = &mut self.correction_response;
+                let load = [&self.correction[0][..], &self.correction[1][..]];
+                problem
+                    .transform
+                    .apply(&problem.response.double, &window, load, [x, y], &mut self.scratch);
+            }
+            let mut length = 1.0;
+            let mut halvings = 0;
+            loop {
+                let moved = self.update_rows(problem, scheme, shear, length);
+                if moved <= (1.0 - 1e-4 * length) * size {
+                    size = moved;
+                    break;
+                }
+                if halvings == self.settings.halvings {
+                    return Err((iterations, largest));
+                }
+                halvings += 1;
+                length *= 0.5;
+            }
+            for component in 0..2 {
+                for place in problem.contact.places(problem.grid) {
+                    shear[component][place] += length * self.correction[component][place];
+                }
+                let moved = self.response[component]
+                    .iter_mut()
+                    .zip(&self.correction_response[component]);
+                for (response, change) in moved {
+                    *response += length * change;
+                }
+            }
+            if length < 1.0 {
+                self.factorised = false;
+            }
+            largest = self.largest_residual(n);
+            self.counts[0] += 1;
+        }
+        if largest <= tolerance {
+            Ok(())
+        } else {
+            Err((self.settings.newton_steps, largest))
+        }
+    }
+
+    fn largest_residual(&self, n: usize) -> f64 {
+        self.rows[..n]
+            .iter()
+            .flat_map(|row| row.residual)
+            .fold(0.0, |m: f64, r| r.abs().max(m))
+    }
+
+    /// The law of all cells after `length` of the correction. Returns the length of the residual.
+    fn update_rows(&mut self, problem: &FrictionProblem, scheme: &Scheme, shear: &[Vec<f64>; 2], length: f64) -> f64 {
+        let mut sum = 0.0;
+        let behind = if problem.response.forward { -1 } else { 1 };
+        for run in problem.contact.runs() {
+            for (index, place) in run.own().zip(run.places(problem.grid)) {
+                let moved = |values: &[Vec<f64>; 2], changes: &[Vec<f64>; 2], place: usize| -> Vector {
+                    [0, 1].map(|component: usize| values[component][place] + length * changes[component][place])
+                };
+                let slip = |place: usize| {
+                    let response = moved(&self.response, &self.correction_response, place);
+                    [
+                        problem.free_slip[0][place] + response[0],
+                        problem.free_slip[1][place] + response[1],
+                    ]
+                };
+                let own = if length == 0.0 {
+                    [shear[0][place], shear[1][place]]
+                } else {
+                    moved(shear, &self.correction, place)
+                };
+                let edge = problem.edge[index];
+                let mut ahead = slip(place);
+                ahead[0] += edge[0] * own[0];
+                ahead[1] += edge[1] * own[1];
+                let row = scheme.row(&Cell {
+                    shear: own,
+                    ahead,
+                    behind: slip(place.wrapping_add_signed(behind)),
+                    bound: problem.bound[index],
+                });
+                sum += row.residual[0] * row.residual[0] + row.residual[1] * row.residual[1];
+                self.rows[index] = row;
+            }
+        }
+        sum.sqrt()
+    }
+
+    fn factorise(&mut self, problem: &FrictionProblem) -> bool {
+        let response = problem.response;
+        let own = OwnResponse {
+            along: &response.own[0],
+            across: &response.own[1],
+            origin: response.origin,
+            behind: if response.forward { -1 } else { 1 },
+        };
+        let n = problem.contact.cells();
+        self.blocks
+            .factorise(problem.contact, &self.rows[..n], problem.edge, &own)
+    }
+
+    /// The correction of the shear on the grid. Returns the iterations that it took.
+    fn correct(&mut self, problem: &FrictionProblem, window: &Window, needed: f32) -> usize {
+        let n = problem.contact.cells();
+        for (index, row) in self.rows[..n].iter().enumerate() {
+            self.step[index] = -row.residual[0] as f32;
+            self.step[n + index] = -row.residual[1] as f32;
+        }
+        let Friction {
+            gmres,
+            blocks,
+            rows,
+            step,
+            load_single,
+            response_single,
+            scratch_single,
+            settings,
+            ..
+        } = self;
+        let tolerance = needed.clamp(settings.least_forcing, settings.largest_forcing);
+        for component in load_single.iter_mut() {
+            component.fill(0.0);
+        }
+        let behind = if problem.response.forward { -1 } else { 1 };
+        let multiply = |x: &[f32], out: &mut [f32]| {
+            let (along, across) = x.split_at(n);
+            problem.contact.scatter(problem.grid, along, &mut load_single[0]);
+            problem.contact.scatter(problem.grid, across, &mut load_single[1]);
+            {
+                let [x, y] = &mut *response_single;
+                let load = [&load_single[0][..], &load_single[1][..]];
+                problem
+                    .transform
+                    .apply_single(&problem.response.single, window, load, [x, y], scratch_single);
+            }
+            let (out_along, out_across) = out.split_at_mut(n);
+            for run in problem.contact.runs() {
+                for (index, place) in run.own().zip(run.places(problem.grid)) {
+                    let row = &rows[index];
+                    let shear = [f64::from(along[index]), f64::from(across[index])];
+                    let next = place.wrapping_add_signed(behind);
+                    let mut ahead = [
+                        f64::from(response_single[0][place]),
+                        f64::from(response_single[1][place]),
+                    ];
+                    let behind = [f64::from(response_single[0][next]), f64::from(response_single[1][next])];
+                    let edge = problem.edge[index];
+                    ahead[0] += edge[0] * shear[0];
+                    ahead[1] += edge[1] * shear[1];
+                    let line = |i: usize| {
+                        row.by_shear[i][0] * shear[0]
+                            + row.by_shear[i][1] * shear[1]
+                            + row.by_ahead[i][0] * ahead[0]
+                            + row.by_ahead[i][1] * ahead[1]
+                            + row.by_behind[i][0] * behind[0]
+                            + row.by_behind[i][1] * behind[1]
+                    };
+                    out_along[index] = line(0) as f32;
+                    out_across[index] = line(1) as f32;
+                }
+            }
+        };
+        let solved = gmres.solve(&mut step[..2 * n], tolerance, multiply, |values| blocks.solve(values));
+        self.counts[1] += solved.iterations;
+        for component in 0..2 {
+            let values = self.step[component * n..(component + 1) * n].iter();
+            for (place, value) in problem.contact.places(problem.grid).zip(values) {
+                self.correction[component][place] = f64::from(*value);
+            }
+        }
+        solved.iterations
+    }
+
+    /// The slip of the last solve at a cell's place: ahead of it, without what the leading edge adds.
+    pub fn response_at(&self, place: usize) -> Vector {
+        [self.response[0][place], self.response[1][place]]
+    }
+}

@@ -1,0 +1,350 @@
+//! The normal problem of a patch: pressure and penetration for a given gap, under a load or a penetration.
+//!
+//! Minimise ½ pᵀ(A + D)p + gᵀp over p ≥ 0 with Σp given, or over ½ pᵀ(A + D)p + (g − δ)ᵀp: A is the influence of the cells on one
+//! another, D what each pressure opens its own gap by, the wear of the step. On a set of cells under pressure this is a linear system, solved
+//! by conjugate gradients from the pressure of the step before, with the strips' own blocks as preconditioner; then cells that pull
+//! leave the set, cells that overlap join it, until none does.
+
+use super::contact::Contact;
+use crate::body::grid::Grid;
+use crate::body::influence::{self, Tables, Transform, Window};
+use crate::error::{Error, Result};
+use crate::mechanics::normal::problem::Constraint;
+use crate::settings::PatchSettings;
+
+/// What of the influence does not change.
+#[derive(Debug, Clone)]
+pub struct Approach {
+    /// A.
+    pub tables: Tables<f64>,
+    /// Influence of a cell on itself.
+    pub own: f64,
+    /// Cholesky factor of a whole strip's own block, row by row. That of a shorter run is its upper left part, because the
+    /// influence depends on the distance only.
+    factor: Vec<f64>,
+    cells: usize,
+}
+
+impl Approach {
+    /// Of the influence as a function of the lag.
+    pub fn new(grid: &Grid, transform: &Transform, influence: impl Fn((isize, isize)) -> f64) -> Approach {
+        let n = grid.cells;
+        let mut factor = vec![0.0; n * n];
+        for i in 0..n {
+            for j in 0..=i {
+                let known: f64 = (0..j).map(|k| factor[i * n + k] * factor[j * n + k]).sum();
+                let rest = influence(((i - j) as isize, 0)) - known;
+                factor[i * n + j] = if i == j {
+                    rest.max(f64::MIN_POSITIVE).sqrt()
+                } else {
+                    rest / factor[j * n + j]
+                };
+            }
+        }
+        Approach {
+            own: influence((0, 0)),
+            tables: transform.scalar_tables(influence),
+            factor,
+            cells: n,
+        }
+    }
+
+    /// Solves with the block of a run, in place.
+    fn solve(&self, values: &mut [f64]) {
+        let n = self.cells;
+        for i in 0..values.len() {
+            let known: f64 = (0..i).map(|k| self.factor[i * n + k] * values[k]).sum();
+            values[i] = (values[i] - known) / self.factor[i * n + i];
+        }
+        for i in (0..values.len()).rev() {
+            let value = values[i] / self.factor[i * n + i];
+            values[i] = value;
+            for k in 0..i {
+                values[k] -= self.factor[i * n + k] * value;
+            }
+        }
+    }
+}
+
+/// The data of one problem.
+#[derive(Clone, Copy)]
+pub struct NormalProblem<'a> {
+    /// The grid.
+    pub grid: &'a Grid,
+    /// The transform of the tables.
+    pub transform: &'a Transform,
+    /// A.
+    pub approach: &'a Approach,
+    /// g on the grid.
+    pub gap: &'a [f64],
+    /// D on the grid.
+    pub softness: &'a [f64],
+    /// Load or penetration.
+    pub constraint: Constraint,
+    /// Error of the pressure to be reached.
+    pub tolerance: f64,
+}
+
+/// Solver and scratch.
+pub struct Normal {
+    settings: PatchSettings,
+    /// Displacement by a pressure on the grid.
+    displacement: Vec<f64>,
+    direction_grid: Vec<f64>,
+    nothing: Vec<f64>,
+    ignored: Vec<f64>,
+    scratch: influence::Scratch<f64>,
+    /// Values of the cells.
+    residual: Vec<f64>,
+    direction: Vec<f64>,
+    corrected: Vec<f64>,
+    ones: Vec<f64>,
+    image: Vec<f64>,
+    pressure: Vec<f64>,
+    softness: Vec<f64>,
+    /// Separation w of all cells.
+    pub separation: Vec<f64>,
+    /// Products with the influence since the counter was read.
+    pub products: usize,
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+impl Normal {
+    /// For a grid.
+    pub fn new(grid: &Grid, transform: &Transform, settings: PatchSettings) -> Normal {
+        let on_grid = || vec![0.0; grid.len()];
+        Normal {
+            settings,
+            displacement: on_grid(),
+            direction_grid: on_grid(),
+            nothing: on_grid(),
+            ignored: on_grid(),
+            scratch: transform.scratch(),
+            residual: on_grid(),
+            direction: on_grid(),
+            corrected: on_grid(),
+            ones: on_grid(),
+            image: on_grid(),
+            pressure: on_grid(),
+            softness: on_grid(),
+            separation: on_grid(),
+            products: 0,
+        }
+    }
+
+    /// Solves from the given pressure on the grid, whose cells become `contact`. Returns the penetration.
+    ///
+    /// # Errors
+    /// [`Error::NormalNotConverged`].
+    pub fn solve(&mut self, problem: &NormalProblem, contact: &mut Contact, pressure: &mut [f64]) -> Result<f64> {
+        let grid = problem.grid;
+        self.start(problem, pressure);
+        let mut penetration = 0.0;
+        let mut settled = false;
+        let mut left = f64::INFINITY;
+        for pass in 0..self.settings.normal_passes {
+            contact.list(grid, |place| pressure[place] > 0.0);
+            let tolerance = if settled {
+                problem.tolerance
+            } else {
+                self.settings.set_tolerance.max(problem.tolerance)
+            };
+            (penetration, left) = self.solve_on(problem, contact, pressure, tolerance);
+            self.separate(problem, contact, pressure, penetration);
+            let one_at_a_time = pass >= self.settings.normal_passes / 2;
+            let changed = self.exchange(problem, pressure, one_at_a_time);
+            if !changed && settled && left <= problem.tolerance {
+                contact.list(grid, |place| pressure[place] > 0.0);
+                return Ok(penetration);
+            }
+            settled = !changed;
+        }
+        let _ = penetration;
+        Err(Error::NormalNotConverged {
+            solver: "active set of the patch",
+            iterations: self.settings.normal_passes,
+            residual: left,
+            tolerance: problem.tolerance,
+        })
+    }
+
+    /// A start with the right load; from the cells that overlap where there is none.
+    fn start(&mut self, problem: &NormalProblem, pressure: &mut [f64]) {
+        let sum: f64 = pressure.iter().sum();
+        match problem.constraint {
+            Constraint::Total(load) if sum > 0.0 => pressure.iter_mut().for_each(|p| *p *= load / sum),
+            Constraint::Penetration(_) if sum > 0.0 => {}
+            _ => {
+                // The deepest cell and those that come close to it.
+                let grid = problem.grid;
+                let places = || {
+                    (0..grid.strips)
+                        .flat_map(|strip| grid.row(strip))
+                        .filter(|&place| is_free(grid, place))
+                };
+                let deepest = places().map(|place| problem.gap[place]).fold(f64::INFINITY, f64::min);
+                let depth = match problem.constraint {
+                    Constraint::Penetration(penetration) => penetration - deepest,
+                    Constraint::Total(_) => problem.approach.own * self.settings.first_pressure,
+                };
+                for place in places() {
+                    if problem.gap[place] <= deepest + depth {
+                        pressure[place] = 1.0;
+                    }
+                }
+                let sum: f64 = pressure.iter().sum();
+                if let Constraint::Total(load) = problem.constraint {
+                    pressure.iter_mut().for_each(|p| *p *= load / sum);
+                }
+            }
+        }
+    }
+
+    /// Conjugate gradients on a set of cells. Returns penetration and the error of the pressure that is left.
+    fn solve_on(
+        &mut self,
+        problem: &NormalProblem,
+        contact: &Contact,
+        pressure: &mut [f64],
+        tolerance: f64,
+    ) -> (f64, f64) {
+        let (grid, n) = (problem.grid, contact.cells());
+        let window = contact.window(grid, 0);
+        contact.gather(grid, pressure, &mut self.pressure);
+        contact.gather(grid, problem.softness, &mut self.softness);
+        contact.gather(grid, problem.gap, &mut self.residual);
+        self.multiply(problem, &window, pressure);
+        contact.gather(grid, &self.displacement, &mut self.image);
+        let given = match problem.constraint {
+            Constraint::Total(_) => 0.0,
+            Constraint::Penetration(penetration) => penetration,
+        };
+        for i in 0..n {
+            self.residual[i] = given - self.residual[i] - self.image[i] - self.softness[i] * self.pressure[i];
+        }
+        let load_given = matches!(problem.constraint, Constraint::Total(_));
+        self.ones[..n].fill(1.0);
+        precondition(problem.approach, contact, &mut self.ones);
+        let weight: f64 = self.ones[..n].iter().sum();
+        let (mut last, mut level) = (0.0, 0.0);
+        let mut error = f64::INFINITY;
+        for iteration in 0..self.settings.normal_iterations {
+            self.corrected[..n].copy_from_slice(&self.residual[..n]);
+            precondition(problem.approach, contact, &mut self.corrected);
+            if load_given {
+                level = self.corrected[..n].iter().sum::<f64>() / weight;
+                for (value, one) in self.corrected[..n].iter_mut().zip(&self.ones) {
+                    *value -= level * one;
+                }
+            }
+            error = self.residual[..n]
+                .iter()
+                .fold(0.0, |m: f64, r| (r - level).abs().max(m))
+                / problem.approach.own;
+            if error <= tolerance {
+                break;
+            }
+            let product = dot(&self.residual[..n], &self.corrected[..n]);
+            let ratio = if iteration == 0 { 0.0 } else { product / last };
+            last = product;
+            for (direction, corrected) in self.direction[..n].iter_mut().zip(&self.corrected) {
+                *direction = corrected + ratio * *direction;
+            }
+            self.direction_grid.fill(0.0);
+            contact.scatter(grid, &self.direction, &mut self.direction_grid);
+            let direction = std::mem::take(&mut self.direction_grid);
+            self.multiply(problem, &window, &direction);
+            self.direction_grid = direction;
+            contact.gather(grid, &self.displacement, &mut self.image);
+            for i in 0..n {
+                self.image[i] += self.softness[i] * self.direction[i];
+            }
+            let curvature = dot(&self.direction[..n], &self.image[..n]);
+            if !(curvature > 0.0) {
+                break;
+            }
+            let step = product / curvature;
+            for i in 0..n {
+                self.pressure[i] += step * self.direction[i];
+                self.residual[i] -= step * self.image[i];
+            }
+        }
+        contact.scatter(grid, &self.pressure, pressure);
+        (if load_given { -level } else { given }, error)
+    }
+
+    /// Displacement by a pressure on the grid.
+    fn multiply(&mut self, problem: &NormalProblem, window: &Window, pressure: &[f64]) {
+        self.products += 1;
+        problem.transform.apply(
+            &problem.approach.tables,
+            window,
+            [pressure, &self.nothing],
+            [&mut self.displacement, &mut self.ignored],
+            &mut self.scratch,
+        );
+    }
+
+    /// The separation of all cells.
+    fn separate(&mut self, problem: &NormalProblem, contact: &Contact, pressure: &[f64], penetration: f64) {
+        let grid = problem.grid;
+        let window = Window {
+            strips: 0..grid.strips,
+            read: 0..grid.cells,
+            ..contact.window(grid, 0)
+        };
+        self.multiply(problem, &window, pressure);
+        for place in 0..grid.len() {
+            let softened = self.displacement[place] + problem.softness[place] * pressure[place];
+            self.separation[place] = softened + problem.gap[place] - penetration;
+        }
+    }
+
+    /// Cells that pull leave, cells that overlap join with a trace of pressure; in the order of `one_at_a_time` only the worst.
+    /// Whether any did.
+    fn exchange(&self, problem: &NormalProblem, pressure: &mut [f64], one_at_a_time: bool) -> bool {
+        let grid = problem.grid;
+        let trace = self.settings.trace * pressure.iter().fold(0.0, |m: f64, p| p.max(m));
+        let mut worst = (0.0, None);
+        let mut changed = false;
+        for place in (0..grid.strips).flat_map(|strip| grid.row(strip)) {
+            let joins =
+                pressure[place] == 0.0 && self.separation[place] < -self.settings.overlap && is_free(grid, place);
+            let leaves = pressure[place] < 0.0;
+            if !joins && !leaves {
+                continue;
+            }
+            changed = true;
+            let violation = if leaves {
+                -pressure[place]
+            } else {
+                -self.separation[place] / problem.approach.own
+            };
+            if violation > worst.0 {
+                worst = (violation, Some((place, joins)));
+            }
+            if !one_at_a_time || leaves {
+                pressure[place] = if joins { trace } else { 0.0 };
+            }
+        }
+        if let (true, Some((place, true))) = (one_at_a_time, worst.1) {
+            pressure[place] = trace;
+        }
+        changed
+    }
+}
+
+/// Whether a cell may come under pressure: the slip of the outermost cells of a strip would take displacements from outside the window.
+pub fn is_free(grid: &Grid, place: usize) -> bool {
+    let cell = place % grid.stride();
+    cell > 0 && cell + 1 < grid.cells
+}
+
+fn precondition(approach: &Approach, contact: &Contact, values: &mut [f64]) {
+    for run in contact.runs() {
+        approach.solve(&mut values[run.own()]);
+    }
+}
