@@ -15,6 +15,10 @@
 //!
 //! and over cells of one length the weights of a column add up to 1, whatever V and Δt.
 
+// The patch engine uses it.
+#[allow(dead_code)]
+pub mod strips;
+
 /// Upwind differences −V ∂/∂x₁ over the columns, from the inflow side to the outflow side.
 #[derive(Debug, Clone, Copy)]
 pub struct Upwind<'a> {
@@ -47,6 +51,12 @@ impl<'a> Upwind<'a> {
     /// Position of a column, `m`.
     pub fn position(&self, column: usize) -> f64 {
         self.x[column]
+    }
+
+    /// Positions of all columns, `m`.
+    #[allow(dead_code)]
+    pub fn positions(&self) -> &'a [f64] {
+        self.x
     }
 
     /// Whether material moves towards −x₁.

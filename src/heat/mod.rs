@@ -10,6 +10,9 @@ pub mod factors;
 pub mod incoming;
 pub mod march;
 pub mod step;
+// The patch engine uses it.
+#[allow(dead_code)]
+pub mod strips;
 pub mod surface;
 pub mod thermal_map;
 

@@ -1,0 +1,300 @@
+//! The loops over the columns of a block of strips.
+
+use crate::error::Result;
+use crate::heat::step::ModeStep;
+use crate::numerics::dense::{Arithmetic, LANES};
+use std::ops::Range;
+
+/// A value of each strip of a block.
+pub type Block = [f64; LANES];
+
+/// What a mode is made of in a column of the window.
+#[derive(Debug, Clone, Copy)]
+pub struct Mode {
+    /// But for the flux.
+    pub step: ModeStep,
+    /// f per heat flux, `K m^½/s / (W/m²)`.
+    pub heating: f64,
+    /// Amplitude per flux upstream.
+    pub passed_on: f64,
+    /// Amplitude per own flux.
+    pub taken: f64,
+    /// φ(0), `m^-½`.
+    pub surface: f64,
+    /// ∫φ, `m^½`.
+    pub content: f64,
+}
+
+impl Default for Mode {
+    fn default() -> Mode {
+        Mode {
+            step: ModeStep {
+                arriving: 0.0,
+                old_upstream: 0.0,
+                old: 0.0,
+                fed_upstream: 0.0,
+                fed: 0.0,
+            },
+            heating: 0.0,
+            passed_on: 0.0,
+            taken: 0.0,
+            surface: 0.0,
+            content: 0.0,
+        }
+    }
+}
+
+/// The order in which rail crosses the columns of a block.
+#[derive(Debug, Clone, Copy)]
+pub struct Order {
+    /// Number of columns.
+    pub columns: usize,
+    /// Towards −x₁.
+    pub forward: bool,
+}
+
+impl Order {
+    /// Where a block has its columns.
+    pub fn columns(&self, block: usize) -> Range<usize> {
+        block * self.columns..(block + 1) * self.columns
+    }
+
+    /// Where a block has its amplitudes of m modes.
+    pub fn amplitudes(&self, block: usize, m: usize) -> Range<usize> {
+        let size = self.columns * m * LANES;
+        block * size..(block + 1) * size
+    }
+
+    /// The columns after the inflow, each with the one upstream of it.
+    #[inline(always)]
+    pub fn pairs(self) -> impl Iterator<Item = (usize, usize)> {
+        let last = self.columns - 1;
+        (1..self.columns).map(move |k| match self.forward {
+            true => (last - k, last - k + 1),
+            false => (k, k - 1),
+        })
+    }
+}
+
+/// What a flux does to the columns from its own on, with the number of columns between: R and the same of the heat content.
+#[derive(Debug, Clone)]
+pub struct Responses {
+    /// R, `K/(W/m²)`.
+    pub surface: Vec<f64>,
+    /// Of the heat content, `K m/(W/m²)`.
+    pub content: Vec<f64>,
+    amplitudes: Vec<f64>,
+}
+
+impl Responses {
+    /// Of the given number of cells.
+    pub fn new(cells: usize) -> Responses {
+        Responses {
+            surface: vec![0.0; cells],
+            content: vec![0.0; cells],
+            amplitudes: Vec::new(),
+        }
+    }
+
+    /// Of the given modes.
+    #[inline(always)]
+    pub fn compute(&mut self, arithmetic: Arithmetic, modes: &[Mode]) {
+        // The first call is that of the initialisation.
+        self.amplitudes.resize(modes.len(), 0.0);
+        let places = self.surface.iter_mut().zip(&mut self.content).enumerate();
+        for (distance, (surface, content)) in places {
+            let mut sums = [0.0; 2];
+            for (amplitude, mode) in self.amplitudes.iter_mut().zip(modes) {
+                *amplitude = match distance {
+                    0 => mode.taken,
+                    1 => arithmetic.multiply_add(mode.step.arriving, *amplitude, mode.passed_on),
+                    _ => mode.step.arriving * *amplitude,
+                };
+                sums[0] = arithmetic.multiply_add(mode.surface, *amplitude, sums[0]);
+                sums[1] = arithmetic.multiply_add(mode.content, *amplitude, sums[1]);
+            }
+            [*surface, *content] = sums;
+        }
+    }
+}
+
+/// The amplitudes of a column, of that upstream, and of both before the step.
+struct Columns<'a> {
+    own: &'a mut [Block],
+    upstream: &'a [Block],
+    old: &'a [Block],
+    old_upstream: &'a [Block],
+}
+
+impl<'a> Columns<'a> {
+    #[inline(always)]
+    fn of((before, after): (&'a [f64], &'a mut [f64]), (own, upstream): (usize, usize), modes: usize) -> Columns<'a> {
+        let before = before.as_chunks().0;
+        let after = after.as_chunks_mut().0;
+        let (own_after, upstream_after) = if own < upstream {
+            let (left, right) = after.split_at_mut(upstream * modes);
+            (&mut left[own * modes..][..modes], &right[..modes])
+        } else {
+            let (left, right) = after.split_at_mut(own * modes);
+            (&mut right[..modes], &left[upstream * modes..][..modes])
+        };
+        Columns {
+            own: own_after,
+            upstream: upstream_after,
+            old: &before[own * modes..][..modes],
+            old_upstream: &before[upstream * modes..][..modes],
+        }
+    }
+
+    /// Whether nothing warm is in it or is carried into it.
+    #[inline(always)]
+    fn is_cold(&self) -> bool {
+        [&self.upstream[0], &self.old[0], &self.old_upstream[0]]
+            .iter()
+            .all(|slowest| is_zero(slowest))
+    }
+}
+
+#[inline(always)]
+fn is_zero(block: &Block) -> bool {
+    block.iter().all(|&value| value == 0.0)
+}
+
+/// The march without heat flux, with the surface temperature and the heat content of the columns.
+#[inline(always)]
+pub fn unheated(
+    arithmetic: Arithmetic,
+    order: Order,
+    modes: &[Mode],
+    before: &[f64],
+    after: &mut [f64],
+    (surface, content): (&mut [Block], &mut [Block]),
+) {
+    let fma = |a, b, c| arithmetic.multiply_add(a, b, c);
+    for (own, upstream) in order.pairs() {
+        let columns = Columns::of((before, after), (own, upstream), modes.len());
+        let mut sums = [[0.0; LANES]; 2];
+        if columns.is_cold() {
+            columns.own.fill([0.0; LANES]);
+        } else {
+            let sources = columns.upstream.iter().zip(columns.old).zip(columns.old_upstream);
+            for ((own, ((upstream, old), old_upstream)), mode) in columns.own.iter_mut().zip(sources).zip(modes) {
+                let mut values = [0.0; LANES];
+                for lane in 0..LANES {
+                    let stored = fma(mode.step.old, old[lane], mode.step.old_upstream * old_upstream[lane]);
+                    values[lane] = fma(mode.step.arriving, upstream[lane], stored);
+                }
+                *own = values;
+                for lane in 0..LANES {
+                    sums[0][lane] = fma(mode.surface, values[lane], sums[0][lane]);
+                    sums[1][lane] = fma(mode.content, values[lane], sums[1][lane]);
+                }
+            }
+        }
+        [surface[own], content[own]] = sums;
+    }
+}
+
+/// The march under the heat flux of the columns.
+#[inline(always)]
+pub fn heated(arithmetic: Arithmetic, order: Order, modes: &[Mode], before: &[f64], after: &mut [f64], flux: &[Block]) {
+    let fma = |a, b, c| arithmetic.multiply_add(a, b, c);
+    for (own, upstream) in order.pairs() {
+        let columns = Columns::of((before, after), (own, upstream), modes.len());
+        let (passed_on, taken) = (flux[upstream], flux[own]);
+        if is_zero(&passed_on) && is_zero(&taken) && columns.is_cold() {
+            columns.own.fill([0.0; LANES]);
+            continue;
+        }
+        let sources = columns.upstream.iter().zip(columns.old).zip(columns.old_upstream);
+        for ((own, ((upstream, old), old_upstream)), mode) in columns.own.iter_mut().zip(sources).zip(modes) {
+            let mut values = [0.0; LANES];
+            for lane in 0..LANES {
+                let stored = fma(mode.step.old, old[lane], mode.step.old_upstream * old_upstream[lane]);
+                let carried = fma(mode.step.arriving, upstream[lane], stored);
+                values[lane] = fma(mode.taken, taken[lane], fma(mode.passed_on, passed_on[lane], carried));
+            }
+            *own = values;
+        }
+    }
+}
+
+/// Fields of the cells of a block's strips, strip by strip.
+pub struct Cells<'a> {
+    /// `W/m²`.
+    pub flux: &'a mut [f64],
+    /// `K`.
+    pub surface: &'a mut [f64],
+    /// `K m`.
+    pub content: &'a mut [f64],
+    /// How many of the block are strips of the patch.
+    pub strips: usize,
+}
+
+/// The flux of the cells, one after the other along the way of the rail, from the temperature that their surface has without
+/// it, at a place among `cells` and a cell; and surface temperature and heat content.
+#[inline(always)]
+pub fn respond(
+    arithmetic: Arithmetic,
+    order: Order,
+    responses: &Responses,
+    (unheated, unheated_content): (&[Block], &[Block]),
+    flux: &mut [Block],
+    cells: &mut Cells,
+    mut flux_at: impl FnMut(usize, usize, f64) -> Result<f64>,
+) -> Result<()> {
+    let count = order.columns - 2;
+    // The columns upstream that have a flux are those from the first one with any.
+    let mut first = None;
+    for (column, upstream) in order.pairs().take(count) {
+        let cell = column - 1;
+        let heated = match (first, order.forward) {
+            (None, _) => 0..0,
+            (Some(first), true) => upstream..first + 1,
+            (Some(first), false) => first..column,
+        };
+        let sources = &flux[heated];
+        let later = (&responses.surface[1..], &responses.content[1..]);
+        let start = [unheated[column], unheated_content[column]];
+        let rise = if order.forward {
+            add_responses(arithmetic, sources.iter(), later, start)
+        } else {
+            add_responses(arithmetic, sources.iter().rev(), later, start)
+        };
+        let mut taken = [0.0; LANES];
+        for strip in 0..cells.strips {
+            let place = strip * count + cell;
+            taken[strip] = flux_at(place, cell, rise[0][strip])?;
+            cells.flux[place] = taken[strip];
+        }
+        if !is_zero(&taken) && first.is_none() {
+            first = Some(column);
+        }
+        flux[column] = taken;
+        let (surface, content) = (responses.surface[0], responses.content[0]);
+        for strip in 0..cells.strips {
+            let place = strip * count + cell;
+            cells.surface[place] = rise[0][strip] + surface * taken[strip];
+            cells.content[place] = rise[1][strip] + content * taken[strip];
+        }
+    }
+    Ok(())
+}
+
+/// What the sources add, the next one upstream first, to surface temperature and heat content.
+#[inline(always)]
+fn add_responses<'a>(
+    arithmetic: Arithmetic,
+    sources: impl Iterator<Item = &'a Block>,
+    (surface, content): (&[f64], &[f64]),
+    start: [Block; 2],
+) -> [Block; 2] {
+    let [mut rise, mut heat] = start;
+    for ((flux, surface), content) in sources.zip(surface).zip(content) {
+        for lane in 0..LANES {
+            rise[lane] = arithmetic.multiply_add(*surface, flux[lane], rise[lane]);
+            heat[lane] = arithmetic.multiply_add(*content, flux[lane], heat[lane]);
+        }
+    }
+    [rise, heat]
+}
