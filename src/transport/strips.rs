@@ -62,6 +62,11 @@ impl Strips {
         (self.strips + 1).div_ceil(LANES)
     }
 
+    /// Distance of those columns, `m`.
+    pub fn spacing(&self) -> f64 {
+        self.x[self.first] - self.x[self.first - 1]
+    }
+
     /// The march through those columns at V `m/s`.
     pub fn window(&self, speed: f64) -> Upwind<'_> {
         Upwind::new(&self.x[self.first - 1..][..self.columns()], speed)

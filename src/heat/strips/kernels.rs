@@ -1,7 +1,7 @@
 //! The loops over the columns of a block of strips.
 
 use crate::error::Result;
-use crate::heat::step::ModeStep;
+use crate::heat::step::{Crossing, Ends, ModeStep};
 use crate::numerics::dense::{Arithmetic, LANES};
 use std::ops::Range;
 
@@ -11,6 +11,8 @@ pub type Block = [f64; LANES];
 /// What a mode is made of in a column of the window.
 #[derive(Debug, Clone, Copy)]
 pub struct Mode {
+    /// r, `1/s`.
+    pub rate: f64,
     /// But for the flux.
     pub step: ModeStep,
     /// f per heat flux, `K m^½/s / (W/m²)`.
@@ -28,6 +30,7 @@ pub struct Mode {
 impl Default for Mode {
     fn default() -> Mode {
         Mode {
+            rate: 0.0,
             step: ModeStep {
                 arriving: 0.0,
                 old_upstream: 0.0,
@@ -83,24 +86,23 @@ pub struct Responses {
     pub surface: Vec<f64>,
     /// Of the heat content, `K m/(W/m²)`.
     pub content: Vec<f64>,
+    /// Of the modes, at one distance.
     amplitudes: Vec<f64>,
 }
 
 impl Responses {
-    /// Of the given number of cells.
-    pub fn new(cells: usize) -> Responses {
+    /// Over the given number of cells, of as many modes.
+    pub fn new(cells: usize, modes: usize) -> Responses {
         Responses {
             surface: vec![0.0; cells],
             content: vec![0.0; cells],
-            amplitudes: Vec::new(),
+            amplitudes: vec![0.0; modes],
         }
     }
 
     /// Of the given modes.
     #[inline(always)]
     pub fn compute(&mut self, arithmetic: Arithmetic, modes: &[Mode]) {
-        // The first call is that of the initialisation.
-        self.amplitudes.resize(modes.len(), 0.0);
         let places = self.surface.iter_mut().zip(&mut self.content).enumerate();
         for (distance, (surface, content)) in places {
             let mut sums = [0.0; 2];
@@ -215,6 +217,85 @@ pub fn heated(arithmetic: Arithmetic, order: Order, modes: &[Mode], before: &[f6
                 values[lane] = fma(mode.taken, taken[lane], fma(mode.passed_on, passed_on[lane], carried));
             }
             *own = values;
+        }
+    }
+}
+
+/// A step of a block's strips, whose change with |V| is asked for.
+pub struct Carried<'a> {
+    /// Amplitudes after it.
+    pub amplitudes: &'a [f64],
+    /// Those that stood in the inflow column before it.
+    pub replaced: &'a [f64],
+    /// Heat flux of the columns, `W/m²`.
+    pub flux: &'a [Block],
+    /// What the modes cross but for their rate.
+    pub crossing: Crossing,
+}
+
+impl Carried<'_> {
+    /// What a change of |V| by `change` `m/s` adds to the amplitudes of each column where it acts; `old` holds m blocks.
+    pub fn speed_sources(&self, order: Order, modes: &[Mode], change: f64, old: &mut [Block], sources: &mut [f64]) {
+        let m = modes.len();
+        let amplitudes = self.amplitudes.as_chunks::<LANES>().0;
+        let sources = sources.as_chunks_mut::<LANES>().0;
+        // The amplitudes before the step follow from its result, column by column.
+        old.copy_from_slice(self.replaced.as_chunks().0);
+        for (own, upstream) in order.pairs() {
+            for (index, mode) in modes.iter().enumerate() {
+                let crossing = Crossing {
+                    rate: mode.rate,
+                    ..self.crossing
+                };
+                let values = [&amplitudes[upstream * m + index], &amplitudes[own * m + index]];
+                for lane in 0..LANES {
+                    let mut ends = Ends {
+                        value: values.map(|block| block[lane]),
+                        old: [old[index][lane], 0.0],
+                        feed: [upstream, own].map(|column| mode.heating * self.flux[column][lane]),
+                    };
+                    ends.old[1] = mode.step.own_old(&ends);
+                    old[index][lane] = ends.old[1];
+                    sources[own * m + index][lane] = change * mode.step.speed_tangent(&crossing, &ends);
+                }
+            }
+        }
+    }
+}
+
+/// The change of the amplitudes with the inflow column of `tangent`, with the heat flux, by `flux`, and with what else there is,
+/// `sources`; and with it the changes of surface temperature and heat content, if asked for.
+#[inline(always)]
+pub fn tangent(
+    arithmetic: Arithmetic,
+    order: Order,
+    modes: &[Mode],
+    (sources, flux): (Option<&[f64]>, &[Block]),
+    tangent: &mut [f64],
+    mut sums_of: Option<(&mut [Block], &mut [Block])>,
+) {
+    let m = modes.len();
+    let fma = |a, b, c| arithmetic.multiply_add(a, b, c);
+    let tangent = tangent.as_chunks_mut::<LANES>().0;
+    for (own, upstream) in order.pairs() {
+        let mut sums = [[0.0; LANES]; 2];
+        for (index, mode) in modes.iter().enumerate() {
+            let arrived = tangent[upstream * m + index];
+            let source = match sources {
+                Some(sources) => sources.as_chunks::<LANES>().0[own * m + index],
+                None => [0.0; LANES],
+            };
+            let mut values = [0.0; LANES];
+            for lane in 0..LANES {
+                let fed = fma(mode.passed_on, flux[upstream][lane], mode.taken * flux[own][lane]);
+                values[lane] = fma(mode.step.arriving, arrived[lane], fed + source[lane]);
+                sums[0][lane] = fma(mode.surface, values[lane], sums[0][lane]);
+                sums[1][lane] = fma(mode.content, values[lane], sums[1][lane]);
+            }
+            tangent[own * m + index] = values;
+        }
+        if let Some((surface, content)) = &mut sums_of {
+            [surface[own], content[own]] = sums;
         }
     }
 }

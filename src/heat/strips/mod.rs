@@ -22,6 +22,7 @@
 //! Fields of cells are strip by strip: `strip * cells + cell`, cells towards +x₁.
 
 mod kernels;
+mod tangent;
 #[cfg(test)]
 mod tests;
 
@@ -35,6 +36,9 @@ use crate::numerics::dense::{self, LANES};
 use crate::transport::strips::{Side, Strips};
 use kernels::{Block, Mode, Order, Responses};
 use serde::{Deserialize, Serialize};
+
+#[allow(unused_imports)]
+pub use tangent::{CarriageChange, StripHeatChange};
 
 /// Temperature of the strips and of the rail ahead and behind, or a change of it; m modes.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -131,7 +135,10 @@ pub struct StripHeatScratch {
     unheated: Vec<Block>,
     unheated_content: Vec<Block>,
     flux: Vec<Block>,
-    /// Surface temperature of the columns on one side, and a copy of their amplitudes.
+    /// What a change of |V| adds to the amplitudes of the strips, and, m blocks, those of a column before the step.
+    sources: Vec<f64>,
+    old: Vec<Block>,
+    /// Surface temperature of the columns on one side and its change, and a copy of their amplitudes.
     outer_surface: Vec<f64>,
     outer: Vec<f64>,
 }
@@ -149,11 +156,13 @@ impl StripHeatScratch {
             outer_cells: [cells(Side::Left), cells(Side::Right)],
             conditions: None,
             modes: vec![Mode::default(); m],
-            responses: Responses::new(strips.cells),
+            responses: Responses::new(strips.cells, m),
             unheated: blocks.clone(),
             unheated_content: blocks.clone(),
             flux: blocks,
-            outer_surface: vec![0.0; longest],
+            sources: vec![0.0; strips.blocks() * strips.columns() * m * LANES],
+            old: vec![[0.0; LANES]; m],
+            outer_surface: vec![0.0; 2 * longest],
             outer: vec![0.0; longest * m],
         }
     }
@@ -317,6 +326,7 @@ impl StripHeatMarch<'_> {
                 let (factors, heat) = scratch.cells.heated_at(arithmetic, self.basis, 0);
                 for (mode, kept) in scratch.modes.iter_mut().enumerate() {
                     *kept = Mode {
+                        rate: conditions.diffusivity * self.basis.eigenvalues[mode],
                         step: factors.step(mode),
                         heating: heat.heating[mode],
                         passed_on: heat.passed_on[mode],
