@@ -1,5 +1,9 @@
 //! Archard wear (11), (24) with storage: ∂W/∂t − V ∂W/∂x₁ = k |s| p, the march of the heat without conduction.
 
+// The patch engine uses it.
+#[allow(dead_code)]
+pub mod strips;
+
 use crate::transport::{CellStep, Cells, Upwind};
 
 /// The step from the wear depth `before` to that at its end, `m`, at all columns.
