@@ -291,9 +291,41 @@ impl Default for SensitivitySettings {
     }
 }
 
+impl Settings {
+    /// Convergence of the operator split of a patch.
+    pub fn patch_split(&self) -> SplitSettings {
+        SplitSettings {
+            tolerance: self.patch.split_tolerance,
+            shear_tolerance: self.patch.shear_tolerance,
+            first_mechanics_tolerance: self.patch.first_mechanics_tolerance,
+            last_mechanics_tolerance: self.patch.least_tolerance,
+            mechanics_tolerance: 1e-1,
+            ..self.split
+        }
+    }
+}
+
 /// Pressure and shear of a patch.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PatchSettings {
+    /// Error at which the split of a patch rests, of the surface temperature relative to its largest value, of lift and wear relative
+    /// to the displacement scale.
+    pub split_tolerance: f64,
+    /// Error of the shear at which it rests, relative to the peak pressure.
+    pub shear_tolerance: f64,
+    /// Tolerance of the tractions in the first iteration of the split, whose temperature is only a guess.
+    pub first_mechanics_tolerance: f64,
+    /// Tolerance of the tractions where they are solved alone, for the initial state.
+    pub tolerance: f64,
+    /// The smallest that is asked of them.
+    pub least_tolerance: f64,
+    /// Largest opening ahead of a cell over its pressure, in displacements of a cell under its own pressure: a cell that has just
+    /// joined has next to none.
+    pub largest_opening: f64,
+    /// Slip that does not count as slip, relative to that by which a cell's shear of the peak pressure answers.
+    pub noise: f64,
+    /// The least compliance of a pattern of pressures, over that of one cell by itself.
+    pub least_compliance: f64,
     /// Limit of the sets of cells under pressure that are tried. In the second half of them only the worst cell joins.
     pub normal_passes: usize,
     /// Limit of the conjugate gradients on one set.
@@ -331,6 +363,14 @@ pub struct PatchSettings {
 impl Default for PatchSettings {
     fn default() -> Self {
         PatchSettings {
+            split_tolerance: 1e-8,
+            shear_tolerance: 1e-8,
+            first_mechanics_tolerance: 1e-5,
+            tolerance: 1e-9,
+            least_tolerance: 1e-10,
+            largest_opening: 1e3,
+            noise: 1e-4,
+            least_compliance: 0.1,
             normal_passes: 60,
             normal_iterations: 200,
             set_tolerance: 1e-4,

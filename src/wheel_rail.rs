@@ -342,7 +342,8 @@ impl Model {
 
     /// Profiles for plotting.
     pub fn profiles(&self, state: &State) -> Profiles {
-        self.engine.profiles(&state.contact, state.inputs.ambient_temperature)
+        self.engine
+            .profiles(&self.task(&state.inputs, state.duration), &state.contact)
     }
 }
 

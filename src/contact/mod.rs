@@ -10,6 +10,7 @@ pub mod line;
 pub mod outputs;
 pub mod patch;
 pub mod profiles;
+pub mod rest;
 pub mod resultants;
 pub mod rim;
 pub mod task;
@@ -144,10 +145,11 @@ impl Engine {
     }
 
     /// Profiles for plotting; those of an untouched rail for a state of another contact model.
-    pub fn profiles(&self, state: &ContactState, ambient: f64) -> Profiles {
+    pub fn profiles(&self, task: &Task, state: &ContactState) -> Profiles {
+        let ambient = task.conditions.inputs.ambient_temperature;
         match (self, state) {
             (Engine::Line(line), ContactState::Line(state)) => line.profiles(state, ambient),
-            (Engine::Patch(patch), ContactState::Patch(state)) => patch.profiles(state, ambient),
+            (Engine::Patch(patch), ContactState::Patch(state)) => patch.profiles(task, state, ambient),
             _ => Profiles::untouched(ambient),
         }
     }

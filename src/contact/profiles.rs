@@ -100,19 +100,27 @@ pub fn depths(height: f64) -> Vec<f64> {
         .collect()
 }
 
-/// The fields at one surface node of the contact window.
+/// The fields at one surface node of the contact window, of a patch at the centre of a cell.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ContactNode {
     /// x₁, `m`.
     pub position: f64,
+    /// y, to the left, `m`; 0 of a line contact.
+    pub lateral_position: f64,
     /// Pressure, `Pa`.
     pub pressure: f64,
-    /// Shear traction on the rail, `Pa`.
+    /// Shear traction on the rail along it, `Pa`.
     pub shear: f64,
-    /// Slip velocity, `m/s`; 0 outside the contact.
+    /// Shear traction on the rail to the left, `Pa`; 0 of a line contact.
+    pub lateral_shear: f64,
+    /// Slip velocity along the rail, `m/s`; 0 outside the contact.
     pub slip: f64,
-    /// Share −τ/(μ p) of Coulomb's bound.
+    /// Slip velocity to the left, `m/s`; 0 of a line contact.
+    pub lateral_slip: f64,
+    /// Share −τ/(μ p) of Coulomb's bound; of a patch |τ|/(μ p).
     pub saturation: f64,
     /// Temperature rise over the ambient, `K`.
     pub temperature: f64,
+    /// Wear depth, `m`.
+    pub wear_depth: f64,
 }

@@ -2,7 +2,7 @@
 //!
 //! [`engine`] is what the outside sees. [`rail`] is what is computed once, [`fields`] what a step changes, [`problem`] one
 //! step as a problem: its data and the parts of its equations. [`split`] solves it as section 4 of the paper does, over the
-//! values of [`coupling`], until [`rest`] says that they rest; [`sensitivity`] is its derivative. [`readings`] and
+//! values of [`coupling`], until [`crate::contact::rest`] says that they rest; [`sensitivity`] is its derivative. [`readings`] and
 //! [`profiles`] are what is read off the fields.
 
 pub mod coupling;
@@ -13,6 +13,5 @@ pub mod profiles;
 pub mod rail;
 pub mod readings;
 pub mod relaxation;
-pub mod rest;
 pub mod sensitivity;
 pub mod split;

@@ -46,6 +46,10 @@ pub fn contact_nodes(rail: &Rail, fields: &Fields) -> Vec<ContactNode> {
     (0..mesh.contact_nodes)
         .map(|i| ContactNode {
             position: mesh.contact_position(i),
+            lateral_position: 0.0,
+            lateral_shear: 0.0,
+            lateral_slip: 0.0,
+            wear_depth: fields.wear[mesh.contact_column(i)],
             pressure: fields.pressure[i] * scale,
             shear: fields.shear[i] * scale,
             slip: fields.slip[i],

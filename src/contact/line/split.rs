@@ -5,7 +5,7 @@ use super::coupling::Coupling;
 use super::fields::Fields;
 use super::problem::{MechanicsData, Problem};
 use super::rail::Rail;
-use super::rest::Rest;
+use crate::contact::rest::Rest;
 use crate::contact::rim::{self, ContactHeat};
 use crate::contact::task::Convergence;
 use crate::error::{Error, Result};

@@ -1,9 +1,13 @@
 //! The patch engine from outside: built once, stepped from state to state.
 
+use super::fields::{PatchFields, PatchTrend};
+use super::problem::Problem;
+use super::profiles;
+use super::rail::PatchRail;
+use super::readings::readings;
+use super::split::{self, Scratch};
 use crate::contact::outputs::Readings;
 use crate::contact::profiles::{ContactNode, Profiles};
-use crate::contact::resultants::Resultants;
-use crate::contact::rim::ContactHeat;
 use crate::contact::task::{Convergence, Task};
 use crate::error::{Error, Result};
 use crate::parameters::Parameters;
@@ -13,85 +17,112 @@ use serde::{Deserialize, Serialize};
 
 /// A patch: what is computed once.
 pub struct Patch {
-    /// Half-length of the window along the rail, `m`.
-    half_length: f64,
+    rail: PatchRail,
 }
 
 /// The state of a patch.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct PatchState {
-    /// Temperature of the wheel's rim, absolute, `K`.
-    pub wheel_temperature: f64,
+    /// Temperature, wear, tractions.
+    pub fields: PatchFields,
+    /// How they changed over the last step.
+    pub trend: PatchTrend,
 }
 
 /// Scratch of a step. What a step leaves in it changes no result of another one.
-pub struct PatchWorkspace {}
+pub struct PatchWorkspace {
+    scratch: Scratch,
+    /// The fields that a step works on, its solution until it is committed.
+    trial: PatchFields,
+}
 
 impl PatchWorkspace {
     /// Makes the solution the state.
-    pub fn commit(&mut self, _state: &mut PatchState, _duration: f64) {}
+    pub fn commit(&mut self, state: &mut PatchState, duration: f64) {
+        state.trend.update(&state.fields, &self.trial, duration);
+        std::mem::swap(&mut state.fields, &mut self.trial);
+    }
+
+    /// Newton steps and Krylov products of friction, products of the normal problem, since the start.
+    pub fn counts(&self) -> [usize; 3] {
+        self.scratch.counts()
+    }
 }
 
 impl Patch {
     /// Grid, influence functions, depth modes.
     ///
     /// # Errors
-    /// None yet.
+    /// [`Error::DepthBasis`].
     pub fn new(parameters: &Parameters) -> Result<Patch> {
         Ok(Patch {
-            half_length: parameters.patch_window().0,
+            rail: PatchRail::new(parameters)?,
         })
     }
 
+    /// What was computed once.
+    pub fn rail(&self) -> &PatchRail {
+        &self.rail
+    }
+
     /// Scratch for the steps.
-    pub fn workspace(&self, _settings: &Settings) -> PatchWorkspace {
-        PatchWorkspace {}
+    pub fn workspace(&self, settings: &Settings) -> PatchWorkspace {
+        PatchWorkspace {
+            scratch: Scratch::new(&self.rail, settings),
+            trial: PatchFields::new(&self.rail),
+        }
     }
 
     /// Length along the rail of the window in which the contact is sought, `m`.
     pub fn window_length(&self) -> f64 {
-        2.0 * self.half_length
+        2.0 * self.rail.grid.half_length()
+    }
+
+    fn problem<'a>(&'a self, task: &Task<'a>) -> Problem<'a> {
+        Problem {
+            rail: &self.rail,
+            parameters: task.parameters,
+            settings: task.settings,
+            conditions: task.conditions,
+        }
     }
 
     /// Cold and unworn, mechanics solved.
     ///
     /// # Errors
-    /// [`Error::PatchMissing`].
-    pub fn initial_state(&self, _task: &Task, _workspace: &mut PatchWorkspace) -> Result<PatchState> {
-        Err(Error::PatchMissing)
+    /// A solver that did not converge.
+    pub fn initial_state(&self, task: &Task, workspace: &mut PatchWorkspace) -> Result<PatchState> {
+        let mut fields = PatchFields::new(&self.rail);
+        fields.wheel_temperature = task.conditions.inputs.ambient_temperature;
+        split::solve_mechanics(&self.problem(task), &mut fields, &mut workspace.scratch)?;
+        Ok(PatchState {
+            fields,
+            trend: PatchTrend::new(&self.rail),
+        })
     }
 
     /// One implicit step from `state`, into the workspace. The step before took `last_duration` `s`.
     ///
     /// # Errors
-    /// [`Error::PatchMissing`].
+    /// The first solver that did not converge, or a contact that leaves the window.
     pub fn solve(
         &self,
-        _task: &Task,
-        _workspace: &mut PatchWorkspace,
-        _state: &PatchState,
-        _last_duration: f64,
+        task: &Task,
+        workspace: &mut PatchWorkspace,
+        state: &PatchState,
+        last_duration: f64,
     ) -> Result<(Convergence, Readings)> {
-        Err(Error::PatchMissing)
+        let PatchWorkspace { scratch, trial } = workspace;
+        trial.copy_contact_from(&state.fields);
+        let problem = self.problem(task);
+        let ahead = task.conditions.duration.min(last_duration);
+        let convergence = split::solve(&problem, &state.fields, (&state.trend, ahead), trial, scratch)?;
+        Ok((convergence, readings(&problem, trial)))
     }
 
     /// What the outputs are made of.
-    pub fn readings(&self, _task: &Task, state: &PatchState) -> Readings {
-        Readings {
-            resultants: Resultants::default(),
-            node_area: 0.0,
-            pressure_scale: 1.0,
-            penetration: 0.0,
-            contact_length: 0.0,
-            contact_breadth: 0.0,
-            contact_area: 0.0,
-            peak_rise: 0.0,
-            wear_depth: 0.0,
-            leaving_rise: 0.0,
-            leaving_wear_depth: 0.0,
-            wheel_heat: ContactHeat::default(),
-            wheel_temperature: state.wheel_temperature,
-        }
+    pub fn readings(&self, task: &Task, state: &PatchState) -> Readings {
+        readings(&self.problem(task), &state.fields)
     }
 
     /// Derivatives of all outputs with respect to each of the given rows of [`crate::signals::INPUTS`].
@@ -109,17 +140,36 @@ impl Patch {
     }
 
     /// Profiles for plotting.
-    pub fn profiles(&self, _state: &PatchState, ambient: f64) -> Profiles {
-        Profiles::untouched(ambient)
+    pub fn profiles(&self, task: &Task, state: &PatchState, ambient: f64) -> Profiles {
+        profiles::profiles(&self.problem(task), &state.fields, ambient)
     }
 
-    /// The fields at the nodes of the contact window.
-    pub fn contact_nodes(&self, _state: &PatchState) -> Vec<ContactNode> {
-        Vec::new()
+    /// The fields at the cells of the window, strip by strip.
+    pub fn contact_nodes(&self, state: &PatchState) -> Vec<ContactNode> {
+        profiles::contact_nodes(&self.rail, &state.fields)
     }
 
     /// Whether a state (of another source) has the sizes of this patch and finite content.
     pub fn accepts(&self, state: &PatchState) -> bool {
-        state.wheel_temperature.is_finite()
+        let expected = PatchFields::new(&self.rail);
+        let same = |own: &Vec<f64>, expected: &Vec<f64>| {
+            own.len() == expected.len() && own.iter().all(|value| value.is_finite())
+        };
+        let trend = PatchTrend::new(&self.rail);
+        state
+            .fields
+            .vectors()
+            .zip(expected.vectors())
+            .all(|(own, expected)| same(own, expected))
+            && state
+                .trend
+                .vectors()
+                .iter()
+                .zip(trend.vectors())
+                .all(|(own, expected)| same(own, expected))
+            && state.fields.numbers().iter().all(|number| number.is_finite())
+            && state.fields.relaxation_length > 0.0
+            && state.fields.heat.breadth > 0.0
+            && state.fields.wear.breadth > 0.0
     }
 }

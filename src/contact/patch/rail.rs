@@ -1,0 +1,186 @@
+//! Rail and wheel: everything that is computed once, at initialisation.
+
+use crate::body::compliance::Scales;
+use crate::body::grid::Grid;
+use crate::body::half_plane::HalfPlane;
+use crate::body::half_space::{HalfSpaces, Rectangle};
+use crate::body::influence::{Tables, Transform};
+use crate::body::mesh::Mesh;
+use crate::error::Result;
+use crate::heat::basis::DepthBasis;
+use crate::heat::incoming::Incoming;
+use crate::mechanics::patch::normal::Approach;
+use crate::parameters::Parameters;
+use crate::transport::strips::Strips;
+use std::f64::consts::PI;
+
+/// Columns outside the window on each side at 61 cells, as on the line's mesh.
+const OUTER_COLUMNS: f64 = 24.0;
+/// First cell under the surface at 41 depth nodes, `m`, as on the line's mesh.
+const FIRST_DEPTH: f64 = 10e-6;
+/// ℓ over the product of compliance and creep stiffness, as of a line contact ([`crate::contact::line::relaxation`]).
+const RELAXATION_SHARE: f64 = 0.75;
+
+/// The rail and the wheel's profile, built at initialisation.
+pub struct PatchRail {
+    /// The cells.
+    pub grid: Grid,
+    /// Units of the contact problem.
+    pub scales: Scales,
+    /// Products on the grid.
+    pub transform: Transform,
+    /// Approach by pressure, scaled.
+    pub approach: Approach,
+    /// u by shear, scaled.
+    pub displacement: Tables<f64>,
+    /// The kernels of u_x by τ_x and of u_y by τ_y of a strip on itself, by the lag along x, as the tables have it.
+    pub own: [Vec<f64>; 2],
+    /// u by pressure, and lift by shear with the same tables, scaled; none where the bodies are alike.
+    pub coupling: Option<Tables<f64>>,
+    /// u by the heat content of the cells, and of the columns behind the window, scaled, per `K m`.
+    pub expansion: Tables<f64>,
+    /// Lift by the heat content of a cell, scaled, per `K m`.
+    pub bulge: f64,
+    /// Opening ahead of the leading edge over that of the gap, per τ/p: along x and y.
+    pub opening: [f64; 2],
+    /// Undeformed gap of the cells, scaled, on the grid.
+    pub gap: Vec<f64>,
+    /// The marches across columns.
+    pub strips: Strips,
+    /// Depths of the rows, `m`.
+    pub depth: Vec<f64>,
+    /// Eigenbasis of the depth operator.
+    pub basis: DepthBasis,
+    /// Profile of the temperature that enters.
+    pub incoming: Incoming,
+    /// Half-axes of the contact at the largest load, `m`, and the relaxation length then, `m`.
+    pub half_length: f64,
+    /// ℓ at the largest load, `m`.
+    pub relaxation_length: f64,
+}
+
+impl PatchRail {
+    /// Grid, influence, depth modes.
+    ///
+    /// # Errors
+    /// [`crate::error::Error::DepthBasis`].
+    pub fn new(parameters: &Parameters) -> Result<PatchRail> {
+        let (half_length, half_breadth) = parameters.patch_window();
+        let grid = Grid::new(
+            parameters.patch_nodes,
+            parameters.patch_strips,
+            half_length,
+            half_breadth,
+        );
+        let ellipse = parameters.hertz_ellipse(parameters.largest_load);
+        let scales = Scales {
+            pressure: ellipse.peak_pressure,
+            displacement: ellipse.approach,
+        };
+        let pair = HalfSpaces::of_pair(parameters);
+        let transform = Transform::new(&grid, grid.strips);
+        let rectangle = Rectangle {
+            half_length: 0.5 * grid.length,
+            half_breadth: 0.5 * grid.breadth,
+        };
+        let place = |(along, across): (isize, isize)| (along as f64 * grid.length, across as f64 * grid.breadth);
+        let unit = scales.pressure / scales.displacement;
+        let normal = |lag| {
+            let (x, y) = place(lag);
+            unit * pair.normal() * rectangle.inverse(x, y)
+        };
+        let along = |lag| {
+            let (x, y) = place(lag);
+            normal(lag) + unit * pair.lateral * rectangle.xx(x, y)
+        };
+        let across = |lag| {
+            let (x, y) = place(lag);
+            normal(lag) + unit * pair.lateral * rectangle.yy(x, y)
+        };
+        let mixed = |lag| {
+            let (x, y) = place(lag);
+            unit * pair.lateral * rectangle.xy(x, y)
+        };
+        let coupling = (pair.coupling != 0.0).then(|| {
+            let factor = -unit * pair.coupling;
+            transform.tables(
+                |lag| factor * rectangle.away_along(place(lag).0, place(lag).1),
+                |lag| factor * rectangle.away_across(place(lag).0, place(lag).1),
+                |_| 0.0,
+            )
+        });
+        // A thin hot layer on a half-space: u = (1+ν)α/π ∫ Θ (x, y)/r³ dA and a lift of 2(1+ν)αΘ.
+        let rail = HalfPlane::new(parameters.lame_lambda, parameters.shear_modulus);
+        let swelling = (1.0 + rail.poisson_ratio) * parameters.thermal_expansion / scales.displacement;
+        let pull = swelling / PI;
+        let expansion = transform.tables(
+            |lag| pull * rectangle.pull_along(place(lag).0, place(lag).1),
+            |lag| pull * rectangle.pull_across(place(lag).0, place(lag).1),
+            |_| 0.0,
+        );
+        let columns = 2 * grid.stride() as isize + 8;
+        let own = |kernel: &dyn Fn((isize, isize)) -> f64| -> Vec<f64> {
+            (0..columns)
+                .map(|lag| kernel((lag - grid.stride() as isize, 0)))
+                .collect()
+        };
+        let own = [own(&along), own(&across)];
+        let curvature = parameters.rail_transverse_curvature + parameters.wheel_transverse_curvature;
+        let radius = parameters.wheel_radius;
+        let mut gap = vec![0.0; grid.len()];
+        for strip in 0..grid.strips {
+            for (cell, gap) in gap[grid.row(strip)].iter_mut().enumerate() {
+                let (x, y) = (grid.x(cell), grid.y(strip));
+                *gap = (0.5 * x * x / radius + 0.5 * curvature * y * y) / scales.displacement;
+            }
+        }
+        let outer = (OUTER_COLUMNS * (grid.cells as f64 / 61.0).sqrt()).round().max(2.0) as usize;
+        let depths = parameters.depth_nodes - 1;
+        let mesh = Mesh::graded(
+            grid.x(grid.cells - 1),
+            grid.cells,
+            parameters.strip_half_length,
+            outer,
+            parameters.strip_height,
+            depths,
+            FIRST_DEPTH * 40.0 / depths as f64,
+        );
+        let basis = DepthBasis::new(&mesh.depth)?;
+        Ok(PatchRail {
+            approach: Approach::new(&grid, &transform, normal),
+            displacement: transform.tables(along, mixed, across),
+            own,
+            coupling,
+            expansion,
+            bulge: 2.0 * swelling,
+            opening: [1.0, pair.direct / pair.normal()],
+            gap,
+            strips: Strips::new(&mesh.x, (mesh.first_contact, grid.cells), grid.strips, grid.breadth),
+            incoming: Incoming::new(&mesh.depth, &basis, parameters.skin_depth),
+            depth: mesh.depth,
+            basis,
+            half_length: ellipse.along,
+            relaxation_length: relaxation_length(&pair, (ellipse.along, ellipse.across)),
+            transform,
+            grid,
+            scales,
+        })
+    }
+
+    /// Force of a scaled traction of 1 on a cell, `N`.
+    pub fn unit_force(&self) -> f64 {
+        self.grid.cell_area() * self.scales.pressure
+    }
+}
+
+/// The way of rolling on which a patch forgets a change of its shear force: ℓ = ¾ C K, C the displacement per force and K the
+/// force per creepage, as for a line contact. C is that of an elliptic shear on a circle of the same area; K = G a b C₁₁ with
+/// C₁₁ = 3.3 (1 + a/(4b)), which is within a few per cent of Kalker's table.
+fn relaxation_length(pair: &HalfSpaces, (a, b): (f64, f64)) -> f64 {
+    // Mean over the circle of the displacement under τ ∝ √(1 − r²/c²), per force: (9π²/64) (direct − lateral/2)/c · (2/π)… of the
+    // same form as Hertz's approach, 3π²/16 at its centre and 9/8·… averaged; the factor is of order 1.
+    let c = (a * b).sqrt();
+    let compliance = 0.9 * PI / 2.0 * (pair.direct - 0.5 * pair.lateral) / c;
+    let stiffness = a * b * 3.3 * (1.0 + 0.25 * a / b) / (PI * pair.direct);
+    RELAXATION_SHARE * compliance * stiffness
+}

@@ -1,0 +1,127 @@
+//! What is read off the fields of a patch for the outputs.
+
+use super::fields::PatchFields;
+use super::problem::Problem;
+use super::rail::PatchRail;
+use crate::contact::outputs::Readings;
+use crate::contact::resultants::{Node, Resultants};
+use crate::contact::rim::ContactHeat;
+use crate::friction::coulomb;
+
+/// Of the given fields under the problem's conditions.
+pub fn readings(problem: &Problem, fields: &PatchFields) -> Readings {
+    let rail = problem.rail;
+    let extent = extent(rail, &fields.pressure);
+    let heat = problem.heat_march();
+    Readings {
+        resultants: Resultants::of(nodes(problem, fields)),
+        node_area: rail.grid.cell_area(),
+        pressure_scale: rail.scales.pressure,
+        penetration: fields.penetration * rail.scales.displacement,
+        contact_length: extent.length,
+        contact_breadth: extent.breadth,
+        contact_area: extent.area,
+        peak_rise: fields.heat.surface.iter().fold(f64::NEG_INFINITY, |m: f64, t| t.max(m)),
+        wear_depth: (0..rail.grid.strips)
+            .map(|strip| wear_left_behind(problem, fields, strip))
+            .fold(0.0, f64::max),
+        leaving_rise: rail.incoming.equivalent_rise(&rail.basis, heat.leaving(&fields.heat)),
+        leaving_wear_depth: problem.wear_march().leaving(&fields.wear),
+        wheel_heat: ContactHeat::new(problem.parameters, rail.unit_force(), problem.heated_nodes(fields)),
+        wheel_temperature: fields.wheel_temperature,
+    }
+}
+
+fn nodes<'f>(problem: &'f Problem, fields: &'f PatchFields) -> impl Iterator<Item = Node> + 'f {
+    let grid = &problem.rail.grid;
+    let regularisation = problem.parameters.slip_regularisation;
+    (0..grid.strips).flat_map(move |strip| {
+        (0..grid.cells).map(move |cell| {
+            let place = grid.place(strip, cell);
+            let pressure = fields.pressure[place];
+            let shear = [fields.shear[0][place], fields.shear[1][place]];
+            let bound = fields.friction[place] * pressure;
+            // Coulomb's bound is reached to round-off.
+            let share = if bound > 0.0 {
+                coulomb::magnitude(shear) / bound
+            } else {
+                1.0
+            };
+            Node {
+                position: grid.x(cell),
+                lateral: grid.y(strip),
+                pressure,
+                shear: shear[0],
+                lateral_shear: shear[1],
+                slip: fields.slip[0][place],
+                lateral_slip: fields.slip[1][place],
+                friction: fields.friction[place],
+                heat_flux: fields.heat.flux[strip * grid.cells + cell],
+                sticks: pressure > 0.0 && coulomb::sticks(share * (1.0 + 1e-9), regularisation),
+            }
+        })
+    })
+}
+
+/// Wear depth of a strip at the end of the window where material leaves it; at rest the deepest, `m`.
+pub fn wear_left_behind(problem: &Problem, fields: &PatchFields, strip: usize) -> f64 {
+    let cells = problem.rail.grid.cells;
+    let depth = &fields.wear.depth[strip * cells..(strip + 1) * cells];
+    let speed = problem.conditions.motion.rolling_speed;
+    if speed > 0.0 {
+        depth[0]
+    } else if speed < 0.0 {
+        depth[cells - 1]
+    } else {
+        depth.iter().fold(0.0, |m, &w| w.max(m))
+    }
+}
+
+/// The size of a contact.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Extent {
+    /// Largest length along a strip, `m`.
+    pub length: f64,
+    /// Largest breadth across the strips, `m`.
+    pub breadth: f64,
+    /// Area, `m²`.
+    pub area: f64,
+}
+
+/// Length, breadth and area of the cells under pressure. At an end the pressure falls like the root of the distance, so its square is
+/// linear there and its zero is found between the cells.
+pub fn extent(rail: &PatchRail, pressure: &[f64]) -> Extent {
+    let grid = &rail.grid;
+    let mut extent = Extent::default();
+    for strip in 0..grid.strips {
+        let row = &pressure[grid.row(strip)];
+        let length = grid.length * distance(grid.cells, |cell| row[cell]);
+        extent.length = extent.length.max(length);
+        extent.area += grid.breadth * length;
+    }
+    for cell in 0..grid.cells {
+        let breadth = grid.breadth * distance(grid.strips, |strip| pressure[grid.place(strip, cell)]);
+        extent.breadth = extent.breadth.max(breadth);
+    }
+    extent
+}
+
+/// Distance between the ends of what is under pressure, in cells.
+fn distance(count: usize, pressure: impl Fn(usize) -> f64) -> f64 {
+    let inside = |&i: &usize| pressure(i) > 0.0;
+    let (Some(first), Some(last)) = ((0..count).find(inside), (0..count).rfind(inside)) else {
+        return 0.0;
+    };
+    let beyond = |end: usize, inner: usize| {
+        let (edge, inside) = (pressure(end), pressure(inner));
+        if inside > edge {
+            (edge * edge / (inside * inside - edge * edge)).min(1.0)
+        } else {
+            0.5
+        }
+    };
+    if first == last {
+        return 1.0;
+    }
+    (last - first) as f64 + beyond(first, first + 1) + beyond(last, last - 1)
+}
