@@ -192,8 +192,8 @@ impl StripWearMarch<'_> {
         self.read_cells(tangent);
     }
 
-    /// The change of [`StripWearMarch::finish`], with those of |V|, by `speed_change` `m/s`, and of B, by `breadth_change` `m`: of
-    /// no effect without a contact, when it is to be 0.
+    /// The change of [`StripWearMarch::finish`], with those of |V|, by `speed_change` `m/s`, and of B, by `breadth_change` `m`, 0
+    /// without a contact.
     pub fn finish_tangent(
         &self,
         (speed_change, breadth_change): (f64, f64),

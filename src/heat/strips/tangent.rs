@@ -27,7 +27,7 @@ pub struct CarriageChange {
     pub speed: f64,
     /// Of the entering temperature rise, `K`.
     pub rise: f64,
-    /// Of the contact's breadth B, `m`; of no effect without a contact.
+    /// Of the contact's breadth B, `m`; 0 without a contact.
     pub breadth: f64,
 }
 
@@ -95,7 +95,6 @@ impl StripHeatMarch<'_> {
         let inflow = self.strips.outer(behind, self.speed).inflow();
         let leaving = self.strips.window(self.speed).outflow();
         let breadth = solution.breadth;
-        // dB acts where B is that of this step.
         let widening = -change.breadth * self.strips.breadth / (breadth * breadth);
         for mode in 0..m {
             let change = |strip| tangent.window[self.place(strip, leaving, mode)];
