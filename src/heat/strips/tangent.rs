@@ -45,6 +45,14 @@ impl StripHeatMarch<'_> {
         let (ahead, _) = self.strips.ends(self.speed);
         let outer = self.strips.outer(ahead, self.speed);
         let amplitudes = &mut tangent.outer[ahead as usize];
+        if change.speed == 0.0 && change.rise == 0.0 {
+            amplitudes.fill(0.0);
+            tangent.window.fill(0.0);
+            for blocks in [&mut scratch.unheated, &mut scratch.unheated_content, &mut scratch.flux] {
+                blocks.fill([0.0; LANES]);
+            }
+            return;
+        }
         self.incoming
             .enter(change.rise, &mut amplitudes[outer.inflow() * m..][..m], &mut 0.0);
         self.outer_tangent(ahead, solution, change.speed, amplitudes, scratch);

@@ -391,13 +391,15 @@ fn the_tangent_is_the_derivative() {
             SurfaceExchange::tangent(&parameters, 1e9 * load(place, 0.0), sliding, 20.0, &change)
         })
         .collect();
-    for (first, start, duration) in [
-        (10.0, 10.0, 1e-3),
-        (-10.0, -10.0, 1e-3),
-        (0.1, 0.1, 1e-3),
-        (10.0, -10.0, 1e-4),
-        (10.0, 10.0, f64::INFINITY),
-        (10.0, 0.0, 1e-3),
+    for (first, start, duration, speed_change, rise_change) in [
+        (10.0, 10.0, 1e-3, 0.7, 3.0),
+        (10.0, 10.0, 1e-3, 0.0, 3.0),
+        (10.0, 10.0, 1e-3, 0.0, 0.0),
+        (-10.0, -10.0, 1e-3, 0.7, 3.0),
+        (0.1, 0.1, 1e-3, 0.7, 3.0),
+        (10.0, -10.0, 1e-4, 0.7, 3.0),
+        (10.0, 10.0, f64::INFINITY, 0.7, 3.0),
+        (10.0, 0.0, 1e-3, 0.7, 3.0),
     ] {
         let mut scratch = StripHeatScratch::new(&rail.basis, &rail.strips);
         let mut before = rail.cold();
@@ -414,7 +416,11 @@ fn the_tangent_is_the_derivative() {
             );
         }
         let march = |h: f64| {
-            let mut march = rail.march(&parameters, start + 0.7_f64.copysign(start) * h, duration);
+            let mut march = rail.march(
+                &parameters,
+                start + speed_change * 1.0_f64.copysign(start) * h,
+                duration,
+            );
             march.surface.friction.ambient = 293.0 + 5.0 * h;
             march.surface.friction.scale = 0.9 + 0.1 * h;
             march
@@ -425,7 +431,7 @@ fn the_tangent_is_the_derivative() {
                 &march(h),
                 &before,
                 &exchange(h),
-                10.0 + 3.0 * h,
+                10.0 + rise_change * h,
                 6e-3 + 1e-3 * h,
                 &mut scratch,
             )
@@ -436,8 +442,8 @@ fn the_tangent_is_the_derivative() {
         let (here, ahead, behind) = (solve(0.0), solve(h), solve(if still { 0.0 } else { -h }));
         let mut tangent = rail.cold();
         let carriage = CarriageChange {
-            speed: 0.7,
-            rise: 3.0,
+            speed: speed_change,
+            rise: rise_change,
             breadth: 1e-3,
         };
         let mut change = StripHeatChange {
@@ -468,7 +474,9 @@ fn the_tangent_is_the_derivative() {
                     "{first} {start} {duration} {number} {k}: {exact} {difference} of {size}"
                 );
             }
-            assert!(size > 0.0);
+            // Without a change there, nothing changes ahead, on the right for V > 0.
+            let still_ahead = speed_change == 0.0 && rise_change == 0.0 && number == 2;
+            assert_eq!(size > 0.0, !still_ahead);
         }
         assert_eq!(tangent.breadth, 1e-3);
     }
