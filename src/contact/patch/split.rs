@@ -331,6 +331,9 @@ fn solve_tractions(
         return Ok(Sweep::NONE);
     }
     let set_changed = solve_normal(problem, fields, scratch, tolerance)?;
+    if set_changed {
+        scratch.friction.start_step();
+    }
     for component in 0..2 {
         scratch.shear_before[component].copy_from_slice(&fields.shear[component]);
     }
