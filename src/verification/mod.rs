@@ -6,6 +6,7 @@
 pub mod carter;
 pub mod cattaneo;
 pub mod chained;
+pub mod contact_points;
 pub mod convergence;
 pub mod creep_curve;
 pub mod elastic_wheel;
@@ -13,6 +14,7 @@ pub mod energy;
 pub mod explicit_master;
 pub mod flash_temperature;
 pub mod hertz;
+pub mod kalker;
 pub mod locked_wheel;
 pub mod mirrored;
 pub mod paper_cases;
