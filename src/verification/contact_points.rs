@@ -119,8 +119,8 @@ pub const MOMENT: [[f64; 2]; 8] = [
     [0.01, 0.008_59],
 ];
 
-/// C₁₁, C₂₂, C₂₃ and C₃₃ of the circle by small creepages, at n = 80 and the material's Poisson's ratio. They are up to 1 %
-/// above their limits.
+/// C₁₁, C₂₂, C₂₃ and C₃₃ of the circle by small creepages, at n = 80 and the material's Poisson's ratio. The first three are
+/// 1 % above Kalker's and C₃₃ 2 %, which finer elements take off.
 pub const SMALL_CREEPAGE: [f64; 4] = [4.302, 3.752, 1.506, 1.206];
 /// C₃₃ of the circle in the same way, at Poisson's ratio 0.25.
 pub const SMALL_SPIN_AT_A_QUARTER: f64 = 1.210;
@@ -161,9 +161,9 @@ mod tests {
     fn small_creepages_are_kalkers() {
         let [_, circle, _] = ELLIPSES;
         let kalker = CreepCoefficients::of(1.0, poisson_ratio()).unwrap();
-        let coefficients = [kalker.longitudinal, kalker.lateral, kalker.lateral_spin];
+        let coefficients = [kalker.longitudinal, kalker.lateral, kalker.lateral_spin, kalker.spin];
         for (contact, kalker) in SMALL_CREEPAGE.into_iter().zip(coefficients) {
-            assert!((contact / kalker - 1.0).abs() < 0.015, "{contact} against {kalker}");
+            assert!((contact / kalker - 1.0).abs() < 0.02, "{contact} against {kalker}");
         }
         let unit = SHEAR_MODULUS * circle.along * circle.across / (FRICTION * LOAD);
         for (curve, coefficient) in [(LONGITUDINAL, coefficients[0]), (LATERAL, coefficients[1])] {

@@ -18,6 +18,7 @@ pub mod kalker;
 pub mod locked_wheel;
 pub mod mirrored;
 pub mod paper_cases;
+pub mod patch_limits;
 pub mod power_balance;
 pub mod rigid_wheel;
 pub mod rolling_start;
