@@ -3,7 +3,7 @@
 //! Values on cells stand strip by strip, each strip in a row of [`Grid::stride`] values, of which the first
 //! [`Grid::cells`] count: rows are filled up to whole vectors of the machine.
 
-use crate::numerics::dense::LANES;
+use crate::numerics::real::BLOCK;
 use std::ops::Range;
 
 /// The grid.
@@ -32,7 +32,7 @@ impl Grid {
 
     /// Values in the row of a strip.
     pub fn stride(&self) -> usize {
-        self.cells.next_multiple_of(LANES)
+        self.cells.next_multiple_of(BLOCK)
     }
 
     /// Values on all rows.

@@ -15,14 +15,12 @@
 //! shear is out_x of the same tables; approach by pressure has A alone.
 
 use super::grid::Grid;
-use crate::numerics::dense::{self, Arithmetic};
+use crate::numerics::dense;
 use crate::numerics::fourier::{Fourier, Rows, good_size};
-use crate::numerics::real::Real;
+use crate::numerics::real::{BLOCK, Real};
+use pulp::{Simd, WithSimd};
 use std::f64::consts::TAU;
 use std::ops::Range;
-
-/// Cells whose sums are built up together, in registers.
-const BLOCK: usize = 8;
 
 /// A place in a grid relative to another: cells ahead and strips to the left.
 type Lag = (isize, isize);
@@ -55,6 +53,8 @@ pub struct Scratch<T> {
     other: Rows<T>,
     /// Of one harmonic the transforms of the x and of the y component, real and imaginary part.
     parts: [Vec<T>; 4],
+    /// Those of the product.
+    sums: [Vec<T>; 4],
 }
 
 /// The part of a grid that a product reads and writes.
@@ -108,6 +108,7 @@ impl Transform {
             other: rows.clone(),
             rows,
             parts: std::array::from_fn(|_| vec![T::default(); self.stride]),
+            sums: std::array::from_fn(|_| vec![T::default(); self.stride]),
         }
     }
 
@@ -161,10 +162,15 @@ impl Transform {
         out: [&mut [f64]; 2],
         scratch: &mut Scratch<f64>,
     ) {
-        dense::vectorised(
-            #[inline(always)]
-            |arithmetic| self.apply_kernel(arithmetic, &self.double, tables, window, load, out, scratch),
-        );
+        dense::with_vectors(Product {
+            transform: self,
+            fourier: &self.double,
+            tables,
+            window,
+            load,
+            out,
+            scratch,
+        });
     }
 
     /// The product in single precision.
@@ -176,51 +182,97 @@ impl Transform {
         out: [&mut [f32]; 2],
         scratch: &mut Scratch<f32>,
     ) {
-        dense::vectorised(
-            #[inline(always)]
-            |arithmetic| self.apply_kernel(arithmetic, &self.single, tables, window, load, out, scratch),
-        );
+        dense::with_vectors(Product {
+            transform: self,
+            fourier: &self.single,
+            tables,
+            window,
+            load,
+            out,
+            scratch,
+        });
     }
+}
+
+/// A product, for the vectors that a machine has.
+struct Product<'a, T> {
+    transform: &'a Transform,
+    fourier: &'a Fourier<T>,
+    tables: &'a Tables<T>,
+    window: &'a Window,
+    load: [&'a [T]; 2],
+    out: [&'a mut [T]; 2],
+    scratch: &'a mut Scratch<T>,
+}
+
+impl<T: Real> WithSimd for Product<'_, T> {
+    type Output = ();
 
     #[inline(always)]
-    fn apply_kernel<T: Real>(
-        &self,
-        arithmetic: Arithmetic,
-        fourier: &Fourier<T>,
-        tables: &Tables<T>,
-        window: &Window,
-        load: [&[T]; 2],
-        out: [&mut [T]; 2],
-        scratch: &mut Scratch<T>,
-    ) {
-        let stride = self.stride;
+    fn with_simd<S: Simd>(self, simd: S) {
+        let Product {
+            transform,
+            fourier,
+            tables,
+            window,
+            load,
+            out,
+            scratch,
+        } = self;
+        let stride = transform.stride;
         let strips = window.strips.clone();
-        let Scratch { rows, other, parts } = scratch;
+        let Scratch {
+            rows,
+            other,
+            parts,
+            sums,
+        } = scratch;
         for (rows, load) in [&mut rows.re, &mut rows.im].into_iter().zip(load) {
             let (given, rest) = rows.split_at_mut(strips.len() * stride);
             given.copy_from_slice(&load[strips.start * stride..strips.end * stride]);
             rest.fill(T::default());
         }
-        fourier.forward(arithmetic, stride, rows, other);
+        fourier.forward(simd, stride, rows, other);
         let size = fourier.size();
-        for harmonic in 0..self.harmonics() {
+        let ranges = Ranges {
+            cells: window.loaded.clone(),
+            read: window.read.clone(),
+            origin: stride,
+        };
+        for harmonic in 0..transform.harmonics() {
             let own = harmonic * stride..(harmonic + 1) * stride;
             let opposite = (size - harmonic) % size * stride;
-            let lags = harmonic * self.lags..(harmonic + 1) * self.lags;
-            let kernels = [
-                &tables.even[0][lags.clone()],
-                &tables.even[1][lags.clone()],
-                &tables.odd[lags],
-            ];
+            let lags = harmonic * transform.lags..(harmonic + 1) * transform.lags;
             let mirror = opposite..opposite + stride;
             if tables.scalar {
-                self.scalar_harmonic(arithmetic, kernels[0], window, &own, &mirror, rows, other);
+                let kernel = &tables.even[0][lags];
+                let places = [own.clone(), mirror.clone()];
+                let both = if own == mirror { 1 } else { 2 };
+                for place in places.into_iter().take(both) {
+                    let values = [&rows.re[place.clone()], &rows.im[place.clone()]];
+                    let out = [&mut other.re[place.clone()], &mut other.im[place]];
+                    convolve_one(simd, kernel, values, &ranges, out);
+                }
             } else {
-                take_apart(rows, &own, &mirror, parts);
-                self.harmonic(arithmetic, kernels, window, (&own, &mirror), parts, other);
+                let kernels = [
+                    &tables.even[0][lags.clone()],
+                    &tables.odd[lags.clone()],
+                    &tables.even[1][lags],
+                ];
+                take_apart(simd, rows, &own, &mirror, parts);
+                let [xr, xi, yr, yi] = &*parts;
+                let [sum_xr, sum_xi, sum_yr, sum_yi] = &mut *sums;
+                convolve(
+                    simd,
+                    kernels,
+                    [xr, xi, yr, yi],
+                    &ranges,
+                    [sum_xr, sum_xi, sum_yr, sum_yi],
+                );
+                put_together(simd, sums, &own, &mirror, other);
             }
         }
-        fourier.backward(arithmetic, stride, other, rows);
+        fourier.backward(simd, stride, other, rows);
         for (component, out) in [&other.re, &other.im].into_iter().zip(out) {
             for (row, strip) in component.chunks_exact(stride).zip(strips.clone()) {
                 let read = window.read.clone();
@@ -228,95 +280,131 @@ impl Transform {
             }
         }
     }
+}
 
-    /// One harmonic of the product, from its parts into `to`.
-    #[inline(always)]
-    fn harmonic<T: Real>(
-        &self,
-        arithmetic: Arithmetic,
-        [a, c, b]: [&[T]; 3],
-        window: &Window,
-        (own, mirror): (&Range<usize>, &Range<usize>),
-        [xr, xi, yr, yi]: &[Vec<T>; 4],
-        to: &mut Rows<T>,
-    ) {
-        let first = window.read.start / BLOCK * BLOCK;
-        for start in (first..window.read.end).step_by(BLOCK) {
-            let mut sums = [[T::default(); BLOCK]; 4];
-            for cell in window.loaded.clone() {
-                let (x, y) = ((xr[cell], xi[cell]), (yr[cell], yi[cell]));
-                let lag = start + self.stride - cell;
-                let [a, b, c] = [a, b, c].map(|kernel| &kernel[lag..lag + BLOCK]);
-                for lane in 0..BLOCK {
-                    let fma = |k, value, sum| T::multiply_add(arithmetic, k, value, sum);
-                    sums[0][lane] = fma(a[lane], x.0, fma(b[lane], y.1, sums[0][lane]));
-                    sums[1][lane] = fma(a[lane], x.1, fma(b[lane], -y.0, sums[1][lane]));
-                    sums[2][lane] = fma(c[lane], y.0, fma(b[lane], x.1, sums[2][lane]));
-                    sums[3][lane] = fma(c[lane], y.1, fma(b[lane], -x.0, sums[3][lane]));
-                }
-            }
-            let [xr, xi, yr, yi] = sums;
-            let (own, mirror) = (own.start + start, mirror.start + start);
-            for lane in 0..BLOCK {
-                to.re[own + lane] = xr[lane].plus(-yi[lane]);
-                to.im[own + lane] = xi[lane].plus(yr[lane]);
-            }
-            if mirror != own {
-                for lane in 0..BLOCK {
-                    to.re[mirror + lane] = xr[lane].plus(yi[lane]);
-                    to.im[mirror + lane] = yr[lane].plus(-xi[lane]);
-                }
+/// What a convolution runs over.
+struct Ranges {
+    /// Cells with values.
+    cells: Range<usize>,
+    /// Places that are read.
+    read: Range<usize>,
+    /// Place of lag 0 in a kernel.
+    origin: usize,
+}
+
+/// The sums over the cells of kernels a, b, c times values, complex x and y in real and imaginary parts: out_x = Σ a x − i b y,
+/// out_y = Σ c y − i b x. Two vectors of places are summed up at a time, in registers.
+#[inline(always)]
+fn convolve<T: Real, S: Simd>(
+    simd: S,
+    [a, b, c]: [&[T]; 3],
+    [xr, xi, yr, yi]: [&[T]; 4],
+    ranges: &Ranges,
+    [out_xr, out_xi, out_yr, out_yi]: [&mut [T]; 4],
+) {
+    let block = 2 * T::lanes::<S>();
+    let zero = T::splat(simd, T::default());
+    for start in (ranges.read.start / block * block..ranges.read.end).step_by(block) {
+        let (mut sum_xr, mut sum_xi, mut sum_yr, mut sum_yi) = ([zero; 2], [zero; 2], [zero; 2], [zero; 2]);
+        for cell in ranges.cells.clone() {
+            let lag = ranges.origin + start - cell;
+            let [a, b, c] = [a, b, c].map(|kernel| T::vectors::<S>(&kernel[lag..lag + block]));
+            let [xr, xi, yr, yi] = [xr, xi, yr, yi].map(|values| T::splat(simd, values[cell]));
+            for k in 0..2 {
+                sum_xr[k] = T::multiply_add(simd, a[k], xr, sum_xr[k]);
+                sum_xi[k] = T::multiply_add(simd, a[k], xi, sum_xi[k]);
+                sum_yr[k] = T::multiply_add(simd, c[k], yr, sum_yr[k]);
+                sum_yi[k] = T::multiply_add(simd, c[k], yi, sum_yi[k]);
+                sum_xr[k] = T::multiply_add(simd, b[k], yi, sum_xr[k]);
+                sum_xi[k] = T::multiply_subtract(simd, b[k], yr, sum_xi[k]);
+                sum_yr[k] = T::multiply_add(simd, b[k], xi, sum_yr[k]);
+                sum_yi[k] = T::multiply_subtract(simd, b[k], xr, sum_yi[k]);
             }
         }
+        let end = start + block;
+        T::vectors_mut::<S>(&mut out_xr[start..end]).copy_from_slice(&sum_xr);
+        T::vectors_mut::<S>(&mut out_xi[start..end]).copy_from_slice(&sum_xi);
+        T::vectors_mut::<S>(&mut out_yr[start..end]).copy_from_slice(&sum_yr);
+        T::vectors_mut::<S>(&mut out_yi[start..end]).copy_from_slice(&sum_yi);
     }
+}
 
-    /// As [`Transform::harmonic`] where A alone is not 0: both components pass through it.
-    #[inline(always)]
-    fn scalar_harmonic<T: Real>(
-        &self,
-        arithmetic: Arithmetic,
-        a: &[T],
-        window: &Window,
-        own: &Range<usize>,
-        mirror: &Range<usize>,
-        from: &Rows<T>,
-        to: &mut Rows<T>,
-    ) {
-        let first = window.read.start / BLOCK * BLOCK;
-        let both = if own == mirror { 1 } else { 2 };
-        for place in [own, mirror].into_iter().take(both) {
-            let (re, im) = (&from.re[place.clone()], &from.im[place.clone()]);
-            for start in (first..window.read.end).step_by(BLOCK) {
-                let mut sums = [[T::default(); BLOCK]; 2];
-                for cell in window.loaded.clone() {
-                    let lag = start + self.stride - cell;
-                    let a = &a[lag..lag + BLOCK];
-                    for lane in 0..BLOCK {
-                        sums[0][lane] = T::multiply_add(arithmetic, a[lane], re[cell], sums[0][lane]);
-                        sums[1][lane] = T::multiply_add(arithmetic, a[lane], im[cell], sums[1][lane]);
-                    }
-                }
-                let start = place.start + start;
-                to.re[start..start + BLOCK].copy_from_slice(&sums[0]);
-                to.im[start..start + BLOCK].copy_from_slice(&sums[1]);
+/// As [`convolve`] with a alone, of one complex value.
+#[inline(always)]
+fn convolve_one<T: Real, S: Simd>(
+    simd: S,
+    kernel: &[T],
+    [re, im]: [&[T]; 2],
+    ranges: &Ranges,
+    [out_re, out_im]: [&mut [T]; 2],
+) {
+    let block = 2 * T::lanes::<S>();
+    let zero = T::splat(simd, T::default());
+    for start in (ranges.read.start / block * block..ranges.read.end).step_by(block) {
+        let (mut sum_re, mut sum_im) = ([zero; 2], [zero; 2]);
+        for cell in ranges.cells.clone() {
+            let lag = ranges.origin + start - cell;
+            let kernel = T::vectors::<S>(&kernel[lag..lag + block]);
+            let (re, im) = (T::splat(simd, re[cell]), T::splat(simd, im[cell]));
+            for k in 0..2 {
+                sum_re[k] = T::multiply_add(simd, kernel[k], re, sum_re[k]);
+                sum_im[k] = T::multiply_add(simd, kernel[k], im, sum_im[k]);
             }
         }
+        let end = start + block;
+        T::vectors_mut::<S>(&mut out_re[start..end]).copy_from_slice(&sum_re);
+        T::vectors_mut::<S>(&mut out_im[start..end]).copy_from_slice(&sum_im);
     }
 }
 
 /// Of Z = X + iY the transforms of the real X and Y: (Z + Z̄')/2 and (Z − Z̄')/2i, with Z' at the opposite harmonic.
 #[inline(always)]
-fn take_apart<T: Real>(rows: &Rows<T>, own: &Range<usize>, mirror: &Range<usize>, [xr, xi, yr, yi]: &mut [Vec<T>; 4]) {
-    let half = T::new(0.5);
-    let own = rows.re[own.clone()].iter().zip(&rows.im[own.clone()]);
-    let mirror = rows.re[mirror.clone()].iter().zip(&rows.im[mirror.clone()]);
-    let x = xr.iter_mut().zip(xi.iter_mut());
-    let y = yr.iter_mut().zip(yi.iter_mut());
-    for (((&a, &b), (&c, &d)), ((xr, xi), (yr, yi))) in own.zip(mirror).zip(x.zip(y)) {
-        *xr = half.times(a.plus(c));
-        *xi = half.times(b.plus(-d));
-        *yr = half.times(b.plus(d));
-        *yi = half.times(c.plus(-a));
+fn take_apart<T: Real, S: Simd>(
+    simd: S,
+    rows: &Rows<T>,
+    own: &Range<usize>,
+    mirror: &Range<usize>,
+    [xr, xi, yr, yi]: &mut [Vec<T>; 4],
+) {
+    let half = T::splat(simd, T::new(0.5));
+    let (a, b) = (
+        T::vectors::<S>(&rows.re[own.clone()]),
+        T::vectors::<S>(&rows.im[own.clone()]),
+    );
+    let (c, d) = (
+        T::vectors::<S>(&rows.re[mirror.clone()]),
+        T::vectors::<S>(&rows.im[mirror.clone()]),
+    );
+    let (xr, xi) = (T::vectors_mut::<S>(xr), T::vectors_mut::<S>(xi));
+    let (yr, yi) = (T::vectors_mut::<S>(yr), T::vectors_mut::<S>(yi));
+    for k in 0..a.len() {
+        let (a, b, c, d) = (a[k], b[k], c[k], d[k]);
+        xr[k] = T::multiply(simd, half, T::add(simd, a, c));
+        xi[k] = T::multiply(simd, half, T::subtract(simd, b, d));
+        yr[k] = T::multiply(simd, half, T::add(simd, b, d));
+        yi[k] = T::multiply(simd, half, T::subtract(simd, c, a));
+    }
+}
+
+/// Z = X + iY and Z' at the opposite harmonic, X̄ + iȲ; a harmonic that is its own opposite has real X and Y, and Z = Z'.
+#[inline(always)]
+fn put_together<T: Real, S: Simd>(
+    simd: S,
+    parts: &[Vec<T>; 4],
+    own: &Range<usize>,
+    mirror: &Range<usize>,
+    rows: &mut Rows<T>,
+) {
+    let [xr, xi, yr, yi] = [0, 1, 2, 3].map(|k| T::vectors::<S>(&parts[k]));
+    let vectors = xr.len();
+    let (re, im) = (T::vectors_mut::<S>(&mut rows.re), T::vectors_mut::<S>(&mut rows.im));
+    let (own, mirror) = (own.start / T::lanes::<S>(), mirror.start / T::lanes::<S>());
+    for k in 0..vectors {
+        let (xr, xi, yr, yi) = (xr[k], xi[k], yr[k], yi[k]);
+        re[mirror + k] = T::add(simd, xr, yi);
+        im[mirror + k] = T::subtract(simd, yr, xi);
+        re[own + k] = T::subtract(simd, xr, yi);
+        im[own + k] = T::add(simd, xi, yr);
     }
 }
 
@@ -441,5 +529,66 @@ mod tests {
                 }
             }
         }
+    }
+}
+
+#[cfg(test)]
+mod timing {
+    use super::*;
+
+    #[test]
+    #[ignore]
+    fn product() {
+        let grid = Grid::new(34, 21, 1.0, 1.0);
+        let transform = Transform::new(&grid, 21);
+        let tables = transform.tables(
+            |(x, y)| 1.0 / (1.0 + (x * x + y * y) as f64),
+            |(x, y)| (x * y) as f64 / (1.0 + (x * x + y * y) as f64),
+            |_| 1.0,
+        );
+        let scalar = transform.scalar_tables(|(x, y)| 1.0 / (1.0 + (x * x + y * y) as f64));
+        let single = tables.single();
+        let window = Window {
+            strips: 3..18,
+            loaded: 5..29,
+            read: 4..30,
+        };
+        let load = vec![1.0; grid.len()];
+        let (mut a, mut b) = (vec![0.0; grid.len()], vec![0.0; grid.len()]);
+        let load_s = vec![1.0f32; grid.len()];
+        let (mut c, mut d) = (vec![0.0f32; grid.len()], vec![0.0f32; grid.len()]);
+        let (mut s, mut s1) = (transform.scratch(), transform.scratch());
+        let time = |name: &str, f: &mut dyn FnMut()| {
+            let mut best = f64::INFINITY;
+            for _ in 0..200 {
+                let start = std::time::Instant::now();
+                for _ in 0..10 {
+                    f();
+                }
+                best = best.min(start.elapsed().as_secs_f64() / 10.0);
+            }
+            println!("{name} {:.2} us", best * 1e6);
+        };
+        time("double", &mut || {
+            transform.apply(&tables, &window, [&load, &load], [&mut a, &mut b], &mut s)
+        });
+        time("scalar", &mut || {
+            transform.apply(&scalar, &window, [&load, &load], [&mut a, &mut b], &mut s)
+        });
+        time("single", &mut || {
+            transform.apply_single(&single, &window, [&load_s, &load_s], [&mut c, &mut d], &mut s1)
+        });
+        time("fft double", &mut || {
+            dense::vectorised(
+                #[inline(always)]
+                |_| transform.double.forward(pulp::Scalar, 48, &mut s.rows, &mut s.other),
+            )
+        });
+        time("fft single", &mut || {
+            dense::vectorised(
+                #[inline(always)]
+                |_| transform.single.forward(pulp::Scalar, 48, &mut s1.rows, &mut s1.other),
+            )
+        });
     }
 }

@@ -23,6 +23,12 @@ pub fn vectorised<R>(kernel: impl FnOnce(Arithmetic) -> R) -> R {
     )
 }
 
+/// As [`vectorised`] for kernels that are written with vectors themselves.
+#[inline(always)]
+pub fn with_vectors<Op: pulp::WithSimd>(kernel: Op) -> Op::Output {
+    pulp::Arch::new().dispatch(kernel)
+}
+
 /// Interleaved partial results of a loop, which the compiler keeps in two vector registers of AVX2.
 pub const LANES: usize = 8;
 

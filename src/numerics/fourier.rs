@@ -3,8 +3,8 @@
 //! Stockham's algorithm with factors 4, 3 and 2: it sorts itself. The inverse is the same transform with real and imaginary
 //! part exchanged, without the factor 1/P.
 
-use super::dense::Arithmetic;
 use super::real::Real;
+use pulp::Simd;
 use std::f64::consts::TAU;
 
 /// A transform of P rows.
@@ -70,24 +70,24 @@ impl<T: Real> Fourier<T> {
         self.size
     }
 
-    /// Transforms `rows`, each `width` long; `scratch` is as large.
+    /// Transforms `rows`, each `width` long, a multiple of [`super::real::BLOCK`]; `scratch` is as large.
     #[inline(always)]
-    pub fn forward(&self, arithmetic: Arithmetic, width: usize, rows: &mut Rows<T>, scratch: &mut Rows<T>) {
+    pub fn forward<S: Simd>(&self, simd: S, width: usize, rows: &mut Rows<T>, scratch: &mut Rows<T>) {
         let (re, im) = (&mut rows.re, &mut rows.im);
-        self.transform(arithmetic, width, (re, im), (&mut scratch.re, &mut scratch.im));
+        self.transform(simd, width, (re, im), (&mut scratch.re, &mut scratch.im));
     }
 
     /// The inverse times P.
     #[inline(always)]
-    pub fn backward(&self, arithmetic: Arithmetic, width: usize, rows: &mut Rows<T>, scratch: &mut Rows<T>) {
+    pub fn backward<S: Simd>(&self, simd: S, width: usize, rows: &mut Rows<T>, scratch: &mut Rows<T>) {
         let (re, im) = (&mut rows.re, &mut rows.im);
-        self.transform(arithmetic, width, (im, re), (&mut scratch.im, &mut scratch.re));
+        self.transform(simd, width, (im, re), (&mut scratch.im, &mut scratch.re));
     }
 
     #[inline(always)]
-    fn transform<'a>(
+    fn transform<'a, S: Simd>(
         &self,
-        arithmetic: Arithmetic,
+        simd: S,
         width: usize,
         mut from: (&'a mut Vec<T>, &'a mut Vec<T>),
         mut to: (&'a mut Vec<T>, &'a mut Vec<T>),
@@ -97,12 +97,16 @@ impl<T: Real> Fourier<T> {
             let pass = Pass {
                 parts: length / factor,
                 stride,
-                width,
+                vectors: width / T::lanes::<S>(),
             };
-            match factor {
-                2 => self.pass::<2>(arithmetic, &pass, &from, &mut to),
-                3 => self.pass::<3>(arithmetic, &pass, &from, &mut to),
-                _ => self.pass::<4>(arithmetic, &pass, &from, &mut to),
+            {
+                let from = (T::vectors::<S>(from.0), T::vectors::<S>(from.1));
+                let to = (T::vectors_mut::<S>(to.0), T::vectors_mut::<S>(to.1));
+                match factor {
+                    2 => self.pass::<S, 2>(simd, &pass, from, to),
+                    3 => self.pass::<S, 3>(simd, &pass, from, to),
+                    _ => self.pass::<S, 4>(simd, &pass, from, to),
+                }
             }
             std::mem::swap(&mut from, &mut to);
             length /= factor;
@@ -116,33 +120,33 @@ impl<T: Real> Fourier<T> {
     }
 
     #[inline(always)]
-    fn pass<const R: usize>(
+    fn pass<S: Simd, const R: usize>(
         &self,
-        arithmetic: Arithmetic,
+        simd: S,
         pass: &Pass,
-        from: &(&mut Vec<T>, &mut Vec<T>),
-        to: &mut (&mut Vec<T>, &mut Vec<T>),
+        from: (&[T::Vector<S>], &[T::Vector<S>]),
+        to: (&mut [T::Vector<S>], &mut [T::Vector<S>]),
     ) {
-        let Pass { parts, stride, width } = *pass;
+        let Pass { parts, stride, vectors } = *pass;
         for part in 0..parts {
-            let twiddles: [(T, T); R] = std::array::from_fn(|k| self.roots[part * stride * k % self.size]);
+            let twiddles: [Complex<T, S>; R] = std::array::from_fn(|k| {
+                let (re, im) = self.roots[part * stride * k % self.size];
+                (T::splat(simd, re), T::splat(simd, im))
+            });
             for place in 0..stride {
-                let source = |j: usize| (place + stride * (part + parts * j)) * width;
-                let target = |k: usize| (place + stride * (R * part + k)) * width;
-                let inputs: [(&[T], &[T]); R] = std::array::from_fn(|j| {
-                    let start = source(j);
-                    (&from.0[start..start + width], &from.1[start..start + width])
-                });
-                let first = target(0);
-                // The R rows of the result stand `stride` rows apart.
-                let (re, im) = (&mut to.0[first..], &mut to.1[first..]);
-                for column in 0..width {
-                    let values: [(T, T); R] = std::array::from_fn(|j| (inputs[j].0[column], inputs[j].1[column]));
-                    let sums = butterfly(arithmetic, values);
-                    for (k, (sum, twiddle)) in sums.into_iter().zip(twiddles).enumerate() {
-                        let (a, b) = if k == 0 { sum } else { product(arithmetic, sum, twiddle) };
-                        re[k * stride * width + column] = a;
-                        im[k * stride * width + column] = b;
+                for vector in 0..vectors {
+                    let values: [Complex<T, S>; R] = std::array::from_fn(|j| {
+                        let source = (place + stride * (part + parts * j)) * vectors + vector;
+                        (from.0[source], from.1[source])
+                    });
+                    let sums = butterfly::<T, S, R>(simd, values);
+                    for k in 0..R {
+                        let target = (place + stride * (R * part + k)) * vectors + vector;
+                        (to.0[target], to.1[target]) = if k == 0 {
+                            sums[k]
+                        } else {
+                            product::<T, S>(simd, sums[k], twiddles[k])
+                        };
                     }
                 }
             }
@@ -150,63 +154,73 @@ impl<T: Real> Fourier<T> {
     }
 }
 
-/// One pass: what is left to transform in so many parts, what is done in runs of `stride`.
+/// Complex numbers side by side, real and imaginary parts.
+type Complex<T, S> = (<T as Real>::Vector<S>, <T as Real>::Vector<S>);
+
+/// One pass: what is left to transform in so many parts, what is done in runs of `stride`, rows of so many vectors.
 struct Pass {
     parts: usize,
     stride: usize,
-    width: usize,
+    vectors: usize,
 }
 
 #[inline(always)]
-fn product<T: Real>(arithmetic: Arithmetic, (a, b): (T, T), (c, d): (T, T)) -> (T, T) {
+fn product<T: Real, S: Simd>(simd: S, (a, b): Complex<T, S>, (c, d): Complex<T, S>) -> Complex<T, S> {
     (
-        T::multiply_add(arithmetic, a, c, -(b.times(d))),
-        T::multiply_add(arithmetic, a, d, b.times(c)),
+        T::multiply_subtract(simd, b, d, T::multiply(simd, a, c)),
+        T::multiply_add(simd, a, d, T::multiply(simd, b, c)),
     )
 }
 
 #[inline(always)]
-fn add<T: Real>((a, b): (T, T), (c, d): (T, T)) -> (T, T) {
-    (a.plus(c), b.plus(d))
+fn add<T: Real, S: Simd>(simd: S, (a, b): Complex<T, S>, (c, d): Complex<T, S>) -> Complex<T, S> {
+    (T::add(simd, a, c), T::add(simd, b, d))
 }
 
 #[inline(always)]
-fn subtract<T: Real>((a, b): (T, T), (c, d): (T, T)) -> (T, T) {
-    (a.plus(-c), b.plus(-d))
+fn subtract<T: Real, S: Simd>(simd: S, (a, b): Complex<T, S>, (c, d): Complex<T, S>) -> Complex<T, S> {
+    (T::subtract(simd, a, c), T::subtract(simd, b, d))
 }
 
-/// −i z.
+/// u − i f v.
 #[inline(always)]
-fn turned<T: Real>((a, b): (T, T)) -> (T, T) {
-    (b, -a)
+fn turn_and_add<T: Real, S: Simd>(simd: S, u: Complex<T, S>, factor: T, v: Complex<T, S>) -> Complex<T, S> {
+    let factor = T::splat(simd, factor);
+    (
+        T::multiply_add(simd, factor, v.1, u.0),
+        T::multiply_subtract(simd, factor, v.0, u.1),
+    )
 }
 
 /// The transform of 2, 3 or 4 numbers.
 #[inline(always)]
-fn butterfly<T: Real, const R: usize>(arithmetic: Arithmetic, v: [(T, T); R]) -> [(T, T); R] {
+fn butterfly<T: Real, S: Simd, const R: usize>(simd: S, v: [Complex<T, S>; R]) -> [Complex<T, S>; R] {
     let mut out = v;
     match R {
-        2 => (out[0], out[1]) = (add(v[0], v[1]), subtract(v[0], v[1])),
+        2 => {
+            out[0] = add::<T, S>(simd, v[0], v[1]);
+            out[1] = subtract::<T, S>(simd, v[0], v[1]);
+        }
         3 => {
-            let (sum, difference) = (add(v[1], v[2]), subtract(v[1], v[2]));
-            let half = T::new(-0.5);
+            let sum = add::<T, S>(simd, v[1], v[2]);
+            let difference = subtract::<T, S>(simd, v[1], v[2]);
+            let half = T::splat(simd, T::new(0.5));
             let middle = (
-                T::multiply_add(arithmetic, half, sum.0, v[0].0),
-                T::multiply_add(arithmetic, half, sum.1, v[0].1),
+                T::multiply_subtract(simd, half, sum.0, v[0].0),
+                T::multiply_subtract(simd, half, sum.1, v[0].1),
             );
-            let height = T::new(0.75_f64.sqrt());
-            let across = turned((difference.0.times(height), difference.1.times(height)));
-            out[0] = add(v[0], sum);
-            out[1] = add(middle, across);
-            out[2] = subtract(middle, across);
+            let height = 0.75_f64.sqrt();
+            out[0] = add::<T, S>(simd, v[0], sum);
+            out[1] = turn_and_add::<T, S>(simd, middle, T::new(height), difference);
+            out[2] = turn_and_add::<T, S>(simd, middle, T::new(-height), difference);
         }
         _ => {
-            let (even, odd) = (add(v[0], v[2]), subtract(v[0], v[2]));
-            let (sum, difference) = (add(v[1], v[3]), turned(subtract(v[1], v[3])));
-            out[0] = add(even, sum);
-            out[1] = add(odd, difference);
-            out[2] = subtract(even, sum);
-            out[3] = subtract(odd, difference);
+            let (even, odd) = (add::<T, S>(simd, v[0], v[2]), subtract::<T, S>(simd, v[0], v[2]));
+            let (sum, difference) = (add::<T, S>(simd, v[1], v[3]), subtract::<T, S>(simd, v[1], v[3]));
+            out[0] = add::<T, S>(simd, even, sum);
+            out[1] = turn_and_add::<T, S>(simd, odd, T::new(1.0), difference);
+            out[2] = subtract::<T, S>(simd, even, sum);
+            out[3] = turn_and_add::<T, S>(simd, odd, T::new(-1.0), difference);
         }
     }
     out
@@ -218,7 +232,7 @@ mod tests {
 
     #[test]
     fn the_transform_is_the_sum_and_its_inverse_leads_back() {
-        let width = 3;
+        let width = crate::numerics::real::BLOCK;
         for size in [1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64, 96] {
             assert_eq!(good_size(size), size);
             let fourier = Fourier::<f64>::new(size);
@@ -228,7 +242,7 @@ mod tests {
             }
             let given = rows.clone();
             let mut scratch = Rows::new(size, width);
-            fourier.forward(Arithmetic::SEPARATE, width, &mut rows, &mut scratch);
+            fourier.forward(pulp::Scalar, width, &mut rows, &mut scratch);
             for row in 0..size {
                 for column in 0..width {
                     let mut sum = (0.0, 0.0);
@@ -244,7 +258,7 @@ mod tests {
                     assert!(error < 1e-14 * size as f64, "{size} {row}: {error:e}");
                 }
             }
-            fourier.backward(Arithmetic::SEPARATE, width, &mut rows, &mut scratch);
+            fourier.backward(pulp::Scalar, width, &mut rows, &mut scratch);
             for (now, given) in rows.re.iter().zip(&given.re).chain(rows.im.iter().zip(&given.im)) {
                 assert!((now / size as f64 - given).abs() < 1e-14 * size as f64);
             }

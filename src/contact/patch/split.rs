@@ -197,9 +197,27 @@ pub fn solve(
     scratch.iterate.read(problem.rail, fields, &scratch.softness);
     let mut rest = Rest::new(settings.patch_split());
     for iterations in 1..=settings.split.iterations {
+        let c0 = scratch.counts();
+        let t0 = std::time::Instant::now();
         let sweep = solve_tractions(problem, fields, scratch, rest.mechanics_tolerance())?;
+        let t1 = t0.elapsed();
         march_wear(problem, before, fields, scratch);
         march_heat(problem, before, fields, scratch)?;
+        if std::env::var("WR_DBG").is_ok() {
+            let c1 = scratch.counts();
+            eprintln!(
+                "DBG it {iterations} cells {} tol {:.1e} newton {} krylov {} normal {} tractions {:?} heat {:?} set {} shear {:.1e}",
+                scratch.contact.cells(),
+                rest.mechanics_tolerance(),
+                c1[0] - c0[0],
+                c1[1] - c0[1],
+                c1[2] - c0[2],
+                t1,
+                t0.elapsed() - t1,
+                sweep.set_changed,
+                sweep.shear_change
+            );
+        }
         scratch.image.read(problem.rail, fields, &scratch.softness);
         let change = scratch
             .iterate

@@ -363,7 +363,10 @@ mod tests {
     /// Hertz's ellipse (Johnson, 4.24–4.26).
     #[test]
     fn hertz() {
-        let parameters = Parameters { contact_model: ContactModel::Patch, ..Parameters::default() };
+        let parameters = Parameters {
+            contact_model: ContactModel::Patch,
+            ..Parameters::default()
+        };
         let rail = PatchRail::new(&parameters).unwrap();
         let ellipse = parameters.hertz_ellipse(80e3);
         let grid = &rail.grid;
@@ -371,11 +374,24 @@ mod tests {
         let mut contact = Contact::new(grid);
         let mut pressure = vec![0.0; grid.len()];
         let zero = vec![0.0; grid.len()];
-        let problem = NormalProblem { grid, transform: &rail.transform, approach: &rail.approach, gap: &rail.gap, softness: &zero,
-            constraint: Constraint::Total(80e3 / rail.unit_force()), tolerance: 1e-9 };
+        let problem = NormalProblem {
+            grid,
+            transform: &rail.transform,
+            approach: &rail.approach,
+            gap: &rail.gap,
+            softness: &zero,
+            constraint: Constraint::Total(80e3 / rail.unit_force()),
+            tolerance: 1e-9,
+        };
         let penetration = normal.solve(&problem, &mut contact, &mut pressure).unwrap();
         let peak = pressure.iter().fold(0.0f64, |m, p| m.max(*p)) * rail.scales.pressure;
-        println!("products {} cells {} peak {} delta {}", normal.products, contact.cells(), peak / ellipse.peak_pressure, penetration * rail.scales.displacement / ellipse.approach);
+        println!(
+            "products {} cells {} peak {} delta {}",
+            normal.products,
+            contact.cells(),
+            peak / ellipse.peak_pressure,
+            penetration * rail.scales.displacement / ellipse.approach
+        );
         panic!();
     }
 }
