@@ -169,6 +169,10 @@ impl Friction {
     ) -> std::result::Result<(), (usize, f64)> {
         let n = problem.contact.cells();
         let window = problem.contact.window(problem.grid, 1);
+        // Nothing outside the contact is left over from another one.
+        for changes in [&mut self.correction, &mut self.correction_response] {
+            changes.iter_mut().for_each(|component| component.fill(0.0));
+        }
         {
             let [x, y] = &mut self.response;
             let load = [&shear[0][..], &shear[1][..]];
@@ -201,6 +205,9 @@ impl Friction {
                     .transform
                     .apply(&problem.response.double, &window, load, [x, y], &mut self.scratch);
             }
+            if std::env::var("WR_NEWTON").is_ok() {
+                eprintln!("  NEWTON {iterations} size {size:.2e} largest {largest:.2e} krylov {solved} sticks {}", self.rows[..n].iter().filter(|r| r.sticks).count());
+            }
             let mut length = 1.0;
             let mut halvings = 0;
             loop {
@@ -209,6 +216,7 @@ impl Friction {
                     size = moved;
                     break;
                 }
+                if std::env::var("WR_NEWTON").is_ok() { eprintln!("     length {length} moved {moved:.2e}"); }
                 if halvings == self.settings.halvings {
                     return Err((iterations, largest));
                 }
