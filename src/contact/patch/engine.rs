@@ -42,11 +42,6 @@ impl PatchWorkspace {
         state.trend.update(&state.fields, &self.trial, duration);
         std::mem::swap(&mut state.fields, &mut self.trial);
     }
-
-    /// Newton steps and Krylov products of friction, products of the normal problem, since the start.
-    pub fn counts(&self) -> [usize; 3] {
-        self.scratch.counts()
-    }
 }
 
 impl Patch {

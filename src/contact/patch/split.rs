@@ -8,7 +8,7 @@
 use super::fields::{PatchFields, PatchTrend};
 use super::problem::{Problem, SlipWeights};
 use super::rail::PatchRail;
-use crate::body::influence::{self, Tables, Window};
+use crate::body::influence::{self, Window};
 use crate::contact::rest::Rest;
 use crate::contact::rim::{self, ContactHeat};
 use crate::contact::task::Convergence;
@@ -163,11 +163,6 @@ impl Scratch {
             edge: vec![[0.0; 2]; grid.len()],
         }
     }
-
-    /// Newton steps and Krylov products of friction, products of the normal problem, since the start.
-    pub fn counts(&self) -> [usize; 3] {
-        [self.friction.counts[0], self.friction.counts[1], self.normal.products]
-    }
 }
 
 /// Solves the step: `fields` holds the tractions to start from and receives the solution; temperature and wear at its start are those
@@ -197,27 +192,9 @@ pub fn solve(
     scratch.iterate.read(problem.rail, fields, &scratch.softness);
     let mut rest = Rest::new(settings.patch_split());
     for iterations in 1..=settings.split.iterations {
-        let c0 = scratch.counts();
-        let t0 = std::time::Instant::now();
         let sweep = solve_tractions(problem, fields, scratch, rest.mechanics_tolerance())?;
-        let t1 = t0.elapsed();
         march_wear(problem, before, fields, scratch);
         march_heat(problem, before, fields, scratch)?;
-        if std::env::var("WR_DBG").is_ok() {
-            let c1 = scratch.counts();
-            eprintln!(
-                "DBG it {iterations} cells {} tol {:.1e} newton {} krylov {} normal {} tractions {:?} heat {:?} set {} shear {:.1e}",
-                scratch.contact.cells(),
-                rest.mechanics_tolerance(),
-                c1[0] - c0[0],
-                c1[1] - c0[1],
-                c1[2] - c0[2],
-                t1,
-                t0.elapsed() - t1,
-                sweep.set_changed,
-                sweep.shear_change
-            );
-        }
         scratch.image.read(problem.rail, fields, &scratch.softness);
         let change = scratch
             .iterate
@@ -279,6 +256,7 @@ pub fn solve_mechanics(problem: &Problem, fields: &mut PatchFields, scratch: &mu
 
 /// Begins a step: a step follows from its state alone.
 fn start(problem: &Problem, fields: &PatchFields, scratch: &mut Scratch) {
+    scratch.normal.start_step();
     scratch.friction.start_step();
     scratch.anderson.restart();
     scratch.softness.fill(0.0);
@@ -350,7 +328,7 @@ fn solve_tractions(
     }
     let set_changed = solve_normal(problem, fields, scratch, tolerance)?;
     if set_changed {
-        scratch.friction.start_step();
+        scratch.friction.start_contact();
     }
     for component in 0..2 {
         scratch.shear_before[component].copy_from_slice(&fields.shear[component]);
@@ -724,8 +702,8 @@ fn finish(problem: &Problem, before: &PatchFields, fields: &mut PatchFields, scr
 
 /// The displacement of the fields at the end of the step, and its change.
 fn close_displacement(problem: &Problem, fields: &mut PatchFields, scratch: &mut Scratch) {
+    // The displacement that does not come from shear is that which the tractions have felt.
     let rail = problem.rail;
-    given_displacement(problem, fields, scratch);
     let window = Window::whole(&rail.grid);
     let [x, y] = &mut scratch.lift;
     let load = [&fields.shear[0][..], &fields.shear[1][..]];

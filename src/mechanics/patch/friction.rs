@@ -62,7 +62,8 @@ pub struct Friction {
     gmres: Gmres,
     blocks: Blocks,
     factorised: bool,
-    /// T τ and T of a correction on the grid.
+    /// On the grid: a shear, T of it, T of a correction.
+    answered: [Vec<f64>; 2],
     response: [Vec<f64>; 2],
     correction_response: [Vec<f64>; 2],
     /// A correction on the grid.
@@ -74,8 +75,6 @@ pub struct Friction {
     /// Of the cells.
     rows: Vec<Row>,
     step: Vec<f32>,
-    /// Products with the response since the counters were read: Newton steps, products of the Krylov method.
-    pub counts: [usize; 2],
 }
 
 impl Friction {
@@ -89,6 +88,7 @@ impl Friction {
             gmres: Gmres::new(2 * total, settings.krylov_iterations),
             blocks: Blocks::new(cells, total),
             factorised: false,
+            answered: double(),
             response: double(),
             correction_response: double(),
             correction: double(),
@@ -98,13 +98,18 @@ impl Friction {
             scratch_single: transform.scratch(),
             rows: vec![Row::default(); total],
             step: vec![0.0; 2 * total],
-            counts: [0; 2],
         }
     }
 
-    /// Forgets what was factorised for another step.
+    /// Forgets what was computed in another step: a step follows from its state alone.
     pub fn start_step(&mut self) {
+        self.start_contact();
+    }
+
+    /// Forgets what was computed for another contact.
+    pub fn start_contact(&mut self) {
         self.factorised = false;
+        self.answered.iter_mut().for_each(|component| component.fill(f64::NAN));
     }
 
     /// Solves for the shear on the grid, x and y, from the given one. Cells that are not under pressure must have none.
@@ -118,6 +123,7 @@ impl Friction {
             regularisation: problem.regularisation,
         };
         if self.newton(problem, &scheme, shear, problem.tolerance).is_ok() {
+            self.remember(shear);
             return Ok(());
         }
         // From nothing, or after a jump: first with a law that is smooth on the scale of all the slip, then step by step with that
@@ -125,6 +131,7 @@ impl Friction {
         for component in shear.iter_mut() {
             component.fill(0.0);
         }
+        self.start_contact();
         let largest = problem
             .contact
             .places(problem.grid)
@@ -149,6 +156,7 @@ impl Friction {
             self.factorised = false;
             let last = self.newton(problem, &Scheme { noise, ..scheme }, shear, problem.tolerance);
             if noise == problem.noise {
+                self.remember(shear);
                 return last.map_err(|(iterations, residual)| Error::TangentialNotConverged {
                     iterations,
                     residual,
@@ -157,6 +165,13 @@ impl Friction {
             }
         }
         Ok(())
+    }
+
+    /// The response is that of this shear.
+    fn remember(&mut self, shear: &[Vec<f64>; 2]) {
+        for (own, shear) in self.answered.iter_mut().zip(shear) {
+            own.copy_from_slice(shear);
+        }
     }
 
     /// Newton's method. Where it does not reach the tolerance, the iterations and the residual.
@@ -173,7 +188,7 @@ impl Friction {
         for changes in [&mut self.correction, &mut self.correction_response] {
             changes.iter_mut().for_each(|component| component.fill(0.0));
         }
-        {
+        if self.answered != *shear {
             let [x, y] = &mut self.response;
             let load = [&shear[0][..], &shear[1][..]];
             problem
@@ -205,9 +220,6 @@ impl Friction {
                     .transform
                     .apply(&problem.response.double, &window, load, [x, y], &mut self.scratch);
             }
-            if std::env::var("WR_NEWTON").is_ok() {
-                eprintln!("  NEWTON {iterations} size {size:.2e} largest {largest:.2e} krylov {solved} sticks {}", self.rows[..n].iter().filter(|r| r.sticks).count());
-            }
             let mut length = 1.0;
             let mut halvings = 0;
             loop {
@@ -216,7 +228,6 @@ impl Friction {
                     size = moved;
                     break;
                 }
-                if std::env::var("WR_NEWTON").is_ok() { eprintln!("     length {length} moved {moved:.2e}"); }
                 if halvings == self.settings.halvings {
                     return Err((iterations, largest));
                 }
@@ -238,7 +249,6 @@ impl Friction {
                 self.factorised = false;
             }
             largest = self.largest_residual(n);
-            self.counts[0] += 1;
         }
         if largest <= tolerance {
             Ok(())
@@ -367,7 +377,6 @@ impl Friction {
             }
         };
         let solved = gmres.solve(&mut step[..2 * n], tolerance, multiply, |values| blocks.solve(values));
-        self.counts[1] += solved.iterations;
         for component in 0..2 {
             let values = self.step[component * n..(component + 1) * n].iter();
             for (place, value) in problem.contact.places(problem.grid).zip(values) {
