@@ -46,9 +46,6 @@ pub enum Error {
     /// State or workspace come from a model with another `contact_model`.
     #[error("the state or the workspace is not one of this contact_model")]
     OtherContactModel,
-    /// The engine of `contact_model` 2 is still to come.
-    #[error("contact_model = 2 (patch) has no engine yet")]
-    PatchMissing,
     /// No parameter has this name.
     #[error("there is no parameter named {name:?}; `wheelrail describe` lists them")]
     UnknownParameter {

@@ -68,6 +68,16 @@ pub fn magnitude([along, across]: [f64; 2]) -> f64 {
     }
 }
 
+/// Change of [`magnitude`]; none where there is no direction.
+pub fn magnitude_tangent(vector: [f64; 2], change: [f64; 2]) -> f64 {
+    let length = magnitude(vector);
+    if length > 0.0 {
+        (vector[0] * change[0] + vector[1] * change[1]) / length
+    } else {
+        0.0
+    }
+}
+
 /// Change of [`power`].
 pub fn power_tangent((shear, slip): (f64, f64), (shear_change, slip_change): (f64, f64)) -> f64 {
     if shear * slip < 0.0 {
@@ -102,6 +112,25 @@ impl Sliding {
             power: power_tangent((-saturation, slip), (-saturation_change, slip_change)),
         }
     }
+
+    /// With a slip velocity along the rail and across it, `m/s`, and τ/(μ p).
+    pub fn of_vectors(slip: [f64; 2], share: [f64; 2]) -> Sliding {
+        Sliding {
+            speed: magnitude(slip),
+            power: vector_power(share, slip),
+        }
+    }
+
+    /// Its change.
+    pub fn vector_tangent(
+        (slip, share): ([f64; 2], [f64; 2]),
+        (slip_change, share_change): ([f64; 2], [f64; 2]),
+    ) -> Sliding {
+        Sliding {
+            speed: magnitude_tangent(slip, slip_change),
+            power: vector_power_tangent((share, slip), (share_change, slip_change)),
+        }
+    }
 }
 
 #[cfg(test)]
@@ -114,6 +143,26 @@ mod tests {
             let h = 1e-8;
             let difference = (saturation(slip + h, 1e-3) - saturation(slip - h, 1e-3)) / (2.0 * h);
             assert!((saturation_slope(slip, 1e-3) / difference - 1.0).abs() < 1e-4);
+        }
+    }
+
+    #[test]
+    fn the_tangent_of_vectors_is_the_derivative() {
+        for (slip, share) in [
+            ([0.1, -0.3], [-0.4, 0.7]),
+            ([0.2, 0.0], [-0.9, 0.1]),
+            ([0.1, 0.2], [0.5, 0.1]),
+        ] {
+            let change = ([0.3, -0.7], [0.2, 0.5]);
+            let at = |h: f64| {
+                let moved = |value: [f64; 2], change: [f64; 2]| [0, 1].map(|i| value[i] + h * change[i]);
+                Sliding::of_vectors(moved(slip, change.0), moved(share, change.1))
+            };
+            let (h, exact) = (1e-6, Sliding::vector_tangent((slip, share), change));
+            let (ahead, behind) = (at(h), at(-h));
+            // Truncation h².
+            assert!((exact.speed - (ahead.speed - behind.speed) / (2.0 * h)).abs() < 1e-9);
+            assert!((exact.power - (ahead.power - behind.power) / (2.0 * h)).abs() < 1e-9);
         }
     }
 }

@@ -5,11 +5,12 @@ use super::problem::Problem;
 use super::profiles;
 use super::rail::PatchRail;
 use super::readings::readings;
+use super::sensitivity::{Linearisation, SensitivityScratch};
 use super::split::{self, Scratch};
 use crate::contact::outputs::Readings;
 use crate::contact::profiles::{ContactNode, Profiles};
 use crate::contact::task::{Convergence, Task};
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::parameters::Parameters;
 use crate::settings::Settings;
 use crate::signals::Outputs;
@@ -34,6 +35,8 @@ pub struct PatchWorkspace {
     scratch: Scratch,
     /// The fields that a step works on, its solution until it is committed.
     trial: PatchFields,
+    /// For derivatives, from the first that is asked for.
+    sensitivity: Option<Box<SensitivityScratch>>,
 }
 
 impl PatchWorkspace {
@@ -65,6 +68,7 @@ impl Patch {
         PatchWorkspace {
             scratch: Scratch::new(&self.rail, settings),
             trial: PatchFields::new(&self.rail),
+            sensitivity: None,
         }
     }
 
@@ -107,7 +111,7 @@ impl Patch {
         state: &PatchState,
         last_duration: f64,
     ) -> Result<(Convergence, Readings)> {
-        let PatchWorkspace { scratch, trial } = workspace;
+        let PatchWorkspace { scratch, trial, .. } = workspace;
         trial.copy_contact_from(&state.fields);
         let problem = self.problem(task);
         let ahead = task.conditions.duration.min(last_duration);
@@ -123,15 +127,19 @@ impl Patch {
     /// Derivatives of all outputs with respect to each of the given rows of [`crate::signals::INPUTS`].
     ///
     /// # Errors
-    /// [`Error::PatchMissing`].
+    /// A linear system that could not be solved.
     pub fn sensitivities(
         &self,
-        _task: &Task,
-        _workspace: &mut PatchWorkspace,
-        _state: &PatchState,
-        _inputs: impl IntoIterator<Item = usize>,
+        task: &Task,
+        workspace: &mut PatchWorkspace,
+        state: &PatchState,
+        inputs: impl IntoIterator<Item = usize>,
     ) -> Result<Vec<Outputs>> {
-        Err(Error::PatchMissing)
+        let scratch = workspace
+            .sensitivity
+            .get_or_insert_with(|| Box::new(SensitivityScratch::new(&self.rail, task.settings)));
+        let mut step = Linearisation::new(self.problem(task), &state.fields, scratch)?;
+        inputs.into_iter().map(|input| step.output_sensitivity(input)).collect()
     }
 
     /// Profiles for plotting.

@@ -2,7 +2,6 @@
 
 use super::rail::PatchRail;
 use crate::heat::strips::StripTemperature;
-use crate::numerics::dense;
 use crate::wear::strips::StripWear;
 use serde::{Deserialize, Serialize};
 
@@ -69,7 +68,8 @@ impl PatchFields {
         ]
     }
 
-    fn on_grid_mut(&mut self) -> [&mut Vec<f64>; 10] {
+    /// The same to change.
+    pub fn on_grid_mut(&mut self) -> [&mut Vec<f64>; 10] {
         let PatchFields {
             pressure,
             shear: [shear_x, shear_y],
@@ -81,6 +81,53 @@ impl PatchFields {
         } = self;
         [
             pressure, shear_x, shear_y, slip_x, slip_y, friction, x, y, change_x, change_y,
+        ]
+    }
+
+    /// The first of [`PatchFields::read_by_outputs`], of which the outputs are not linear functions.
+    pub const OUTPUTS_ARE_NOT_LINEAR: usize = 6;
+
+    /// The vectors that the outputs are made of.
+    pub fn read_by_outputs(&self) -> [&Vec<f64>; 13] {
+        let ([shear_x, shear_y], [slip_x, slip_y]) = (&self.shear, &self.slip);
+        let ([left, right], [worn_left, worn_right]) = (&self.heat.outer, &self.wear.outer);
+        let (surface, flux, depth) = (&self.heat.surface, &self.heat.flux, &self.wear.depth);
+        [
+            &self.pressure,
+            shear_x,
+            shear_y,
+            slip_x,
+            slip_y,
+            &self.friction,
+            surface,
+            flux,
+            left,
+            right,
+            depth,
+            worn_left,
+            worn_right,
+        ]
+    }
+
+    /// The same to change.
+    pub fn read_by_outputs_mut(&mut self) -> [&mut Vec<f64>; 13] {
+        let ([shear_x, shear_y], [slip_x, slip_y]) = (&mut self.shear, &mut self.slip);
+        let ([left, right], [worn_left, worn_right]) = (&mut self.heat.outer, &mut self.wear.outer);
+        let (surface, flux, depth) = (&mut self.heat.surface, &mut self.heat.flux, &mut self.wear.depth);
+        [
+            &mut self.pressure,
+            shear_x,
+            shear_y,
+            slip_x,
+            slip_y,
+            &mut self.friction,
+            surface,
+            flux,
+            left,
+            right,
+            depth,
+            worn_left,
+            worn_right,
         ]
     }
 
@@ -101,20 +148,7 @@ impl PatchFields {
         ]
     }
 
-    /// Overwrites these fields with others of the same sizes, without allocating.
-    pub fn copy_from(&mut self, other: &PatchFields) {
-        for (own, other) in self.heat.vectors_mut().into_iter().zip(other.heat.vectors()) {
-            own.copy_from_slice(other);
-        }
-        for (own, other) in self.wear.vectors_mut().into_iter().zip(other.wear.vectors()) {
-            own.copy_from_slice(other);
-        }
-        self.heat.breadth = other.heat.breadth;
-        self.wear.breadth = other.wear.breadth;
-        self.copy_contact_from(other);
-    }
-
-    /// As [`PatchFields::copy_from`], but for the rail's temperature and wear, most of all values.
+    /// Overwrites these fields with others of the same sizes, but for the rail's temperature and wear, most of all values.
     pub fn copy_contact_from(&mut self, other: &PatchFields) {
         for (own, other) in self.on_grid_mut().into_iter().zip(other.on_grid()) {
             own.copy_from_slice(other);
@@ -122,21 +156,6 @@ impl PatchFields {
         self.relaxation_length = other.relaxation_length;
         self.penetration = other.penetration;
         self.wheel_temperature = other.wheel_temperature;
-    }
-
-    /// Adds a multiple of other fields of the same sizes, the lengths of the contact left out.
-    pub fn add_multiple(&mut self, factor: f64, other: &PatchFields) {
-        for (own, other) in self.heat.vectors_mut().into_iter().zip(other.heat.vectors()) {
-            dense::add_multiple(other, factor, own);
-        }
-        for (own, other) in self.wear.vectors_mut().into_iter().zip(other.wear.vectors()) {
-            dense::add_multiple(other, factor, own);
-        }
-        for (own, other) in self.on_grid_mut().into_iter().zip(other.on_grid()) {
-            dense::add_multiple(other, factor, own);
-        }
-        self.penetration += factor * other.penetration;
-        self.wheel_temperature += factor * other.wheel_temperature;
     }
 }
 

@@ -1,8 +1,8 @@
 //! The patch engine: half-spaces, the contact resolved along the rail and across it.
 //!
 //! [`engine`] is what the outside sees. [`rail`] is what is computed once, [`fields`] what a step changes, [`problem`] one
-//! step as a problem, [`split`] solves it: pressure, friction, wear and heat in turn, until they rest. [`readings`] and
-//! [`profiles`] are what is read off the fields.
+//! step as a problem, [`split`] solves it: pressure, friction, wear and heat in turn, until they rest. [`sensitivity`]
+//! are its derivatives, with the [`tangent`] of the tractions. [`readings`] and [`profiles`] are what is read off the fields.
 
 pub mod engine;
 pub mod fields;
@@ -10,4 +10,6 @@ pub mod problem;
 pub mod profiles;
 pub mod rail;
 pub mod readings;
+pub mod sensitivity;
 pub mod split;
+pub mod tangent;

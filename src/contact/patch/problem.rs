@@ -5,14 +5,14 @@ use super::rail::PatchRail;
 use crate::contact::rim::HeatedNode;
 use crate::contact::task::Conditions;
 use crate::friction::FrictionState;
-use crate::friction::coulomb::{self, Sliding};
+use crate::friction::coulomb::Sliding;
 use crate::heat::strips::StripHeatMarch;
 use crate::heat::surface::{SurfaceCondition, SurfaceExchange};
 use crate::mechanics::normal::problem::Constraint;
 use crate::mechanics::transient::Transient;
 use crate::parameters::{Control, Parameters, WheelHeating};
 use crate::settings::Settings;
-use crate::signals::Inputs;
+use crate::signals::{Inputs, Motion};
 use crate::wear::strips::StripWearMarch;
 
 /// One implicit step.
@@ -40,6 +40,13 @@ pub struct SlipWeights {
     pub strain_before: f64,
     /// |V| times the displacement scale over the length of a cell.
     pub strain_speed: f64,
+}
+
+impl SlipWeights {
+    /// Slip by a displacement u at a cell and at the one ahead, and u at both before the step.
+    pub fn slip(&self, [own, next]: [f64; 2], [before, before_next]: [f64; 2]) -> f64 {
+        self.strain * (own - next) + self.strain_before * (before - before_next) + self.change * (own - before)
+    }
 }
 
 impl<'a> Problem<'a> {
@@ -111,6 +118,44 @@ impl<'a> Problem<'a> {
         }
     }
 
+    /// Change of the weights with |V|, by `speed` `m/s`.
+    pub fn slip_weights_tangent(&self, fields: &PatchFields, speed: f64) -> SlipWeights {
+        let transient = self.transient(fields);
+        let change = transient.tangent(
+            self.conditions.duration,
+            self.conditions.motion.rolling_speed.abs(),
+            self.rail.grid.length,
+            fields.relaxation_length,
+        );
+        let strain_speed = speed * self.rail.scales.displacement / self.rail.grid.length;
+        let centred = speed * (change.centring * transient.rate + transient.centring * change.rate);
+        SlipWeights {
+            strain: strain_speed - centred,
+            change: speed * change.rate,
+            strain_before: centred,
+            strain_speed,
+        }
+    }
+
+    /// Separation `gap` ahead of a leading cell over its pressure: the slip there is less by it times the shear.
+    pub fn opening(&self, gap: f64, pressure: f64) -> f64 {
+        (gap.max(0.0) / pressure).min(self.largest_opening())
+    }
+
+    /// Change of [`Problem::opening`].
+    pub fn opening_tangent(&self, (gap, pressure): (f64, f64), (gap_change, pressure_change): (f64, f64)) -> f64 {
+        let opening = gap / pressure;
+        if opening > 0.0 && opening < self.largest_opening() {
+            (gap_change - opening * pressure_change) / pressure
+        } else {
+            0.0
+        }
+    }
+
+    fn largest_opening(&self) -> f64 {
+        self.settings.patch.largest_opening * self.rail.approach.own
+    }
+
     /// Relaxation length of a contact under the load that it had in the given fields, `m`: in the ratio of the contact's length.
     pub fn relaxation_length(&self, fields: &PatchFields) -> f64 {
         let load = self.rail.unit_force() * fields.pressure.iter().sum::<f64>();
@@ -120,11 +165,7 @@ impl<'a> Problem<'a> {
 
     /// Rigid slip of the rail relative to the wheel at a point, `m/s`: w_x = V(ξ + φ y), w_y = −V(η + φ x).
     pub fn rigid_slip(&self, x: f64, y: f64) -> [f64; 2] {
-        let motion = &self.conditions.motion;
-        [
-            motion.rigid_slip + motion.spin_rate * y,
-            -(motion.lateral_speed + motion.spin_rate * x),
-        ]
+        rigid_slip(&self.conditions.motion, x, y)
     }
 
     /// The cells as the rim sees them, or with changes of fields their changes.
@@ -167,21 +208,31 @@ impl<'a> Problem<'a> {
         }
     }
 
+    /// Wear rate per slip and scaled pressure.
+    pub fn wear_per_slip(&self) -> f64 {
+        self.parameters.wear_coefficient * self.rail.scales.pressure
+    }
+
     /// Sliding of a cell, by its place on the grid.
     pub fn sliding(&self, fields: &PatchFields, place: usize) -> Sliding {
-        let slip = [fields.slip[0][place], fields.slip[1][place]];
-        let bound = fields.friction[place] * fields.pressure[place];
-        let saturation = |component: usize| {
+        let (slip, _) = vectors(fields, place);
+        Sliding::of_vectors(slip, share(fields, place))
+    }
+
+    /// Its change with that of the fields.
+    pub fn sliding_tangent(&self, fields: &PatchFields, tangent: &PatchFields, place: usize) -> Sliding {
+        let ((slip, _), (slip_change, shear_change)) = (vectors(fields, place), vectors(tangent, place));
+        let (mu, pressure) = (fields.friction[place], fields.pressure[place]);
+        let (bound, share) = (mu * pressure, share(fields, place));
+        let bound_change = tangent.friction[place] * pressure + mu * tangent.pressure[place];
+        let share_change = [0, 1].map(|component| {
             if bound > 0.0 {
-                fields.shear[component][place] / bound
+                (shear_change[component] - share[component] * bound_change) / bound
             } else {
                 0.0
             }
-        };
-        Sliding {
-            speed: coulomb::magnitude(slip),
-            power: coulomb::vector_power([saturation(0), saturation(1)], slip),
-        }
+        });
+        Sliding::vector_tangent((slip, share), (slip_change, share_change))
     }
 
     /// What heats and cools the surface of the cells, strip by strip, with the wheel at θ_w.
@@ -203,4 +254,25 @@ impl<'a> Problem<'a> {
     pub fn breadth(&self, fields: &PatchFields) -> f64 {
         super::readings::extent(self.rail, &fields.pressure).breadth
     }
+}
+
+/// Rigid slip under a motion, or its change under that of a motion, `m/s`.
+pub fn rigid_slip(motion: &Motion, x: f64, y: f64) -> [f64; 2] {
+    [
+        motion.rigid_slip + motion.spin_rate * y,
+        -(motion.lateral_speed + motion.spin_rate * x),
+    ]
+}
+
+/// Slip and shear of a cell.
+fn vectors(fields: &PatchFields, place: usize) -> ([f64; 2], [f64; 2]) {
+    let at = |vectors: &[Vec<f64>; 2]| [vectors[0][place], vectors[1][place]];
+    (at(&fields.slip), at(&fields.shear))
+}
+
+/// τ/(μp) of a cell.
+fn share(fields: &PatchFields, place: usize) -> [f64; 2] {
+    let bound = fields.friction[place] * fields.pressure[place];
+    let (_, shear) = vectors(fields, place);
+    shear.map(|shear| if bound > 0.0 { shear / bound } else { 0.0 })
 }

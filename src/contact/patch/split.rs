@@ -33,13 +33,15 @@ const TEMPERATURE_UNIT: f64 = 100.0;
 /// What wear and heat hand to the mechanics: of n cells the surface temperature in units of 100 K, the lift by heat and the wear
 /// that is not in the normal problem, both scaled; then the wheel's temperature.
 #[derive(Debug, Clone)]
-struct Coupling {
-    values: Vec<f64>,
+pub struct Coupling {
+    /// All values.
+    pub values: Vec<f64>,
     cells: usize,
 }
 
 impl Coupling {
-    fn new(rail: &PatchRail) -> Coupling {
+    /// All zero.
+    pub fn new(rail: &PatchRail) -> Coupling {
         let cells = rail.grid.strips * rail.grid.cells;
         Coupling {
             values: vec![0.0; 3 * cells + 1],
@@ -47,24 +49,33 @@ impl Coupling {
         }
     }
 
-    fn temperature(&self, cell: usize) -> f64 {
+    /// Temperature rise of a cell, `K`.
+    pub fn temperature(&self, cell: usize) -> f64 {
         TEMPERATURE_UNIT * self.values[cell]
     }
 
-    fn lift(&self) -> &[f64] {
+    /// Lift by heat.
+    pub fn lift(&self) -> &[f64] {
         &self.values[self.cells..2 * self.cells]
     }
 
-    fn wear(&self) -> &[f64] {
+    /// Wear that is not in the normal problem.
+    pub fn wear(&self) -> &[f64] {
         &self.values[2 * self.cells..3 * self.cells]
     }
 
-    fn wheel_temperature(&self) -> f64 {
+    /// To change the wear that is not in the normal problem: whatever else acts on the gap alone may be handed over with it.
+    pub fn wear_mut(&mut self) -> &mut [f64] {
+        &mut self.values[2 * self.cells..3 * self.cells]
+    }
+
+    /// The wheel's temperature, `K`.
+    pub fn wheel_temperature(&self) -> f64 {
         TEMPERATURE_UNIT * self.values[3 * self.cells]
     }
 
     /// From the fields, with the wear that is proportional to the pressure, `softness` times it, taken off.
-    fn read(&mut self, rail: &PatchRail, fields: &PatchFields, softness: &[f64]) {
+    pub fn read(&mut self, rail: &PatchRail, fields: &PatchFields, softness: &[f64]) {
         let cells = self.cells;
         self.values[3 * cells] = fields.wheel_temperature / TEMPERATURE_UNIT;
         for strip in 0..rail.grid.strips {
@@ -134,13 +145,7 @@ impl Scratch {
             contact_before: Contact::new(grid),
             normal: Normal::new(grid, transform, settings.patch),
             friction: Friction::new(grid, transform, settings.patch),
-            response: SlipResponse {
-                double: rail.displacement.clone(),
-                single: rail.displacement.single(),
-                own: [vec![0.0; rail.own[0].len()], vec![0.0; rail.own[1].len()]],
-                origin: grid.stride(),
-                forward: true,
-            },
+            response: no_response(rail),
             weights: None,
             products: transform.scratch(),
             anderson: Anderson::new(iterate.values.len()),
@@ -270,8 +275,23 @@ fn respond(problem: &Problem, weights: SlipWeights, scratch: &mut Scratch) {
         return;
     }
     scratch.weights = Some((weights, forward));
-    let rail = problem.rail;
-    let response = &mut scratch.response;
+    adapt(problem, &weights, &mut scratch.response);
+}
+
+/// No response yet.
+pub(super) fn no_response(rail: &PatchRail) -> SlipResponse {
+    SlipResponse {
+        double: rail.displacement.clone(),
+        single: rail.displacement.single(),
+        own: [vec![0.0; rail.own[0].len()], vec![0.0; rail.own[1].len()]],
+        origin: rail.grid.stride(),
+        forward: true,
+    }
+}
+
+/// The response of the slip to the shear at these weights.
+pub(super) fn adapt(problem: &Problem, weights: &SlipWeights, response: &mut SlipResponse) {
+    let (rail, forward) = (problem.rail, problem.is_forward());
     response.forward = forward;
     // The displacement of the cell ahead is felt at one lag more towards it.
     let ahead = if forward { 1 } else { -1 };
@@ -420,9 +440,8 @@ fn solve_friction(problem: &Problem, fields: &mut PatchFields, scratch: &mut Scr
             fields.friction[place] = mu;
             scratch.bound[index] = mu * fields.pressure[place];
             scratch.edge[index] = if k == leading {
-                let gap = scratch.normal.separation[place.wrapping_add_signed(ahead)].max(0.0);
-                let ratio =
-                    (gap / fields.pressure[place]).min(problem.settings.patch.largest_opening * rail.approach.own);
+                let gap = scratch.normal.separation[place.wrapping_add_signed(ahead)];
+                let ratio = problem.opening(gap, fields.pressure[place]);
                 rail.opening.map(|factor| weights.strain_speed * factor * ratio)
             } else {
                 [0.0; 2]

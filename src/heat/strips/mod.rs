@@ -37,7 +37,6 @@ use crate::numerics::dense::{self, LANES};
 use crate::transport::strips::{Side, Strips};
 use kernels::{Block, Mode, Order, Responses};
 
-#[allow(unused_imports)]
 pub use tangent::{CarriageChange, StripHeatChange};
 pub use temperature::StripTemperature;
 

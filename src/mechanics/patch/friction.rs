@@ -5,6 +5,10 @@
 //! what the leading edge adds to its cells. Residuals are in double precision, corrections in single: a correction is needed
 //! to a few digits only, because the next residual shows what it missed.
 
+mod tangent;
+
+pub use tangent::FrictionChange;
+
 use super::blocks::{Blocks, OwnResponse};
 use super::contact::Contact;
 use super::law::{Cell, Row, Scheme, Vector};

@@ -5,6 +5,8 @@
 //! by conjugate gradients from the pressure of the step before, with the strips' own blocks as preconditioner; then cells that pull
 //! leave the set, cells that overlap join it, until none does.
 
+mod tangent;
+
 use super::contact::Contact;
 use crate::body::grid::Grid;
 use crate::body::influence::{self, Tables, Transform, Window};

@@ -1,0 +1,420 @@
+//! The change of the tractions with inputs, temperature and wear, at the solution of a step: pressure, then friction, each as the
+//! linear system that its solver solves last.
+//!
+//! It has solvers and tables of its own: what a step has left in the others is not needed, so that it starts from the fields
+//! alone.
+
+use super::fields::PatchFields;
+use super::problem::{Problem, SlipWeights, rigid_slip};
+use super::rail::PatchRail;
+use super::split::{self, Coupling};
+use crate::body::influence::{self, Tables, Window};
+use crate::error::Result;
+use crate::mechanics::normal::problem::Constraint;
+use crate::mechanics::patch::contact::Contact;
+use crate::mechanics::patch::friction::{Friction, FrictionChange, FrictionProblem, SlipResponse};
+use crate::mechanics::patch::law::Vector;
+use crate::mechanics::patch::normal::{Normal, NormalProblem};
+use crate::numerics::dense::largest;
+use crate::settings::Settings;
+use crate::signals::{Inputs, Motion};
+use crate::transport::CellStep;
+
+/// Change of the inputs in one direction and of the motion that they make.
+#[derive(Debug, Clone, Copy)]
+pub struct Direction {
+    /// Of the inputs.
+    pub inputs: Inputs,
+    /// Of the motion.
+    pub motion: Motion,
+    /// d|V|, `m/s`.
+    pub speed: f64,
+    /// Least step along it of the difference of the outputs.
+    pub least_step: f64,
+}
+
+/// The linearised mechanics: solvers, what they are linearised at, and buffers.
+pub struct Tangent {
+    contact: Contact,
+    normal: Normal,
+    friction: Friction,
+    response: SlipResponse,
+    products: influence::Scratch<f64>,
+    weights: SlipWeights,
+    /// What the friction law of all cells has in common: r, w, ε.
+    scheme: [f64; 3],
+    /// On the grid: softness by wear, slip ahead but for the leading edge, u before the step, separation.
+    pub softness: Vec<f64>,
+    slip: [Vec<f64>; 2],
+    before: [Vec<f64>; 2],
+    separation: Vec<f64>,
+    /// Of the cells: bound, slip per shear by the leading edge.
+    bound: Vec<f64>,
+    edge: Vec<Vector>,
+    /// Changes on the grid: gap, u that does not come from shear, slip ahead but for the shear's part, lift by shear.
+    gap: Vec<f64>,
+    given: [Vec<f64>; 2],
+    free_slip: [Vec<f64>; 2],
+    lift: [Vec<f64>; 2],
+    /// Changes of the cells.
+    bound_change: Vec<f64>,
+    edge_change: Vec<Vector>,
+    content: Vec<f64>,
+    nothing: Vec<f64>,
+}
+
+impl Tangent {
+    /// For a rail.
+    pub fn new(rail: &PatchRail, settings: &Settings) -> Tangent {
+        let (grid, transform) = (&rail.grid, &rail.transform);
+        let on_grid = || vec![0.0; grid.len()];
+        let vectors = || [on_grid(), on_grid()];
+        Tangent {
+            contact: Contact::new(grid),
+            normal: Normal::new(grid, transform, settings.patch),
+            friction: Friction::new(grid, transform, settings.patch),
+            response: split::no_response(rail),
+            products: transform.scratch(),
+            weights: SlipWeights {
+                strain: 0.0,
+                change: 0.0,
+                strain_before: 0.0,
+                strain_speed: 0.0,
+            },
+            scheme: [0.0; 3],
+            softness: on_grid(),
+            slip: vectors(),
+            before: vectors(),
+            separation: on_grid(),
+            bound: on_grid(),
+            edge: vec![[0.0; 2]; grid.len()],
+            gap: on_grid(),
+            given: vectors(),
+            free_slip: vectors(),
+            lift: vectors(),
+            bound_change: on_grid(),
+            edge_change: vec![[0.0; 2]; grid.len()],
+            content: on_grid(),
+            nothing: on_grid(),
+        }
+    }
+
+    /// Linearises at the fields, the solution of the problem; they must have a contact.
+    ///
+    /// # Errors
+    /// [`crate::error::Error::SingularContactMatrix`].
+    pub fn linearise(&mut self, problem: &Problem, fields: &PatchFields) -> Result<()> {
+        let (rail, grid) = (problem.rail, &problem.rail.grid);
+        self.contact.list(grid, |place| fields.pressure[place] > 0.0);
+        self.weights = problem.slip_weights(problem.transient(fields));
+        split::adapt(problem, &self.weights, &mut self.response);
+        self.soften(problem, fields);
+        self.separate(problem, fields);
+        let ahead = leading(problem);
+        for (component, slip) in self.slip.iter_mut().enumerate() {
+            let now = &fields.displacement[component];
+            let changes = now.iter().zip(&fields.displacement_change[component]);
+            for (before, (now, change)) in self.before[component].iter_mut().zip(changes) {
+                *before = now - change;
+            }
+            let before = &self.before[component];
+            for strip in 0..grid.strips {
+                for cell in 1..grid.cells - 1 {
+                    let place = grid.place(strip, cell);
+                    let next = place.wrapping_add_signed(ahead);
+                    let rigid = problem.rigid_slip(grid.x(cell) + 0.5 * ahead as f64 * grid.length, grid.y(strip));
+                    let displaced = self
+                        .weights
+                        .slip([now[place], now[next]], [before[place], before[next]]);
+                    slip[place] = rigid[component] + displaced;
+                }
+            }
+        }
+        for run in self.contact.runs() {
+            for (index, place) in run.own().zip(run.places(grid)) {
+                self.bound[index] = fields.friction[place] * fields.pressure[place];
+                self.edge[index] = [0.0; 2];
+            }
+            let (index, place) = leading_cell(problem, run);
+            let opening = problem.opening(
+                self.separation[place.wrapping_add_signed(ahead)],
+                fields.pressure[place],
+            );
+            self.edge[index] = rail.opening.map(|factor| self.weights.strain_speed * factor * opening);
+        }
+        let own = f64::from(self.response.own[0][self.response.origin]);
+        // At rest without a step before there is Coulomb's law for the slip ahead, and no response to it.
+        self.scheme = if own == 0.0 {
+            [1.0, f64::INFINITY, 0.0]
+        } else {
+            let noise = problem.settings.patch.noise * own * largest(&fields.pressure);
+            [1.0 / own, noise, problem.parameters.slip_regularisation]
+        };
+        let law = friction_problem(
+            problem,
+            (&self.contact, &self.response, self.scheme),
+            (&self.edge, &self.bound),
+            &self.slip,
+        );
+        self.friction.linearise(&law, &fields.shear)
+    }
+
+    /// The wear of the step per pressure: all of it is in the normal problem, where it is stiff.
+    fn soften(&mut self, problem: &Problem, fields: &PatchFields) {
+        self.softness.fill(0.0);
+        if !(problem.conditions.duration > 0.0) {
+            return;
+        }
+        let (rail, speed) = (problem.rail, problem.conditions.motion.rolling_speed.abs());
+        let own = CellStep::new(1.0 / problem.conditions.duration, rail.grid.length, speed).own;
+        let per_slip = problem.wear_per_slip() * own / rail.scales.displacement;
+        for place in self.contact.places(&rail.grid) {
+            self.softness[place] = per_slip * fields.slip[0][place].hypot(fields.slip[1][place]);
+        }
+    }
+
+    /// The separation of the cells.
+    fn separate(&mut self, problem: &Problem, fields: &PatchFields) {
+        let (rail, grid) = (problem.rail, &problem.rail.grid);
+        self.lift_by_shear(problem, &fields.shear);
+        for strip in 0..grid.strips {
+            for (cell, place) in grid.row(strip).enumerate() {
+                let index = strip * grid.cells + cell;
+                self.gap[place] = rail.gap[place] + fields.wear.depth[index] / rail.scales.displacement
+                    - rail.bulge * fields.heat.content[index]
+                    - self.lift[0][place];
+            }
+        }
+        let data = normal_problem(problem, &self.gap, &self.nothing, problem.constraint(), 0.0);
+        self.normal
+            .separation_of(&data, &self.contact, &fields.pressure, fields.penetration);
+        self.separation.copy_from_slice(&self.normal.separation);
+    }
+
+    /// Lift by the given shear, or its change, scaled, on the grid; 0 for like bodies.
+    pub fn lift_by_shear(&mut self, problem: &Problem, shear: &[Vec<f64>; 2]) -> &[f64] {
+        let rail = problem.rail;
+        if let Some(tables) = &rail.coupling {
+            let [lift, ignored] = &mut self.lift;
+            let load = [&shear[0][..], &shear[1][..]];
+            let window = Window::whole(&rail.grid);
+            rail.transform
+                .apply(tables, &window, load, [lift, ignored], &mut self.products);
+        }
+        &self.lift[0]
+    }
+
+    /// The change of tractions, friction coefficient and slip from the given one to that under the given changes of temperature, lift and
+    /// wear; with the wear the lift by shear is handed over.
+    ///
+    /// # Errors
+    /// [`crate::error::Error::NormalNotConverged`], [`crate::error::Error::TangentialNotConverged`].
+    pub fn tractions(
+        &mut self,
+        problem: &Problem,
+        fields: &PatchFields,
+        (direction, iterate): (&Direction, &Coupling),
+        tangent: &mut PatchFields,
+        tolerance: f64,
+    ) -> Result<()> {
+        let (rail, grid) = (problem.rail, &problem.rail.grid);
+        let law = problem.friction();
+        for strip in 0..grid.strips {
+            for (cell, place) in grid.row(strip).enumerate() {
+                let index = strip * grid.cells + cell;
+                self.gap[place] = iterate.wear()[index] - iterate.lift()[index];
+                tangent.friction[place] = if fields.pressure[place] > 0.0 {
+                    let changes = [
+                        iterate.temperature(index),
+                        direction.inputs.ambient_temperature,
+                        direction.inputs.friction_scale,
+                    ];
+                    law.coefficient_tangent(fields.heat.surface[index], changes)
+                } else {
+                    0.0
+                };
+            }
+        }
+        let total = direction.inputs.normal_load / rail.unit_force();
+        let constraint = match problem.constraint() {
+            Constraint::Total(_) => Constraint::Total(total),
+            Constraint::Penetration(_) => Constraint::Penetration(0.0),
+        };
+        let shear = largest(&tangent.shear[0]).max(largest(&tangent.shear[1]));
+        let size = [
+            largest(&tangent.pressure),
+            largest(&self.gap) / rail.approach.own,
+            total.abs() / self.contact.cells() as f64,
+            shear,
+        ];
+        let size = size.into_iter().fold(f64::MIN_POSITIVE, f64::max);
+        let data = normal_problem(problem, &self.gap, &self.softness, constraint, tolerance * size);
+        tangent.penetration = self.normal.tangent(&data, &self.contact, &mut tangent.pressure)?;
+        self.edges(problem, fields, direction, tangent);
+        for (index, place) in self.contact.places(grid).enumerate() {
+            self.bound_change[index] =
+                tangent.friction[place] * fields.pressure[place] + fields.friction[place] * tangent.pressure[place];
+        }
+        self.free_slip(problem, fields, (direction, iterate), &tangent.pressure);
+        let law = friction_problem(
+            problem,
+            (&self.contact, &self.response, self.scheme),
+            (&self.edge, &self.bound),
+            &self.slip,
+        );
+        let change = FrictionChange {
+            free_slip: [&self.free_slip[0], &self.free_slip[1]],
+            edge: &self.edge_change,
+            bound: &self.bound_change,
+            tolerance,
+        };
+        self.friction
+            .tangent(&law, &fields.shear, &change, &mut tangent.shear)?;
+        self.mean_slip(problem, fields, tangent);
+        Ok(())
+    }
+
+    /// The change of what the leading edge adds.
+    fn edges(&mut self, problem: &Problem, fields: &PatchFields, direction: &Direction, tangent: &PatchFields) {
+        let ahead = leading(problem);
+        let strain_speed = problem.slip_weights_tangent(fields, direction.speed).strain_speed;
+        self.edge_change[..self.contact.cells()].fill([0.0; 2]);
+        for run in self.contact.runs() {
+            let (index, place) = leading_cell(problem, run);
+            let next = place.wrapping_add_signed(ahead);
+            let (gap, pressure) = (self.separation[next], fields.pressure[place]);
+            let changes = (self.normal.separation[next], tangent.pressure[place]);
+            let change = strain_speed * problem.opening(gap, pressure)
+                + self.weights.strain_speed * problem.opening_tangent((gap, pressure), changes);
+            self.edge_change[index] = problem.rail.opening.map(|factor| factor * change);
+        }
+    }
+
+    /// The change of the slip ahead of the cells at an unchanged shear, but for the leading edge.
+    fn free_slip(
+        &mut self,
+        problem: &Problem,
+        fields: &PatchFields,
+        (direction, iterate): (&Direction, &Coupling),
+        pressure: &[f64],
+    ) {
+        let (rail, grid) = (problem.rail, &problem.rail.grid);
+        self.given.iter_mut().for_each(|component| component.fill(0.0));
+        if let Some(tables) = &rail.coupling {
+            self.displace(problem, tables, pressure);
+        }
+        if rail.bulge != 0.0 && largest(iterate.lift()) > 0.0 {
+            let mut content = std::mem::take(&mut self.content);
+            for (strip, lifts) in iterate.lift().chunks_exact(grid.cells).enumerate() {
+                for (content, lift) in content[grid.row(strip)].iter_mut().zip(lifts) {
+                    *content = lift / rail.bulge;
+                }
+            }
+            self.displace(problem, &rail.expansion, &content);
+            self.content = content;
+        }
+        let ahead = leading(problem);
+        let weights_change = problem.slip_weights_tangent(fields, direction.speed);
+        for component in 0..2 {
+            let (now, before) = (&fields.displacement[component], &self.before[component]);
+            let given = &self.given[component];
+            for strip in 0..grid.strips {
+                for cell in 1..grid.cells - 1 {
+                    let place = grid.place(strip, cell);
+                    let next = place.wrapping_add_signed(ahead);
+                    let x = grid.x(cell) + 0.5 * ahead as f64 * grid.length;
+                    self.free_slip[component][place] = rigid_slip(&direction.motion, x, grid.y(strip))[component]
+                        + self.weights.slip([given[place], given[next]], [0.0; 2])
+                        + weights_change.slip([now[place], now[next]], [before[place], before[next]]);
+                }
+            }
+        }
+    }
+
+    /// Adds to the change of u that does not come from shear.
+    fn displace(&mut self, problem: &Problem, tables: &Tables<f64>, load: &[f64]) {
+        let rail = problem.rail;
+        let [x, y] = &mut self.free_slip;
+        rail.transform.apply(
+            tables,
+            &Window::whole(&rail.grid),
+            [load, &self.nothing],
+            [x, y],
+            &mut self.products,
+        );
+        for (given, displaced) in self.given.iter_mut().zip(&self.free_slip) {
+            for (given, displaced) in given.iter_mut().zip(displaced) {
+                *given += displaced;
+            }
+        }
+    }
+
+    /// The change of the slip at the centres of the cells.
+    fn mean_slip(&self, problem: &Problem, fields: &PatchFields, tangent: &mut PatchFields) {
+        let grid = &problem.rail.grid;
+        let behind = -leading(problem);
+        for run in self.contact.runs() {
+            for (index, place) in run.own().zip(run.places(grid)) {
+                let last = place.wrapping_add_signed(behind);
+                let (ahead, last_response) = (self.friction.response_at(place), self.friction.response_at(last));
+                for component in 0..2 {
+                    let free = &self.free_slip[component];
+                    let edge = self.edge[index][component] * tangent.shear[component][place]
+                        + self.edge_change[index][component] * fields.shear[component][place];
+                    tangent.slip[component][place] =
+                        0.5 * (free[place] + ahead[component] + edge + free[last] + last_response[component]);
+                }
+            }
+        }
+    }
+}
+
+/// 1 where the leading side is that of +x, −1 else.
+fn leading(problem: &Problem) -> isize {
+    if problem.is_forward() { 1 } else { -1 }
+}
+
+/// The leading cell of a run among all cells, and its place.
+fn leading_cell(problem: &Problem, run: &crate::mechanics::patch::contact::Run) -> (usize, usize) {
+    let last = if problem.is_forward() { run.cells - 1 } else { 0 };
+    (run.offset + last, run.places(&problem.rail.grid).start + last)
+}
+
+fn normal_problem<'a>(
+    problem: &Problem<'a>,
+    gap: &'a [f64],
+    softness: &'a [f64],
+    constraint: Constraint,
+    tolerance: f64,
+) -> NormalProblem<'a> {
+    NormalProblem {
+        grid: &problem.rail.grid,
+        transform: &problem.rail.transform,
+        approach: &problem.rail.approach,
+        gap,
+        softness,
+        constraint,
+        tolerance,
+    }
+}
+
+fn friction_problem<'a>(
+    problem: &Problem<'a>,
+    (contact, response, [scale, noise, regularisation]): (&'a Contact, &'a SlipResponse, [f64; 3]),
+    (edge, bound): (&'a [Vector], &'a [f64]),
+    slip: &'a [Vec<f64>; 2],
+) -> FrictionProblem<'a> {
+    FrictionProblem {
+        grid: &problem.rail.grid,
+        transform: &problem.rail.transform,
+        contact,
+        response,
+        edge,
+        free_slip: [&slip[0], &slip[1]],
+        bound,
+        scale,
+        noise,
+        regularisation,
+        tolerance: 0.0,
+    }
+}

@@ -1,0 +1,144 @@
+//! The change of the shear with slip, bound and leading edge: the law's rows at the solution as one linear system, solved as a correction of
+//! Newton's method is, and refined until the residual in double precision is small.
+
+use super::{Friction, FrictionProblem};
+use crate::error::{Error, Result};
+use crate::mechanics::patch::law::{Matrix, Row, Scheme, Vector, multiply};
+
+/// Change of the data of a problem.
+#[derive(Clone, Copy)]
+pub struct FrictionChange<'a> {
+    /// Of S₀ on the grid, x and y, with all that the slip changes by at an unchanged shear but for the leading edge.
+    pub free_slip: [&'a [f64]; 2],
+    /// Of what the leading edge adds to the slip of a cell per its own shear, cells.
+    pub edge: &'a [Vector],
+    /// Of μp, cells.
+    pub bound: &'a [f64],
+    /// Residual to be reached, relative to the change or to what makes it.
+    pub tolerance: f64,
+}
+
+const UNIT: Matrix = [[1.0, 0.0], [0.0, 1.0]];
+
+impl Friction {
+    /// Linearises at the solution `shear`. Here S₀ of the problem is all of the slip but for the leading edge's share, so that the response
+    /// to the shear is in it.
+    ///
+    /// # Errors
+    /// [`Error::SingularContactMatrix`].
+    pub fn linearise(&mut self, problem: &FrictionProblem, shear: &[Vec<f64>; 2]) -> Result<()> {
+        for component in self.response.iter_mut().chain(&mut self.correction_response) {
+            component.fill(0.0);
+        }
+        self.correction.iter_mut().for_each(|component| component.fill(0.0));
+        let scheme = Scheme {
+            scale: problem.scale,
+            noise: problem.noise,
+            regularisation: problem.regularisation,
+        };
+        self.update_rows(problem, &scheme, shear, 0.0);
+        let n = problem.contact.cells();
+        if problem.response.own[0][problem.response.origin] == 0.0 {
+            // Without a response of the slip nothing says what shear a cell without slip has: it keeps the one it has.
+            for row in self.rows[..n].iter_mut().filter(|row| row.sticks) {
+                *row = Row {
+                    by_shear: UNIT,
+                    sticks: true,
+                    ..Row::default()
+                };
+            }
+        }
+        self.factorised = self.factorise(problem);
+        if self.factorised {
+            Ok(())
+        } else {
+            Err(Error::SingularContactMatrix {
+                matrix: "friction",
+                unknowns: 2 * n,
+            })
+        }
+    }
+
+    /// The change of the shear on the grid, x and y, from the given one, none outside the contact; `problem` and `shear` are those of
+    /// [`Friction::linearise`]. The change of the slip by it is left for [`Friction::response_at`].
+    ///
+    /// # Errors
+    /// [`Error::TangentialNotConverged`].
+    pub fn tangent(
+        &mut self,
+        problem: &FrictionProblem,
+        shear: &[Vec<f64>; 2],
+        change: &FrictionChange,
+        tangent: &mut [Vec<f64>; 2],
+    ) -> Result<()> {
+        let (grid, n) = (problem.grid, problem.contact.cells());
+        let window = problem.contact.window(grid, 1);
+        let behind = if problem.response.forward { -1 } else { 1 };
+        let sum = |terms: [Vector; 4]| [0, 1].map(|i| terms.iter().map(|term| term[i]).sum::<f64>());
+        let at = |values: &[Vec<f64>; 2], place: usize| [values[0][place], values[1][place]];
+        let mut given: Vec<Vector> = Vec::with_capacity(n);
+        for run in problem.contact.runs() {
+            for (index, place) in run.own().zip(run.places(grid)) {
+                let (row, edge, own) = (&self.rows[index], change.edge[index], at(shear, place));
+                let slip = |place: usize| [change.free_slip[0][place], change.free_slip[1][place]];
+                let bound = change.bound[index];
+                given.push(sum([
+                    multiply(row.by_ahead, slip(place)),
+                    multiply(row.by_ahead, [edge[0] * own[0], edge[1] * own[1]]),
+                    multiply(row.by_behind, slip(place.wrapping_add_signed(behind))),
+                    [row.by_bound[0] * bound, row.by_bound[1] * bound],
+                ]));
+            }
+        }
+        let largest = |values: &mut dyn Iterator<Item = f64>| values.fold(0.0, |m: f64, v| v.abs().max(m));
+        let cause = largest(&mut given.iter().flatten().copied());
+        let (mut residual, mut size) = (f64::INFINITY, cause);
+        for _ in 0..=self.settings.newton_steps {
+            {
+                let [x, y] = &mut self.response;
+                let load = [&tangent[0][..], &tangent[1][..]];
+                problem
+                    .transform
+                    .apply(&problem.response.double, &window, load, [x, y], &mut self.scratch);
+            }
+            for run in problem.contact.runs() {
+                for (index, place) in run.own().zip(run.places(grid)) {
+                    let own = at(tangent, place);
+                    let mut ahead = at(&self.response, place);
+                    for component in 0..2 {
+                        ahead[component] += problem.edge[index][component] * own[component];
+                    }
+                    let row = &mut self.rows[index];
+                    row.residual = sum([
+                        given[index],
+                        multiply(row.by_shear, own),
+                        multiply(row.by_ahead, ahead),
+                        multiply(row.by_behind, at(&self.response, place.wrapping_add_signed(behind))),
+                    ]);
+                }
+            }
+            residual = self.largest_residual(n);
+            size = cause.max(largest(
+                &mut problem.contact.places(grid).flat_map(|place| at(tangent, place)),
+            ));
+            if residual <= change.tolerance * size {
+                return Ok(());
+            }
+            // In single precision a change of any size is of order 1.
+            for row in &mut self.rows[..n] {
+                row.residual = row.residual.map(|value| value / residual);
+            }
+            self.correct(problem, &window, (change.tolerance * size / residual) as f32);
+            for (tangent, correction) in tangent.iter_mut().zip(&self.correction) {
+                for place in problem.contact.places(grid) {
+                    tangent[place] += residual * correction[place];
+                }
+            }
+        }
+        Err(Error::TangentialNotConverged {
+            iterations: self.settings.newton_steps,
+            residual: residual / size,
+            tolerance: change.tolerance,
+        })
+    }
+}
