@@ -74,6 +74,83 @@ fn a_scenario_becomes_a_table_of_inputs_and_outputs() {
     assert_eq!(rows[1][creepage], 5e-4);
 }
 
+/// The fields of a run: headings, and rows of numbers.
+fn fields(place: &Place, options: &[&str]) -> (Vec<String>, Vec<Vec<f64>>) {
+    let path = place.output.with_file_name("fields.csv");
+    let output = place.simulate(&[&["--fields", path.to_str().unwrap()], options].concat());
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let table = read_to_string(path).unwrap();
+    let mut lines = table.lines().map(|line| line.split(','));
+    let headings = lines.next().unwrap().map(str::to_owned).collect();
+    let rows = lines.map(|cells| cells.map(|cell| cell.parse().unwrap()).collect());
+    (headings, rows.collect())
+}
+
+/// A line has a row for each node; its pressure along the rail carries the load on a contact of the given width.
+#[test]
+fn the_fields_of_a_line_are_those_of_its_nodes() {
+    let (headings, rows) = fields(&Place::new("fields_line", GOOD), &["--set", "contact_width=0.01"]);
+    let expected = "x [m],y [m],pressure [Pa],shear_x [Pa],shear_y [Pa],slip_x [m/s],slip_y [m/s],saturation [1],\
+                    temperature [K],wear_depth [m]";
+    assert_eq!(headings.join(","), expected);
+    assert_eq!(rows.len(), 17);
+    let spacing = rows[1][0] - rows[0][0];
+    let load: f64 = rows.iter().map(|row| 0.01 * spacing * row[2]).sum();
+    assert!((load / 60e3 - 1.0).abs() < 1e-6, "{load}");
+    assert!(
+        rows.iter()
+            .all(|row| [row[1], row[4], row[6]] == [0.0; 3] && row[8] >= 293.15)
+    );
+}
+
+/// A patch has a row for each cell. Its fields sum up to the outputs: load, both forces and the spin moment on the wheel.
+#[test]
+fn the_fields_of_a_patch_sum_up_to_its_outputs() {
+    let scenario =
+        "time,normal_load,creepage,lateral_creepage,spin_creepage\n0,60e3,1e-3,1e-3,0.2\n0.001,60e3,1e-3,1e-3,0.2\n";
+    let place = Place::new("fields_patch", scenario);
+    let grid = ["contact_model=2", "patch_nodes=14", "patch_strips=9"].map(|text| ["--set", text]);
+    let (_, rows) = fields(&place, grid.as_flattened());
+    assert_eq!(rows.len(), 14 * 9);
+    let area = (rows[1][0] - rows[0][0]) * (rows[14][1] - rows[0][1]);
+    let sum = |value: fn(&[f64]) -> f64| area * rows.iter().map(|row| value(row)).sum::<f64>();
+    let table = read_to_string(&place.output).unwrap();
+    let mut lines = table.lines();
+    let headings: Vec<&str> = lines.next().unwrap().split(',').collect();
+    let last: Vec<f64> = lines
+        .last()
+        .unwrap()
+        .split(',')
+        .map(|cell| cell.parse().unwrap())
+        .collect();
+    let output = |name: &str| last[headings.iter().position(|heading| *heading == name).unwrap()];
+    for (name, value) in [
+        ("normal_load", sum(|row| row[2])),
+        ("traction_force", -sum(|row| row[3])),
+        ("lateral_force", -sum(|row| row[4])),
+        ("spin_moment", -sum(|row| row[0] * row[4] - row[1] * row[3])),
+    ] {
+        assert!((value / output(name) - 1.0).abs() < 1e-6, "{name}: {value}");
+    }
+    // Within Coulomb's bound, and sliding cells on it.
+    assert!(rows.iter().all(|row| (0.0..1.0 + 1e-6).contains(&row[7])));
+    assert!(rows.iter().any(|row| row[7] > 0.999) && rows.iter().any(|row| row[2] > 0.0 && row[7] < 0.9));
+}
+
+#[test]
+fn fields_that_cannot_be_written_are_refused() {
+    let place = Place::new("unwritable_fields", GOOD);
+    let missing = place.output.with_file_name("missing").join("fields.csv");
+    place.refused(
+        &["--fields", missing.to_str().unwrap()],
+        &["missing/fields.csv", "No such file"],
+    );
+    place.refused(
+        &["--fields", place.output.to_str().unwrap()],
+        &["--fields", "where the outputs go"],
+    );
+}
+
 #[test]
 fn files_that_cannot_be_read_are_refused() {
     let mut place = Place::new("unreadable", GOOD);

@@ -1,8 +1,10 @@
 //! The command line `wheelrail`.
 
 mod describe;
+mod fields;
 mod pack;
 mod simulate;
+mod table;
 mod torture;
 mod verify;
 
@@ -28,6 +30,9 @@ enum Command {
     /// The scenario is a table with a header: a column `time` `s`, ascending, and a column for each input that changes,
     /// in SI units. Between its rows the inputs are interpolated linearly; other inputs keep their start values. Lines
     /// that begin with # are comments.
+    ///
+    /// Fields are written for one instant, the last one: place, pressure, shear on the rail, slip of the rail relative to
+    /// the wheel, the share of Coulomb's bound, absolute temperature and wear depth.
     Simulate(simulate::Simulate),
     /// Compare the model with closed forms, identities and published figures.
     Verify(verify::Verify),

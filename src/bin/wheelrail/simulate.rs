@@ -1,9 +1,10 @@
 //! `wheelrail simulate`: a scenario from CSV through the model, without FMI.
 
+use crate::fields;
+use crate::table::{self, Table};
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
-use std::fs::File;
-use std::io;
+use std::fs::{self, File};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use wheelrail::signals::InputSignal;
@@ -19,6 +20,9 @@ pub struct Simulate {
     /// Where time, all inputs and all outputs go.
     #[arg(short, long, value_name = "OUT.csv")]
     output: PathBuf,
+    /// Where the fields at the end go: a row for each node of a line contact or cell of a patch.
+    #[arg(long, value_name = "FIELDS.csv")]
+    fields: Option<PathBuf>,
     /// Communication step, `s`.
     #[arg(long, value_name = "SECONDS", default_value_t = 1e-3)]
     step: f64,
@@ -30,21 +34,14 @@ pub struct Simulate {
 /// Why a simulation stopped.
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
-    /// A file that cannot be opened or written.
-    #[error("{path}: {source}")]
-    File {
+    /// A file that does not serve as a table.
+    #[error(transparent)]
+    Table(#[from] table::Error),
+    /// Two results in one file.
+    #[error("--fields {path}: this is where the outputs go")]
+    OneFile {
         /// The file.
         path: PathBuf,
-        /// What the system says.
-        source: io::Error,
-    },
-    /// A table that is not CSV.
-    #[error("{path}: {source}")]
-    Csv {
-        /// The file.
-        path: PathBuf,
-        /// What is wrong.
-        source: csv::Error,
     },
     /// A column that is no input.
     #[error("{path}: column {column:?} is not an input; a scenario has time and any of {allowed}")]
@@ -150,26 +147,51 @@ impl Simulate {
         let start = schedule.start();
         let mut simulation = Simulation::of(model, &start.inputs).map_err(Error::Start)?;
         // Only now that nothing can be refused any more, so that a refusal leaves no file behind.
-        let mut table = Table::create(&self.output)?;
-        table.write(&start, simulation.outputs())?;
+        let (mut table, mut fields) = self.tables()?;
+        write(&mut table, &start, simulation.outputs())?;
 
         let count = steps.len();
         let bar = progress(count as u64);
+        let mut interrupted = None;
         for step in steps {
             if let Err(source) = simulation.follow(&step) {
-                bar.abandon();
-                table.finish()?;
-                let output = self.output.clone();
-                return Err(Error::Interrupted { output, source });
+                interrupted = Some(source);
+                break;
             }
-            table.write(&step.to, simulation.outputs())?;
+            write(&mut table, &step.to, simulation.outputs())?;
             bar.inc(1);
         }
-        bar.finish_and_clear();
         table.finish()?;
+        if let Some(fields) = &mut fields {
+            fields::write(fields, &simulation)?;
+        }
+        if let Some(source) = interrupted {
+            bar.abandon();
+            let output = self.output.clone();
+            return Err(Error::Interrupted { output, source });
+        }
+        bar.finish_and_clear();
         let end = schedule.end().time;
         eprintln!("{count} steps to {end} s: {}", self.output.display());
         Ok(())
+    }
+
+    /// The tables of results, or neither of them.
+    fn tables(&self) -> Result<(Table, Option<Table>), Error> {
+        if let Some(path) = self.fields.as_ref().filter(|path| **path == self.output) {
+            return Err(Error::OneFile { path: path.clone() });
+        }
+        let inputs = INPUTS.iter().map(|signal| signal.name);
+        let outputs = OUTPUTS.iter().map(|signal| signal.name);
+        let table = Table::create(&self.output, std::iter::once("time").chain(inputs).chain(outputs))?;
+        match self.fields.as_deref().map(fields::create).transpose() {
+            Ok(fields) => Ok((table, fields)),
+            Err(error) => {
+                // What cannot be removed either is left; the refusal is what matters.
+                let _ = fs::remove_file(&self.output);
+                Err(error.into())
+            }
+        }
     }
 
     fn parameters(&self) -> Result<Parameters, Error> {
@@ -194,24 +216,18 @@ fn progress(steps: u64) -> ProgressBar {
 
 /// Reads the table and checks each value against the parameters.
 fn read_schedule(path: &Path, parameters: &Parameters) -> Result<Schedule, Error> {
-    let csv_error = |source| Error::Csv {
-        path: path.to_owned(),
-        source,
-    };
-    let file = File::open(path).map_err(|source| Error::File {
-        path: path.to_owned(),
-        source,
-    })?;
+    let csv_error = table::Error::csv(path);
+    let file = File::open(path).map_err(table::Error::file(path))?;
     let mut reader = csv::ReaderBuilder::new()
         .trim(csv::Trim::All)
         .comment(Some(b'#'))
         .from_reader(file);
-    let headings = reader.headers().map_err(csv_error)?.clone();
+    let headings = reader.headers().map_err(&csv_error)?.clone();
     let columns = columns(path, &headings)?;
 
     let (mut points, mut lines) = (Vec::new(), Vec::new());
     for record in reader.records() {
-        let record = record.map_err(csv_error)?;
+        let record = record.map_err(&csv_error)?;
         let line = record.position().map_or(0, csv::Position::line);
         let mut inputs = Inputs::default();
         let mut time = f64::NAN;
@@ -284,55 +300,10 @@ fn columns(path: &Path, headings: &csv::StringRecord) -> Result<Vec<Column>, Err
     }
 }
 
-/// The table of results.
-struct Table {
-    path: PathBuf,
-    writer: csv::Writer<File>,
-}
-
-impl Table {
-    fn create(path: &Path) -> Result<Table, Error> {
-        let file = File::create(path).map_err(|source| Error::File {
-            path: path.to_owned(),
-            source,
-        })?;
-        let mut table = Table {
-            path: path.to_owned(),
-            writer: csv::Writer::from_writer(file),
-        };
-        let inputs = INPUTS.iter().map(|signal| signal.name);
-        let outputs = OUTPUTS.iter().map(|signal| signal.name);
-        table.record(std::iter::once("time").chain(inputs).chain(outputs).map(str::to_owned))?;
-        Ok(table)
-    }
-
-    /// Numbers are the shortest that read back to the same value.
-    fn write(&mut self, point: &Point, outputs: &Outputs) -> Result<(), Error> {
-        let inputs = INPUTS.iter().map(|signal| (signal.get)(&point.inputs));
-        let outputs = OUTPUTS.iter().map(|signal| (signal.get)(outputs));
-        let values = std::iter::once(point.time).chain(inputs).chain(outputs);
-        self.record(values.map(shortest))
-    }
-
-    fn record(&mut self, cells: impl Iterator<Item = String>) -> Result<(), Error> {
-        self.writer.write_record(cells).map_err(|source| Error::Csv {
-            path: self.path.clone(),
-            source,
-        })
-    }
-
-    fn finish(&mut self) -> Result<(), Error> {
-        self.writer.flush().map_err(|source| Error::File {
-            path: self.path.clone(),
-            source,
-        })
-    }
-}
-
-fn shortest(value: f64) -> String {
-    if value == 0.0 || (1e-4..1e15).contains(&value.abs()) {
-        format!("{value}")
-    } else {
-        format!("{value:e}")
-    }
+/// A row of the table of results.
+fn write(table: &mut Table, point: &Point, outputs: &Outputs) -> Result<(), Error> {
+    let inputs = INPUTS.iter().map(|signal| (signal.get)(&point.inputs));
+    let outputs = OUTPUTS.iter().map(|signal| (signal.get)(outputs));
+    table.write(std::iter::once(point.time).chain(inputs).chain(outputs))?;
+    Ok(())
 }

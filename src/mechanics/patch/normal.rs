@@ -169,10 +169,7 @@ impl Normal {
             };
             let penetration;
             (penetration, left) = self.solve_on(problem, contact, pressure, tolerance);
-            for place in 0..grid.len() {
-                let softened = self.displacement[place] + problem.softness[place] * pressure[place];
-                self.separation[place] = softened + problem.gap[place] - penetration;
-            }
+            self.separate(problem, contact, pressure, penetration);
             let one_at_a_time = pass >= self.settings.normal_passes / 2;
             let changed = self.exchange(problem, pressure, one_at_a_time);
             if !changed && left <= problem.tolerance {
@@ -188,6 +185,30 @@ impl Normal {
         })
     }
 
+    /// The displacement by a pressure, unless it is known.
+    fn displace(&mut self, problem: &NormalProblem, window: &Window, pressure: &[f64]) {
+        if self.displaced_by == pressure {
+            return;
+        }
+        self.displaced_by.copy_from_slice(pressure);
+        problem.transform.apply(
+            &problem.approach.tables,
+            window,
+            [pressure, &self.nothing],
+            [&mut self.displacement, &mut self.ignored],
+            &mut self.scratch,
+        );
+    }
+
+    /// The separation of all cells.
+    fn separate(&mut self, problem: &NormalProblem, contact: &Contact, pressure: &[f64], penetration: f64) {
+        self.displace(problem, &whole(problem.grid, contact), pressure);
+        for place in 0..problem.grid.len() {
+            let softened = self.displacement[place] + problem.softness[place] * pressure[place];
+            self.separation[place] = softened + problem.gap[place] - penetration;
+        }
+    }
+
     /// Conjugate gradients on a set of cells. Returns penetration and the error of the pressure that is left.
     fn solve_on(
         &mut self,
@@ -197,20 +218,8 @@ impl Normal {
         tolerance: f64,
     ) -> (f64, f64) {
         let (grid, n) = (problem.grid, contact.cells());
-        let window = Window {
-            strips: 0..grid.strips,
-            read: 0..grid.cells,
-            ..contact.window(grid, 0)
-        };
-        if self.displaced_by != pressure {
-            problem.transform.apply(
-                &problem.approach.tables,
-                &window,
-                [pressure, &self.nothing],
-                [&mut self.displacement, &mut self.ignored],
-                &mut self.scratch,
-            );
-        }
+        let window = whole(grid, contact);
+        self.displace(problem, &window, pressure);
         contact.gather(grid, pressure, &mut self.pressure);
         contact.gather(grid, problem.softness, &mut self.softness);
         contact.gather(grid, problem.gap, &mut self.residual);
@@ -313,6 +322,14 @@ impl Normal {
             pressure[place] = trace;
         }
         changed
+    }
+}
+
+/// Loads on the contact, displacements of all cells.
+fn whole(grid: &Grid, contact: &Contact) -> Window {
+    Window {
+        loaded: contact.window(grid, 0).loaded,
+        ..Window::whole(grid)
     }
 }
 
