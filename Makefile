@@ -1,7 +1,7 @@
 # wheelrail: `make demo` shows what it does, `make test` checks it. Both do all set-up in a fresh clone.
 #
 #   make fmu     target/WheelRailContact.fmu
-#   make demo    the paper's cases and a braking manoeuvre through FMPy: results/
+#   make demo    the paper's cases, a braking manoeuvre and the patch: results/
 #   make couplings  the component in vehicle models, masters and sweeps: results/, one page each in docs/couplings/
 #   make test    formatting, lints, order of the modules, documentation, all Rust tests, `wheelrail verify`, all Python tests
 #   make description  modelDescription/modelDescription.xml, after a change of a variable
@@ -102,6 +102,12 @@ demo:
 	@$(PY) examples/paper_cases.py
 	$(call say,A braking manoeuvre)
 	@$(PY) examples/braking_demo.py
+	$(call say,The patch: its fields)
+	@$(PY) examples/patch_fields.py
+	$(call say,The patch: creep curves beside CONTACT and FASTSIM)
+	@$(CARGO) run --quiet --example patch_creep_curves > results/patch_creep_curves.part
+	@mv results/patch_creep_curves.part results/patch_creep_curves.csv
+	@$(PY) examples/patch_creep_curves.py
 	$(call say,Written)
 	@ls -l results/*.csv results/*.png | awk '{ print $$NF, "(" $$5, "bytes)" }'
 
@@ -171,7 +177,8 @@ pytest:
 docs: demo verify
 	@$(PY) tools/update_docs.py
 	@$(PY) tools/verification_figures.py
-	@cp results/paper_temperature.png results/braking.png docs/
+	@$(PY) tools/patch_axes.py
+	@cp results/paper_temperature.png results/braking.png results/patch_fields.png results/patch_creep_curves.png docs/
 	@cp results/verification/*.png docs/verification/
 
 # The site needs no network when it is read; warnings are errors.

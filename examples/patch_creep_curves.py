@@ -3,16 +3,20 @@
     cargo run --release --example patch_creep_curves > results/patch_creep_curves.csv
     .venv/bin/python examples/patch_creep_curves.py
 
-What no program has computed is not drawn.
+What no program has computed is not drawn. The largest differences from the limits, creepages combined among them, go to
+results/patch_accuracy.csv.
 """
 
 import csv
 import sys
 
 import matplotlib.pyplot as plt
+import numpy as np
 from helpers import BLACK, BLUE, GREEN, RED, RESULTS, save
 
 TABLE = RESULTS / "patch_creep_curves.csv"
+ACCURACY = RESULTS / "patch_accuracy.csv"
+FORCES = ("Fx", "Fy", "Mz")
 # Creepage, force, and what they are called.
 PANELS = {
     ("longitudinal", "Fx"): (r"longitudinal creepage $\xi$ [%]", r"$F_x/(\mu N)$"),
@@ -29,6 +33,15 @@ STYLES = {
     "contact": {"linestyle": "none", "marker": "o", "markersize": 4, "markerfacecolor": "white"},
 }
 NAMES = {"wheelrail": "wheelrail", "fastsim": "FASTSIM", "contact": "CONTACT", "limit": "limit of fine grids"}
+COMPARED = {"wheelrail": "wheelrail", "fastsim": "FASTSIM", "fastsim_elliptic": "FASTSIM, Hertz's pressure"}
+# Curve or call, and by whom.
+TIMES = {
+    ("wheelrail_step", ""): "wheelrail, a step from the point before",
+    ("wheelrail", ""): "wheelrail, from nothing",
+    ("fastsim", ""): "FASTSIM of this repository",
+    ("contact", "varying"): "CONTACT",
+    ("contact_fastsim", "varying"): "CONTACT's FASTSIM",
+}
 
 
 def read(path):
@@ -43,7 +56,7 @@ def read(path):
     return curves
 
 
-def draw(curves):
+def draw(curves, milliseconds):
     """Draw the five creep curves of the three ellipses."""
     figure, panels = plt.subplots(2, 3, figsize=(9.6, 6.0), layout="constrained")
     for axes, ((driven, force), (creepage, share)) in zip(panels.flat, PANELS.items(), strict=False):
@@ -53,36 +66,81 @@ def draw(curves):
                 percent = [100.0 * value for value in columns["creepage"]]
                 axes.plot(percent, columns[force], color=COLOURS[ratio], **STYLES[by])
         axes.set(xlabel=creepage, title=share, xlim=(0.0, 0.6))
-    explain(panels.flat[5], {by for _, _, by in curves})
+    explain(panels.flat[5], {by for _, _, by in curves}, milliseconds)
     figure.suptitle("Creep curves of an elliptic contact, 80 kN, friction coefficient 0.3", x=0.01, ha="left")
     save(figure, "patch_creep_curves.png")
 
 
-def explain(axes, programs):
-    """Use the panel that is left for colours and lines."""
+def explain(axes, programs, milliseconds):
+    """Use the panel that is left for colours, lines and times."""
     axes.axis("off")
     handles = [plt.Line2D([], [], color=colour, label=f"$a/b$ = {ratio}") for ratio, colour in COLOURS.items()]
     handles += [
         plt.Line2D([], [], color=BLACK, label=NAMES[by], **style) for by, style in STYLES.items() if by in programs
     ]
-    axes.legend(handles=handles, loc="center left", fontsize=10)
+    axes.legend(handles=handles, loc="upper left", fontsize=9, bbox_to_anchor=(0.0, 1.05))
+    lines = [f"{name}: {figure(value)} ms" for name, value in milliseconds.items()]
+    axes.text(0.04, -0.12, "\n".join(["A point takes", *lines]), transform=axes.transAxes, va="bottom", fontsize=8.5)
+
+
+def figure(value):
+    """Two significant digits."""
+    return f"{value:.2g}" if value < 10 else f"{value:.0f}"
 
 
 def times(curves):
-    """Print the median time of a point, in microseconds."""
-    for (ratio, driven, by), columns in curves.items():
-        measured = sorted(time for time in columns["time"] if time == time)
+    """Median time of a point by program [ms]: on the curves, or in calls that vary."""
+    medians = {}
+    for (by, over), name in TIMES.items():
+        measured = [
+            time
+            for (_, driven, program), columns in curves.items()
+            for time in columns["time"]
+            if program == by and (driven == over if over else driven not in ("varying", "limits")) and time == time
+        ]
         if measured:
-            print(f"  a/b = {ratio}, {driven:12} {by:16} {measured[len(measured) // 2]:9.1f} µs")
+            medians[name] = 1e-3 * float(np.median(measured))
+    return medians
+
+
+def accuracy(curves):
+    """Largest difference from the limits of fine grids by ellipse and program."""
+    rows = []
+    for ratio in COLOURS:
+        limit = curves[ratio, "limits", "limit"]
+        for by, name in COMPARED.items():
+            computed = curves.get((ratio, "limits", by))
+            if computed is None or computed["creepage"] != limit["creepage"]:
+                sys.exit(f"{TABLE}: not every limit of a/b = {ratio} is there by {by}")
+            off = [np.abs(np.subtract(computed[force], limit[force])).max() for force in FORCES]
+            rows.append((ratio, len(limit["creepage"]), name, *off))
+    return rows
+
+
+def write_accuracy(rows):
+    """The differences as a table."""
+    with ACCURACY.open("w", newline="") as file:
+        writer = csv.writer(file)
+        writer.writerow(["a/b [1]", "points", "by", *(f"{force} [1]" for force in FORCES)])
+        writer.writerows([*row[:3], *(repr(float(value)) for value in row[3:])] for row in rows)
+    print(f"  wrote results/{ACCURACY.name}")
 
 
 def main():
-    """Read, draw, print."""
+    """Read, draw, write, report."""
     if not TABLE.exists():
         sys.exit(f"{TABLE} is not there: run the example of the same name in Rust first")
     curves = read(TABLE)
-    draw(curves)
-    times(curves)
+    milliseconds = times(curves)
+    draw(curves, milliseconds)
+    rows = accuracy(curves)
+    write_accuracy(rows)
+    for ratio, points, name, *off in rows:
+        print(
+            f"  a/b = {ratio}, {points} points, {name:39} off by at most {', '.join(f'{value:.4f}' for value in off)}"
+        )
+    for name, value in milliseconds.items():
+        print(f"  {name:39} {value:9.3f} ms a point")
 
 
 if __name__ == "__main__":
