@@ -15,6 +15,7 @@ sys.path.insert(0, str(REPOSITORY / "tools"))
 import update_docs  # noqa: E402
 
 STALE = "run `make docs` and commit what it changes"
+EXAMPLES = ["paper_cases.py", "braking_demo.py", "patch_fields.py"]
 
 
 def block(path, marker):
@@ -30,17 +31,18 @@ def cells(text):
 
 
 @pytest.fixture(scope="module")
-def examples(tmp_path_factory):
-    """Run both examples in a copy of their folder; return what each printed, and the folder."""
+def examples(fmu, wheelrail, tmp_path_factory):
+    """Run the examples in a copy of their folder; return what each printed, and the folder."""
     folder = tmp_path_factory.mktemp("copy")
     (folder / "examples").mkdir()
-    (folder / "target").mkdir()
+    (folder / "target" / "release").mkdir(parents=True)
     for source in (REPOSITORY / "examples").iterdir():
         if source.is_file():
             (folder / "examples" / source.name).write_bytes(source.read_bytes())
-    (folder / "target" / "WheelRailContact.fmu").symlink_to(REPOSITORY / "target" / "WheelRailContact.fmu")
+    for built in ("WheelRailContact.fmu", "release/wheelrail"):
+        (folder / "target" / built).symlink_to(REPOSITORY / "target" / built)
     printed = {}
-    for script in ("paper_cases.py", "braking_demo.py"):
+    for script in EXAMPLES:
         command = [sys.executable, folder / "examples" / script]
         done = subprocess.run(command, capture_output=True, text=True)
         assert done.returncode == 0, done.stderr
@@ -48,7 +50,7 @@ def examples(tmp_path_factory):
     return printed, folder
 
 
-@pytest.mark.parametrize("script", ["paper_cases.py", "braking_demo.py"])
+@pytest.mark.parametrize("script", EXAMPLES)
 def test_examples_write_what_they_say(script, examples):
     """Each example runs on its own, and every file that it names is there and not empty."""
     printed, folder = examples
@@ -90,6 +92,20 @@ def test_figures_of_the_paper_cases(examples):
         )
         for text, value in zip(shown[case], values, strict=True):
             assert abs(float(text) - value) <= 10.0 ** -len(text.split(".")[1]), f"{case}: {text}, {value}; {STALE}"
+
+
+def test_accuracy_of_the_patch():
+    """The differences from the limits are those of the last `make demo`, if any, to one unit of the last digit."""
+    if not update_docs.PATCH_ACCURACY.exists():
+        pytest.skip("`make demo` writes results/patch_accuracy.csv")
+    shown, fresh = (
+        [[cell.strip() for cell in row.split("|")[1:-1]] for row in text.strip().splitlines()[2:]]
+        for text in (block(update_docs.PATCH, "examples/patch_creep_curves.py"), update_docs.patch_accuracy_markdown())
+    )
+    assert [row[:3] for row in shown] == [row[:3] for row in fresh], STALE
+    for one, other in zip(shown, fresh, strict=True):
+        for text, value in zip(one[3:], other[3:], strict=True):
+            assert abs(float(text) - float(value)) < 1.5e-4, f"{one}, {other}; {STALE}"
 
 
 def test_figures_of_the_verification():

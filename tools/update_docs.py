@@ -2,6 +2,7 @@
 
 - the tables of variables, from `wheelrail describe`: all of them, and for README those to begin with;
 - the figures of the paper's cases, from results/paper_cases.csv, which examples/paper_cases.py writes;
+- the accuracy of the patch, from results/patch_accuracy.csv, which examples/patch_creep_curves.py writes;
 - the figures of the verification, from target/verification.txt, which `make verify` writes.
 
 With the argument `couplings` (`make couplings-docs`) the tables of docs/couplings/stiff.md, from results/stiff.md.
@@ -24,6 +25,8 @@ VERIFICATION = REPOSITORY / "target" / "verification.txt"
 STIFF = REPOSITORY / "docs" / "couplings" / "stiff.md"
 STIFF_TABLES = REPOSITORY / "results" / "stiff.md"
 PAPER_CASES = REPOSITORY / "results" / "paper_cases.csv"
+PATCH = REPOSITORY / "docs" / "patch.md"
+PATCH_ACCURACY = REPOSITORY / "results" / "patch_accuracy.csv"
 
 # What one sets and reads first.
 FIRST = ["wheel_speed", "creepage", "vehicle_speed", "normal_load", "slip_source", "friction_law", "wheel"]
@@ -96,6 +99,17 @@ def paper_cases_markdown():
             f" | {float(row['lower [K]']):.1f} K | {float(row['friction_coefficient [1]']):.3f}"
             f" | {float(row['traction_force [N]']) / 1e3:.1f} kN |"
         )
+    return "\n".join(lines) + "\n"
+
+
+def patch_accuracy_markdown():
+    """Return the largest differences from the limits of fine grids as a Markdown table."""
+    with PATCH_ACCURACY.open(newline="") as file:
+        rows = list(csv.DictReader(file))
+    lines = ["| $a/b$ | points | by | $F_x/(\\mu N)$ | $F_y/(\\mu N)$ | $M_z/(\\mu Nc)$ |", "|---|---|---|---|---|---|"]
+    for row in rows:
+        off = " | ".join(f"{float(row[f'{force} [1]']):.4f}" for force in ("Fx", "Fy", "Mz"))
+        lines.append(f"| {row['a/b [1]']} | {row['points']} | {row['by']} | {off} |")
     return "\n".join(lines) + "\n"
 
 
@@ -172,6 +186,7 @@ def main():
     write(README, {"first variables": first_variables_markdown()})
     write(VARIABLES, {"wheelrail describe": variables_markdown()})
     write(INDEX, {"examples/paper_cases.py": paper_cases_markdown()})
+    write(PATCH, {"examples/patch_creep_curves.py": patch_accuracy_markdown()})
     write(PAGE, {"wheelrail describe": variables_html(), "wheelrail verify": verification_html()})
 
 
