@@ -91,11 +91,6 @@ impl Transform {
         }
     }
 
-    /// Number of neighbouring strips that it serves.
-    pub fn strips(&self) -> usize {
-        self.double.size().div_ceil(2)
-    }
-
     /// Harmonics 0 … P/2.
     fn harmonics(&self) -> usize {
         self.double.size() / 2 + 1

@@ -42,12 +42,6 @@ impl Arithmetic {
     /// In two, for code outside the hot loops.
     pub const SEPARATE: Arithmetic = Arithmetic { fused: false };
 
-    /// Whether it takes one instruction.
-    #[inline(always)]
-    pub fn is_fused(self) -> bool {
-        self.fused
-    }
-
     /// a · b + c.
     #[inline(always)]
     pub fn multiply_add(self, a: f64, b: f64, c: f64) -> f64 {

@@ -85,13 +85,7 @@ impl<T: Real> Fourier<T> {
     }
 
     #[inline(always)]
-    fn transform<'a, S: Simd>(
-        &self,
-        simd: S,
-        width: usize,
-        mut from: (&'a mut Vec<T>, &'a mut Vec<T>),
-        mut to: (&'a mut Vec<T>, &'a mut Vec<T>),
-    ) {
+    fn transform<'a, S: Simd>(&self, simd: S, width: usize, mut from: Parts<'a, T>, mut to: Parts<'a, T>) {
         let (mut length, mut stride) = (self.size, 1);
         for &factor in &self.factors {
             let pass = Pass {
@@ -124,8 +118,8 @@ impl<T: Real> Fourier<T> {
         &self,
         simd: S,
         pass: &Pass,
-        from: (&[T::Vector<S>], &[T::Vector<S>]),
-        to: (&mut [T::Vector<S>], &mut [T::Vector<S>]),
+        (from_re, from_im): Source<T, S>,
+        (to_re, to_im): Target<T, S>,
     ) {
         let Pass { parts, stride, vectors } = *pass;
         for part in 0..parts {
@@ -137,12 +131,12 @@ impl<T: Real> Fourier<T> {
                 for vector in 0..vectors {
                     let values: [Complex<T, S>; R] = std::array::from_fn(|j| {
                         let source = (place + stride * (part + parts * j)) * vectors + vector;
-                        (from.0[source], from.1[source])
+                        (from_re[source], from_im[source])
                     });
                     let sums = butterfly::<T, S, R>(simd, values);
                     for k in 0..R {
                         let target = (place + stride * (R * part + k)) * vectors + vector;
-                        (to.0[target], to.1[target]) = if k == 0 {
+                        (to_re[target], to_im[target]) = if k == 0 {
                             sums[k]
                         } else {
                             product::<T, S>(simd, sums[k], twiddles[k])
@@ -153,6 +147,15 @@ impl<T: Real> Fourier<T> {
         }
     }
 }
+
+/// Real and imaginary parts of rows.
+type Parts<'a, T> = (&'a mut Vec<T>, &'a mut Vec<T>);
+
+/// Rows of vectors, real and imaginary parts.
+type Source<'a, T, S> = (&'a [<T as Real>::Vector<S>], &'a [<T as Real>::Vector<S>]);
+
+/// The same, to be written.
+type Target<'a, T, S> = (&'a mut [<T as Real>::Vector<S>], &'a mut [<T as Real>::Vector<S>]);
 
 /// Complex numbers side by side, real and imaginary parts.
 type Complex<T, S> = (<T as Real>::Vector<S>, <T as Real>::Vector<S>);

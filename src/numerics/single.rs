@@ -55,7 +55,7 @@ pub fn lu(matrix: &mut [f32], n: usize, pivots: &mut [usize]) -> bool {
                     }
                 }
                 pivots[k] = pivot;
-                if !(own[pivot].abs() > 0.0) {
+                if own[pivot] == 0.0 || own[pivot].is_nan() {
                     return false;
                 }
                 if pivot != k {

@@ -4,8 +4,9 @@ use super::fields::PatchFields;
 use super::problem::Problem;
 use super::rail::PatchRail;
 use super::readings::wear_left_behind;
-use crate::contact::profiles::{ContactNode, PROFILE_POINTS, Profiles, STRIP_POINTS, StripProfiles};
+use crate::contact::profiles::{ContactNode, PROFILE_POINTS, Profiles, STRIP_POINTS, StripProfiles, depths};
 use crate::friction::coulomb;
+use crate::numerics::interpolation::between;
 
 /// The fields at the cells of the window, strip by strip.
 pub fn contact_nodes(rail: &PatchRail, fields: &PatchFields) -> Vec<ContactNode> {
@@ -77,6 +78,12 @@ pub fn profiles(problem: &Problem, fields: &PatchFields, ambient: f64) -> Profil
             grid.length * scale * grid.row(strip).map(power).sum::<f64>()
         }),
     };
+    let rises = fields.heat.surface.iter().enumerate();
+    let hottest = rises.max_by(|a, b| a.1.total_cmp(b.1)).map_or(0, |(index, _)| index);
+    let amplitudes = fields
+        .heat
+        .amplitudes(&rail.strips, hottest / grid.cells, hottest % grid.cells);
+    let depth = depths(rail.depth[rail.depth.len() - 1]);
     Profiles {
         x: along(&|_, cell| grid.x(cell)),
         pressure: along(&|strip, cell| scale * fields.pressure[grid.place(strip, cell)]),
@@ -85,6 +92,13 @@ pub fn profiles(problem: &Problem, fields: &PatchFields, ambient: f64) -> Profil
         temperature: along(&surface),
         wear_depth: along(&|strip, cell| fields.wear.depth[strip * grid.cells + cell]),
         strips,
-        ..Profiles::untouched(ambient)
+        depth_temperature: depth.iter().map(|&z| ambient + below(rail, &amplitudes, z)).collect(),
+        depth,
     }
+}
+
+/// Temperature rise of a column at a depth `m`, `K`.
+fn below(rail: &PatchRail, amplitudes: &[f64], depth: f64) -> f64 {
+    let (upper, weight) = between(&rail.depth, depth);
+    rail.basis.value(amplitudes, upper) * (1.0 - weight) + rail.basis.value(amplitudes, upper + 1) * weight
 }

@@ -53,8 +53,6 @@ pub struct PatchRail {
     pub basis: DepthBasis,
     /// Profile of the temperature that enters.
     pub incoming: Incoming,
-    /// Half-axes of the contact at the largest load, `m`, and the relaxation length then, `m`.
-    pub half_length: f64,
     /// ℓ at the largest load, `m`.
     pub relaxation_length: f64,
 }
@@ -159,7 +157,6 @@ impl PatchRail {
             incoming: Incoming::new(&mesh.depth, &basis, parameters.skin_depth),
             depth: mesh.depth,
             basis,
-            half_length: ellipse.along,
             relaxation_length: relaxation_length(&pair, (ellipse.along, ellipse.across)),
             transform,
             grid,

@@ -13,6 +13,7 @@ use crate::contact::rest::Rest;
 use crate::contact::rim::{self, ContactHeat};
 use crate::contact::task::Convergence;
 use crate::error::{Error, Result};
+use crate::friction::coulomb;
 use crate::heat::strips::StripHeatScratch;
 use crate::heat::surface::SurfaceExchange;
 use crate::mechanics::normal::problem::Constraint;
@@ -486,7 +487,7 @@ fn keep_within_bounds(
     contact.scatter(grid, bound, on_grid);
     let [x, y] = &mut fields.shear;
     for ((x, y), &bound) in x.iter_mut().zip(y).zip(&*on_grid) {
-        let length = x.hypot(*y);
+        let length = coulomb::magnitude([*x, *y]);
         if length > bound {
             let share = bound / length;
             (*x, *y) = (share * *x, share * *y);
@@ -508,9 +509,9 @@ fn free_slip(problem: &Problem, weights: &SlipWeights, fields: &PatchFields, scr
             let place = grid.place(strip, cell);
             let next = place.wrapping_add_signed(ahead);
             let rigid = problem.rigid_slip(grid.x(cell) + half, y);
-            for component in 0..2 {
+            for (component, rigid) in rigid.into_iter().enumerate() {
                 let (given, before) = (&scratch.given[component], &scratch.before[component]);
-                scratch.free_slip[component][place] = rigid[component]
+                scratch.free_slip[component][place] = rigid
                     + weights.strain * (given[place] - given[next])
                     + weights.strain_before * (before[place] - before[next])
                     + weights.change * (given[place] - before[place]);
@@ -570,10 +571,10 @@ fn slide_on_the_spot(problem: &Problem, fields: &mut PatchFields, scratch: &mut 
     for run in scratch.contact.runs() {
         for (index, place) in run.own().zip(run.places(grid)) {
             let slip = [scratch.free_slip[0][place], scratch.free_slip[1][place]];
-            let speed = slip[0].hypot(slip[1]);
-            for component in 0..2 {
-                fields.shear[component][place] = if speed > 0.0 {
-                    -scratch.bound[index] * slip[component] / speed
+            let speed = coulomb::magnitude(slip);
+            for (slip, shear) in slip.into_iter().zip(&mut fields.shear) {
+                shear[place] = if speed > 0.0 {
+                    -scratch.bound[index] * slip / speed
                 } else {
                     0.0
                 };
@@ -621,7 +622,7 @@ fn march_wear(problem: &Problem, before: &PatchFields, fields: &mut PatchFields,
     for strip in 0..grid.strips {
         for cell in 0..grid.cells {
             let place = grid.place(strip, cell);
-            let slip = fields.slip[0][place].hypot(fields.slip[1][place]);
+            let slip = coulomb::magnitude([fields.slip[0][place], fields.slip[1][place]]);
             fastest = fastest.max(slip);
             scratch.wear_rate[strip * grid.cells + cell] = per_slip * slip * fields.pressure[place];
         }
@@ -629,7 +630,7 @@ fn march_wear(problem: &Problem, before: &PatchFields, fields: &mut PatchFields,
     let soft = per_slip * own * fastest
         > problem.settings.softening.explicit * problem.settings.patch.least_compliance * rail.approach.own;
     for place in 0..grid.len() {
-        let slip = fields.slip[0][place].hypot(fields.slip[1][place]);
+        let slip = coulomb::magnitude([fields.slip[0][place], fields.slip[1][place]]);
         scratch.softness[place] = if soft { per_slip * own * slip } else { 0.0 };
     }
     problem.wear_march().advance(

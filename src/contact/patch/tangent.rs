@@ -162,7 +162,7 @@ impl Tangent {
     /// The wear of the step per pressure: all of it is in the normal problem, where it is stiff.
     fn soften(&mut self, problem: &Problem, fields: &PatchFields) {
         self.softness.fill(0.0);
-        if !(problem.conditions.duration > 0.0) {
+        if problem.conditions.duration <= 0.0 {
             return;
         }
         let (rail, speed) = (problem.rail, problem.conditions.motion.rolling_speed.abs());

@@ -40,6 +40,15 @@ impl StripTemperature {
         }
     }
 
+    /// Modal amplitudes of a cell.
+    pub fn amplitudes(&self, strips: &Strips, strip: usize, cell: usize) -> Vec<f64> {
+        let modes = self.window.len() / (strips.columns() * strips.blocks() * LANES);
+        // The first column is the one beside the window.
+        let column = strip / LANES * strips.columns() + cell + 1;
+        let place = |mode: usize| (column * modes + mode) * LANES + strip % LANES;
+        (0..modes).map(|mode| self.window[place(mode)]).collect()
+    }
+
     /// The vectors, in the order of their declaration.
     pub fn vectors(&self) -> [&Vec<f64>; 7] {
         let [left, right] = &self.outer;

@@ -238,9 +238,9 @@ impl Friction {
                 halvings += 1;
                 length *= 0.5;
             }
-            for component in 0..2 {
+            for (component, shear) in shear.iter_mut().enumerate() {
                 for place in problem.contact.places(problem.grid) {
-                    shear[component][place] += length * self.correction[component][place];
+                    shear[place] += length * self.correction[component][place];
                 }
                 let moved = self.response[component]
                     .iter_mut()

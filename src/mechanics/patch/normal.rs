@@ -62,8 +62,8 @@ impl Approach {
         for i in (0..values.len()).rev() {
             let value = values[i] / self.factor[i * n + i];
             values[i] = value;
-            for k in 0..i {
-                values[k] -= self.factor[i * n + k] * value;
+            for (before, factor) in values[..i].iter_mut().zip(&self.factor[i * n..]) {
+                *before -= factor * value;
             }
         }
     }
@@ -203,9 +203,10 @@ impl Normal {
     /// The separation of all cells.
     fn separate(&mut self, problem: &NormalProblem, contact: &Contact, pressure: &[f64], penetration: f64) {
         self.displace(problem, &whole(problem.grid, contact), pressure);
-        for place in 0..problem.grid.len() {
-            let softened = self.displacement[place] + problem.softness[place] * pressure[place];
-            self.separation[place] = softened + problem.gap[place] - penetration;
+        let cells = pressure.iter().zip(problem.softness).zip(problem.gap);
+        let separations = self.separation.iter_mut().zip(&self.displacement);
+        for ((separation, displacement), ((pressure, softness), gap)) in separations.zip(cells) {
+            *separation = displacement + softness * pressure + gap - penetration;
         }
     }
 
@@ -276,7 +277,7 @@ impl Normal {
                 self.image[i] += self.softness[i] * self.direction[i];
             }
             let curvature = dot(&self.direction[..n], &self.image[..n]);
-            if !(curvature > 0.0) {
+            if curvature.is_nan() || curvature <= 0.0 {
                 break;
             }
             let step = product / curvature;

@@ -22,7 +22,7 @@ impl Normal {
             places().for_each(|place| pressure[place] += share);
         }
         let (penetration, left) = self.solve_on(problem, contact, pressure, problem.tolerance);
-        if !(left <= problem.tolerance) {
+        if left.is_nan() || left > problem.tolerance {
             return Err(Error::NormalNotConverged {
                 solver: "tangent of the patch",
                 iterations: self.settings.normal_iterations,
