@@ -204,8 +204,13 @@ fn flash_scale(parameters: &Parameters) -> f64 {
         / (parameters.volumetric_heat_capacity() * (PI * parameters.thermal_diffusivity).sqrt())
 }
 
-/// Largest value of the integral over the contact.
+/// Largest temperature rise over the contact.
 fn largest_flash_temperature(parameters: &Parameters) -> f64 {
+    flash_scale(parameters) * largest_flash_integral()
+}
+
+/// Largest value of F over the contact.
+pub fn largest_flash_integral() -> f64 {
     // F rises to one maximum and falls again: ternary search.
     let (mut left, mut right) = (-1.0, 1.0);
     for _ in 0..100 {
@@ -216,7 +221,7 @@ fn largest_flash_temperature(parameters: &Parameters) -> f64 {
             right -= third;
         }
     }
-    flash_scale(parameters) * flash_integral(0.5 * (left + right))
+    flash_integral(0.5 * (left + right))
 }
 
 /// F(X). In the contact, Y = X + (1 − X) sin²φ removes both roots: F = 2 (1 − X) ∫₀^{π/2} √(1 + Y) cos²φ dφ, whose integrand is

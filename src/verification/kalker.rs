@@ -5,8 +5,8 @@
 //!
 //! The table is that of J.J. Kalker, Three-Dimensional Elastic Bodies in Rolling Contact (1990), table E.3. C₁₁, C₂₂ and C₂₃ were
 //! compared with two other prints. For C₃₃ there was none: it was compared with a numerical solution of full adhesion, 80 × 80 and
-//! 160 × 160 elements over the ellipse, extrapolated; at Poisson's ratios 0 and 0.25 they are within 0.8 % of one another for a/b
-//! from 0.1 to 3, and within 1.4 % up to 10.
+//! 160 × 160 elements over the ellipse, extrapolated. At Poisson's ratio 0.25 they are within 1.4 % of one another at all a/b, at 0
+//! within 0.8 % for a/b up to 1.1. The other entries of C₃₃, those at 0.5 among them, were not compared with anything.
 
 /// Poisson's ratios of the table.
 const POISSON_RATIOS: [f64; 3] = [0.0, 0.25, 0.5];

@@ -18,7 +18,16 @@ pub mod kalker;
 pub mod locked_wheel;
 pub mod mirrored;
 pub mod paper_cases;
+pub mod patch_cases;
+pub mod patch_creep;
+pub mod patch_energy;
+pub mod patch_flash;
+pub mod patch_hertz;
+pub mod patch_kalker;
 pub mod patch_limits;
+pub mod patch_long;
+pub mod patch_mirrored;
+pub mod patch_power;
 pub mod power_balance;
 pub mod rigid_wheel;
 pub mod rolling_start;
@@ -55,6 +64,16 @@ pub const CURVES: &[Curve] = &[
         name: "flash_temperature",
         columns: &["x [m]", "temperature rise [K]", "closed form [K]"],
         points: flash_temperature::curve,
+    },
+    Curve {
+        name: "patch_hertz",
+        columns: &["x [m]", "y [m]", "pressure [Pa]", "closed form [Pa]"],
+        points: patch_hertz::curve,
+    },
+    Curve {
+        name: "patch_creep",
+        columns: &["force [1]", "creepage [1]", "share [1]", "CONTACT [1]"],
+        points: patch_creep::curve,
     },
 ];
 
@@ -139,6 +158,38 @@ pub const CHECKS: &[Check] = &[
     Check {
         name: "Locked wheel",
         rows: locked_wheel::rows,
+    },
+    Check {
+        name: "Patch: Hertz's ellipses",
+        rows: patch_hertz::rows,
+    },
+    Check {
+        name: "Patch: Kalker's coefficients",
+        rows: patch_kalker::rows,
+    },
+    Check {
+        name: "Patch: creep forces",
+        rows: patch_creep::rows,
+    },
+    Check {
+        name: "Patch: full slip and power",
+        rows: patch_power::rows,
+    },
+    Check {
+        name: "Patch: long across the rail",
+        rows: patch_long::rows,
+    },
+    Check {
+        name: "Patch: flash temperature",
+        rows: patch_flash::rows,
+    },
+    Check {
+        name: "Patch: balances of heat and wear",
+        rows: patch_energy::rows,
+    },
+    Check {
+        name: "Patch: mirrored motion",
+        rows: patch_mirrored::rows,
     },
 ];
 

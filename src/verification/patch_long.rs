@@ -1,0 +1,148 @@
+//! A patch that is long across the rail is a line contact at its middle: its centre strip beside the line engine at the same load per
+//! width, p₀ a π/2 of Hertz's ellipse. Normal and tangential coupling, heat march, wear march, thermal bulge and their signs
+//! are built anew in the patch, and each is in one of the rows.
+//!
+//! The middle of an ellipse is a line contact but for (a/b)² ln(b/a): the line gets the radius E* a/(2 p₀) and the width
+//! N/(p₀ a π/2), with which its half-length and its peak pressure are the ellipse's, and b/a is so large that what is left of that in the
+//! shear is small against the tolerance. Strain by pressure, where the bodies differ, comes from farther away: there it is a/b.
+
+use super::row::Row;
+use crate::error::Result;
+use crate::parameters::{ContactModel, FrictionLaw, Parameters, Wheel};
+use crate::signals::Inputs;
+use crate::simulation::Simulation;
+use std::f64::consts::FRAC_PI_2;
+
+const SOURCE: &str = "line engine at the same load per width";
+/// Both engines' cells, and (a/b)² ln(b/a).
+const TOLERANCE: f64 = 0.01;
+/// Transverse curvature, `1/m`: b = 26 a.
+const CURVATURE: f64 = 0.012;
+/// With the rigid wheel, b = 250 a: strain by pressure is b/(a + b) of the line's, that of a uniformly loaded ellipse.
+const RIGID_CURVATURE: f64 = 2.2e-4;
+const LOAD: f64 = 100e3;
+const SPEED: f64 = 20.0;
+/// Longer than the rail is in the strip.
+const PASSAGE: f64 = 0.5;
+
+/// What is compared.
+struct Middle {
+    /// T/N.
+    traction: f64,
+    /// Highest temperature rise, `K`.
+    rise: f64,
+    /// Depth of wear behind the contact, `m`.
+    wear: f64,
+    /// Peak pressure, `Pa`.
+    pressure: f64,
+}
+
+/// The same parameters for the line engine at the middle of the ellipse.
+pub fn line(patch: &Parameters) -> Parameters {
+    let ellipse = patch.hertz_ellipse(LOAD);
+    Parameters {
+        contact_model: ContactModel::Line,
+        wheel_radius: 0.5 * patch.contact_modulus() * ellipse.along / ellipse.peak_pressure,
+        contact_width: LOAD / (FRAC_PI_2 * ellipse.peak_pressure * ellipse.along),
+        contact_nodes: 101,
+        ..patch.clone()
+    }
+}
+
+fn steady(parameters: &Parameters, creepage: f64) -> Result<Simulation> {
+    let inputs = Inputs {
+        wheel_speed: SPEED * (1.0 + creepage) / parameters.wheel_radius,
+        normal_load: LOAD,
+        creepage,
+        ..Inputs::default()
+    };
+    let mut run = Simulation::new(parameters, &inputs)?;
+    run.hold(&inputs, PASSAGE, 3)?;
+    Ok(run)
+}
+
+/// The centre strip of a patch.
+fn centre(run: &Simulation) -> Middle {
+    let nodes = run.contact_nodes();
+    let middle = nodes.iter().filter(|node| node.lateral_position.abs() < 1e-9);
+    let mut middle = middle.peekable();
+    let wear = middle.peek().map_or(f64::NAN, |rear| rear.wear_depth);
+    let mut sums = (0.0, 0.0);
+    let (mut rise, mut pressure) = (f64::NEG_INFINITY, 0.0_f64);
+    for node in middle {
+        sums = (sums.0 - node.shear, sums.1 + node.pressure);
+        rise = rise.max(node.temperature);
+        pressure = pressure.max(node.pressure);
+    }
+    Middle {
+        traction: sums.0 / sums.1,
+        rise,
+        wear,
+        pressure,
+    }
+}
+
+fn of_line(run: &Simulation) -> Middle {
+    let outputs = &run.state.outputs;
+    Middle {
+        traction: outputs.traction_coefficient,
+        rise: outputs.peak_temperature - run.state.inputs.ambient_temperature,
+        wear: outputs.wear_depth,
+        pressure: outputs.peak_pressure,
+    }
+}
+
+/// Both, without and with the thermal bulge and with friction that falls with temperature; the rigid wheel's coupling.
+///
+/// # Errors
+/// A solver that did not converge.
+pub fn rows() -> Result<Vec<Row>> {
+    let all = Parameters {
+        contact_model: ContactModel::Patch,
+        rail_transverse_curvature: CURVATURE,
+        friction_temperature_cold: 300.0,
+        friction_temperature_hot: 400.0,
+        wear_coefficient: 5e-12,
+        ..Parameters::default()
+    };
+    let plain = Parameters {
+        friction_law: FrictionLaw::Constant,
+        friction_cold: 0.3,
+        thermal_expansion: 0.0,
+        ..all.clone()
+    };
+    let rigid = Parameters {
+        wheel: Wheel::Rigid,
+        rail_transverse_curvature: RIGID_CURVATURE,
+        ..plain.clone()
+    };
+    // Without the line engine's correction of the slip within a cell that its pressure causes.
+    let finer = Parameters {
+        patch_nodes: 2 * rigid.patch_nodes,
+        ..rigid.clone()
+    };
+    let mut rows = Vec::new();
+    for (name, parameters, creepage, quantities) in [
+        ("constant mu, creepage 0.001", &plain, 0.001, 4),
+        ("constant mu, creepage 0.01", &plain, 0.01, 4),
+        ("mu(theta), bulge and wear, creepage 0.003", &all, 0.003, 4),
+        ("mu(theta), bulge and wear, creepage 0.05", &all, 0.05, 4),
+        ("rigid wheel, creepage 0", &rigid, 0.0, 2),
+        ("rigid wheel, creepage -0.004", &rigid, -0.004, 4),
+        ("rigid wheel, creepage 0, twice as many cells along", &finer, 0.0, 4),
+    ] {
+        let patch = centre(&steady(parameters, creepage)?);
+        let line = of_line(&steady(&line(parameters), creepage)?);
+        let compared = [
+            ("peak pressure", "Pa", line.pressure, patch.pressure),
+            ("T/N", "1", line.traction, patch.traction),
+            ("largest temperature rise", "K", line.rise, patch.rise),
+            ("wear depth behind the contact", "m", line.wear, patch.wear),
+        ];
+        for (quantity, unit, line, patch) in compared.into_iter().take(quantities) {
+            let quantity = format!("{quantity} at the middle, {name}");
+            rows.push(Row::relative(quantity, unit, line, patch, TOLERANCE, SOURCE));
+        }
+    }
+    Ok(rows)
+}
