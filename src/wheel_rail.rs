@@ -2,6 +2,10 @@
 
 use crate::contact::line::fields::Fields;
 use crate::contact::line::rail::Rail;
+#[cfg(feature = "verification")]
+use crate::contact::patch::fields::PatchFields;
+#[cfg(feature = "verification")]
+use crate::contact::patch::rail::PatchRail;
 use crate::contact::task::{Conditions, Task};
 use crate::contact::{ContactState, ContactWorkspace, Engine};
 use crate::error::{Error, Result};
@@ -54,6 +58,15 @@ impl State {
     /// [`Error::OtherContactModel`].
     pub(crate) fn fields(&self) -> Result<&Fields> {
         Ok(&self.contact.line()?.fields)
+    }
+
+    /// The fields of the patch engine.
+    ///
+    /// # Errors
+    /// [`Error::OtherContactModel`].
+    #[cfg(feature = "verification")]
+    pub(crate) fn patch_fields(&self) -> Result<&PatchFields> {
+        Ok(&self.contact.patch()?.fields)
     }
 }
 
@@ -110,6 +123,15 @@ impl Model {
     /// [`Error::OtherContactModel`].
     pub(crate) fn rail(&self) -> Result<&Rail> {
         Ok(self.engine.line()?.rail())
+    }
+
+    /// What the patch engine has computed once: grid, influence functions, depth modes.
+    ///
+    /// # Errors
+    /// [`Error::OtherContactModel`].
+    #[cfg(feature = "verification")]
+    pub(crate) fn patch_rail(&self) -> Result<&PatchRail> {
+        Ok(self.engine.patch()?.rail())
     }
 
     /// Takes the tunable parameters (slip regularisation and friction coefficients) from `parameters`; the others stay.

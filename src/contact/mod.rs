@@ -190,6 +190,18 @@ impl Engine {
             Engine::Patch(_) => Err(Error::OtherContactModel),
         }
     }
+
+    /// The patch engine.
+    ///
+    /// # Errors
+    /// [`Error::OtherContactModel`].
+    #[cfg(feature = "verification")]
+    pub fn patch(&self) -> Result<&Patch> {
+        match self {
+            Engine::Patch(patch) => Ok(patch),
+            Engine::Line(_) => Err(Error::OtherContactModel),
+        }
+    }
 }
 
 impl ContactWorkspace {
@@ -213,6 +225,18 @@ impl ContactState {
         match self {
             ContactState::Line(state) => Ok(state),
             ContactState::Patch(_) => Err(Error::OtherContactModel),
+        }
+    }
+
+    /// The state of the patch engine.
+    ///
+    /// # Errors
+    /// [`Error::OtherContactModel`].
+    #[cfg(feature = "verification")]
+    pub fn patch(&self) -> Result<&PatchState> {
+        match self {
+            ContactState::Patch(state) => Ok(state),
+            ContactState::Line(_) => Err(Error::OtherContactModel),
         }
     }
 

@@ -40,6 +40,12 @@ impl StripWear {
         }
     }
 
+    /// Depth of a strip at one of its columns, `m`; the strip after the last is the rail beside the contact.
+    #[cfg(feature = "verification")]
+    pub fn at(&self, strips: &Strips, strip: usize, column: usize) -> f64 {
+        self.window[(strip / LANES * strips.columns() + column) * LANES + strip % LANES]
+    }
+
     /// The vectors, in the order of their declaration.
     pub fn vectors(&self) -> [&Vec<f64>; 5] {
         let [left, right] = &self.outer;

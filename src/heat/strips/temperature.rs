@@ -76,4 +76,12 @@ impl StripTemperature {
             &mut self.replaced,
         ]
     }
+
+    /// Amplitude of a mode in a strip at one of its columns; the strip after the last is the rail beside the contact.
+    #[cfg(feature = "verification")]
+    pub fn amplitude(&self, strips: &Strips, strip: usize, column: usize, mode: usize) -> f64 {
+        let modes = self.window.len() / (strips.columns() * strips.blocks() * LANES);
+        let row = (strip / LANES * strips.columns() + column) * modes + mode;
+        self.window[row * LANES + strip % LANES]
+    }
 }
