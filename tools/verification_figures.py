@@ -102,7 +102,50 @@ def draw_flash_temperature(x, rise, closed_form):
     save(figure, "flash_temperature")
 
 
-DRAW = {"hertz": draw_hertz, "carter": draw_carter, "flash_temperature": draw_flash_temperature}
+def draw_patch_hertz(x, y, pressure, closed_form):
+    """Contact pressure of a patch along its middle strip and across it."""
+    figure, axes, difference = axes_and_difference("patch_hertz")
+    # The strip in the middle comes first; the column beside the middle has one x.
+    across = x == x[-1]
+    peak = closed_form.max()
+    for colour, position, chosen, label in (
+        (COLOURS[0], x, ~across, "along the rail"),
+        (COLOURS[1], y, across, "across"),
+    ):
+        shown = chosen & (closed_form + pressure > 0.0)
+        order = np.argsort(position[shown])
+        place = 1e3 * position[shown][order]
+        axes.plot(place, closed_form[shown][order] / 1e6, **CLOSED_FORM)
+        axes.plot(place, pressure[shown][order] / 1e6, color=colour, label=f"model, {label}", **MODEL)
+        difference.plot(place, 100.0 * (pressure - closed_form)[shown][order] / peak, color=colour, **MODEL)
+    axes.set(ylabel="contact pressure [MPa]", ylim=(0, None), title="Hertz's ellipse, a/b = 0.5, no friction")
+    difference.set(ylabel="difference\n[% of peak]", xlabel="position along or across [mm]")
+    axes.legend()
+    save(figure, "patch_hertz")
+
+
+def draw_patch_creep(force, creepage, share, contact):
+    """Creep forces of a patch on a circle."""
+    figure, axes, difference = axes_and_difference("patch_creep")
+    labels = (r"$F_x/(\mu N)$ by $\xi$", r"$F_y/(\mu N)$ by $\eta$", r"$M_z/(\mu N c)$ by $\eta$")
+    for number, (colour, label) in enumerate(zip(COLOURS, labels, strict=True)):
+        chosen = force == number
+        axes.plot(100.0 * creepage[chosen], contact[chosen], **CLOSED_FORM)
+        axes.plot(100.0 * creepage[chosen], share[chosen], color=colour, label=label, **MODEL)
+        difference.plot(100.0 * creepage[chosen], (share - contact)[chosen], color=colour, **MODEL)
+    axes.set(ylabel="share of the bound [1]", ylim=(0, None), title="Steady rolling on a circle, lines: CONTACT")
+    difference.set(ylabel="difference\n[1]", xlabel="creepage [%]")
+    axes.legend(loc="center right")
+    save(figure, "patch_creep")
+
+
+DRAW = {
+    "hertz": draw_hertz,
+    "carter": draw_carter,
+    "flash_temperature": draw_flash_temperature,
+    "patch_hertz": draw_patch_hertz,
+    "patch_creep": draw_patch_creep,
+}
 
 
 def main():

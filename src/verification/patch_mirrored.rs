@@ -6,7 +6,7 @@
 
 use super::row::Row;
 use crate::error::Result;
-use crate::parameters::{ContactModel, Parameters, SlipSource, WheelHeating};
+use crate::parameters::{ContactModel, Parameters, SlipSource, Wheel, WheelHeating};
 use crate::signals::{Inputs, Outputs};
 use crate::simulation::Simulation;
 use crate::wheel_rail::ContactNode;
@@ -23,23 +23,25 @@ type Mirror = [f64; 2];
 /// # Errors
 /// A solver that did not converge.
 pub fn rows() -> Result<Vec<Row>> {
-    let like = Parameters {
+    let rigid = Parameters {
         contact_model: ContactModel::Patch,
+        wheel: Wheel::Rigid,
         slip_source: SlipSource::VehicleSpeed,
         ..Parameters::default()
     };
-    // A softer wheel, so that normal and tangential problem are coupled; a short strip, so that what comes in arrives.
+    // A softer wheel, so that normal and tangential problem stay coupled; a short strip, so that what comes in arrives.
     let warm = Parameters {
-        wheel_shear_modulus: 0.5 * like.wheel_shear_modulus,
+        wheel: Wheel::Elastic,
+        wheel_shear_modulus: 0.5 * rigid.wheel_shear_modulus,
         wheel_heating: WheelHeating::On,
         rim_depth: 1e-3,
         rim_width: 1e-3,
         wheel_wear_coefficient: 1e-12,
         strip_half_length: 0.2,
-        ..like.clone()
+        ..rigid.clone()
     };
     let mut rows = Vec::new();
-    for (pair, parameters) in [("wheel like the rail", &like), ("soft warm wheel", &warm)] {
+    for (pair, parameters) in [("rigid cold wheel", &rigid), ("soft warm wheel", &warm)] {
         let original = braking(parameters, [1.0, 1.0])?;
         for (name, mirror) in [("in y", [1.0, -1.0]), ("in x", [-1.0, 1.0])] {
             rows.extend(compared(&format!("mirrored {name}, {pair}"), &original, mirror)?);
