@@ -58,6 +58,11 @@ impl Patch {
         })
     }
 
+    /// What was computed once.
+    pub fn rail(&self) -> &PatchRail {
+        &self.rail
+    }
+
     /// Scratch for the steps.
     pub fn workspace(&self, settings: &Settings) -> PatchWorkspace {
         PatchWorkspace {

@@ -5,6 +5,7 @@
 //! are its derivatives, with the [`tangent`] of the tractions. [`readings`] and [`profiles`] are what is read off the fields.
 
 pub mod engine;
+pub mod extent;
 pub mod fields;
 pub mod problem;
 pub mod profiles;

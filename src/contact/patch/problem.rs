@@ -252,7 +252,7 @@ impl<'a> Problem<'a> {
 
     /// Breadth over which the rail that leaves is averaged, `m`: that of the strips in contact.
     pub fn breadth(&self, fields: &PatchFields) -> f64 {
-        super::readings::extent(self.rail, &fields.pressure).breadth
+        super::extent::extent(self.rail, &fields.pressure).breadth
     }
 }
 

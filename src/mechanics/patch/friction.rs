@@ -126,10 +126,6 @@ impl Friction {
             noise: problem.noise,
             regularisation: problem.regularisation,
         };
-        // Cells that have left the contact keep no part of a correction: the response is to all of it.
-        for component in &mut self.correction {
-            component.fill(0.0);
-        }
         if self.newton(problem, &scheme, shear, problem.tolerance).is_ok() {
             self.remember(shear);
             return Ok(());

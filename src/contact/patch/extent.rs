@@ -1,0 +1,140 @@
+//! Length, breadth and area of the cells under pressure.
+
+use super::rail::PatchRail;
+
+/// The size of a contact.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Extent {
+    /// Largest length along a strip, `m`.
+    pub length: f64,
+    /// Largest breadth across the strips, `m`.
+    pub breadth: f64,
+    /// Area, `m²`.
+    pub area: f64,
+}
+
+/// How far before the centre of a cell the contact ends when that cell joins it, in cells.
+const JOINS: f64 = 0.156;
+
+/// How far the contact reaches beyond the place where its last cell has joined, in cells, 0 to 1: r + 0.77 r³ of the ratio r of that
+/// cell's pressure to the next one's. Towards an end the pressure falls like the root of the distance, and what uniform
+/// cells make of that depends on nothing but where the end lies between them; the polynomial and [`JOINS`] are fitted to Hertz's
+/// ellipses, whose ends it gives to 0.03 of a cell.
+fn reach(edge: f64, inside: f64) -> f64 {
+    if edge >= inside {
+        return 1.0;
+    }
+    let ratio = edge / inside;
+    (ratio + 0.77 * ratio * ratio * ratio).min(1.0)
+}
+
+/// Length, breadth and area of the cells under pressure.
+pub fn extent(rail: &PatchRail, pressure: &[f64]) -> Extent {
+    let grid = &rail.grid;
+    let mut extent = Extent::default();
+    for strip in 0..grid.strips {
+        extent.length = extent.length.max(length(rail, pressure, strip));
+    }
+    for cell in 0..grid.cells {
+        let breadth = grid.breadth * distance(grid.strips, |strip| pressure[grid.place(strip, cell)]);
+        extent.breadth = extent.breadth.max(breadth);
+    }
+    extent.area = area(rail, pressure);
+    extent
+}
+
+/// Length of the contact along a strip, `m`.
+fn length(rail: &PatchRail, pressure: &[f64], strip: usize) -> f64 {
+    let row = &pressure[rail.grid.row(strip)];
+    rail.grid.length * distance(rail.grid.cells, |cell| row[cell])
+}
+
+/// Area of the contact, `m²`. In strips the midpoint rule would miss what ends like a root at the sides: the outermost strip on either
+/// side, whose own length is that of an edge, is replaced by the area under the root that begins at the side and has
+/// the length L of the next strip at its centre, a distance d strips from the side. From that strip's edge on it is ⅔ L (d − ½)^{3/2}/√d, and
+/// what the midpoint rule overstates from there inwards is L/(48 √(d (d − ½))).
+fn area(rail: &PatchRail, pressure: &[f64]) -> f64 {
+    let grid = &rail.grid;
+    let largest = |strip: usize| {
+        let row = &pressure[grid.row(strip)];
+        (0..grid.cells).fold(0, |largest, cell| if row[cell] > row[largest] { cell } else { largest })
+    };
+    let at = |strip: usize, cell: usize| pressure[grid.place(strip, cell)];
+    let inside = |&strip: &usize| at(strip, largest(strip)) > 0.0;
+    let (Some(first), Some(last)) = ((0..grid.strips).find(inside), (0..grid.strips).rfind(inside)) else {
+        return 0.0;
+    };
+    let lengths = |strips: std::ops::Range<usize>| -> f64 { strips.map(|strip| length(rail, pressure, strip)).sum() };
+    if last < first + 2 {
+        return grid.breadth * lengths(first..last + 1);
+    }
+    let side = |outermost: usize, next: usize| {
+        let cell = largest(outermost);
+        let d = 1.0 - JOINS + reach(at(outermost, cell), at(next, cell));
+        let beyond = d - 0.5;
+        let root = length(rail, pressure, next) / d.sqrt();
+        root * (beyond * beyond.sqrt() / 1.5 - 1.0 / (48.0 * beyond.sqrt()))
+    };
+    grid.breadth * (side(first, first + 1) + lengths(first + 1..last) + side(last, last - 1))
+}
+
+/// Distance between the ends of what is under pressure, in cells. A cell by itself is as long as when the next one joins it.
+fn distance(count: usize, pressure: impl Fn(usize) -> f64) -> f64 {
+    let inside = |&i: &usize| pressure(i) > 0.0;
+    let (Some(first), Some(last)) = ((0..count).find(inside), (0..count).rfind(inside)) else {
+        return 0.0;
+    };
+    let reach = |end: usize, next: usize| {
+        if first == last {
+            1.0
+        } else {
+            reach(pressure(end), pressure(next))
+        }
+    };
+    (last - first) as f64 + reach(first, first + 1) + reach(last, last.wrapping_sub(1)) - 2.0 * JOINS
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::parameters::{ContactModel, Parameters};
+
+    /// Pressures as the cells have them when the contact grows by a cell: no jump.
+    #[test]
+    fn a_cell_that_joins_changes_no_length() {
+        let line = [0.712, 1.0, 1.1, 1.0, 0.713];
+        let grown = [0.712, 1.0, 1.1, 1.0, 0.713, 1e-12];
+        let (before, after) = (distance(5, |i| line[i]), distance(6, |i| grown[i]));
+        assert!((before - after).abs() < 0.02, "{before} {after}");
+        assert!((distance(1, |_| 1.0) - distance(2, |i| [1.0, 1e-12][i])).abs() < 1e-9);
+        assert_eq!(distance(3, |_| 0.0), 0.0);
+    }
+
+    /// One strip, then two, then the root: the area has no gap.
+    #[test]
+    fn the_area_of_few_strips() {
+        let rail = PatchRail::new(&Parameters {
+            contact_model: ContactModel::Patch,
+            ..Parameters::default()
+        })
+        .unwrap();
+        let grid = &rail.grid;
+        let mut pressure = vec![0.0; grid.len()];
+        assert_eq!(extent(&rail, &pressure), Extent::default());
+        let mut areas = Vec::new();
+        for strip in 5..9 {
+            for cell in 10..20 {
+                pressure[grid.place(strip, cell)] = 1.0;
+            }
+            areas.push(extent(&rail, &pressure).area / (grid.cell_area() * (11.0 - 2.0 * JOINS)));
+        }
+        assert!(
+            (areas[0] - 1.0).abs() < 1e-12 && (areas[1] - 2.0).abs() < 1e-12,
+            "{areas:?}"
+        );
+        assert!(
+            areas.windows(2).all(|pair| (0.5..1.5).contains(&(pair[1] - pair[0]))),
+            "{areas:?}"
+        );
+    }
+}
