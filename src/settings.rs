@@ -305,6 +305,17 @@ impl Settings {
     }
 }
 
+impl Settings {
+    /// Derivatives of the outputs of a patch: its linear systems are solved by iteration.
+    pub fn patch_sensitivity(&self) -> SensitivitySettings {
+        SensitivitySettings {
+            accelerate_after: self.patch.sensitivity_accelerate_after,
+            tolerance: self.patch.sensitivity_tolerance,
+            ..self.sensitivity
+        }
+    }
+}
+
 /// Pressure and shear of a patch.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PatchSettings {
@@ -358,6 +369,11 @@ pub struct PatchSettings {
     pub continuation_tolerance: f64,
     /// The last of them, relative to the largest slip.
     pub least_regularisation: f64,
+    /// Error of the tangents, relative to the largest, at which the linear split of the derivatives rests, and residual of its linear
+    /// systems, which a small change of the pressure by heat feels a hundredfold. Each digit costs a tenth of the time.
+    pub sensitivity_tolerance: f64,
+    /// Iterations of it after which Anderson's method takes part.
+    pub sensitivity_accelerate_after: usize,
 }
 
 impl Default for PatchSettings {
@@ -387,6 +403,8 @@ impl Default for PatchSettings {
             continuation_step: 0.2,
             continuation_tolerance: 1e-4,
             least_regularisation: 1e-4,
+            sensitivity_tolerance: 1e-7,
+            sensitivity_accelerate_after: 1,
         }
     }
 }

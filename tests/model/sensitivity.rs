@@ -49,7 +49,12 @@ fn difference(
         model.step(workspace, &mut state, &moved, &Inputs::ZERO, step).unwrap();
         state
     };
-    let h = 4e-4 * nominal;
+    let share = match model.parameters().contact_model {
+        ContactModel::Line => 4e-4,
+        // Many more cells than nodes are close to joining or leaving the contact, or to sliding.
+        ContactModel::Patch => 1e-4,
+    };
+    let h = share * nominal;
     let (here, ahead, behind) = (run(0.0), run(h), run(-h));
     let (further_ahead, further_behind) = (run(2.0 * h), run(-2.0 * h));
     let in_contact = |state: &State| -> Vec<bool> {
@@ -94,6 +99,10 @@ fn check(parameters: Parameters, inputs: Inputs, step: f64) -> usize {
     let mut settings = Settings::default();
     settings.split.tolerance = 1e-11;
     settings.split.shear_tolerance = 1e-11;
+    settings.patch.split_tolerance = 1e-11;
+    settings.patch.shear_tolerance = 1e-11;
+    settings.patch.least_tolerance = 1e-12;
+    settings.patch.sensitivity_tolerance = 1e-9;
     let model = Model::with_settings(parameters, settings).unwrap();
     let mut workspace = model.workspace();
     let mut moved = inputs;
@@ -133,8 +142,8 @@ fn check(parameters: Parameters, inputs: Inputs, step: f64) -> usize {
             let place = if output.kind == OutputKind::Counted {
                 "src/signals.rs has the output as Counted, and it is not"
             } else {
-                "A tangent stands beside its primal: where the input is used, or in src/contact/line/sensitivity.rs, \
-                 which puts the tangents together"
+                "A tangent stands beside its primal: where the input is used, or in sensitivity.rs of src/contact/line or \
+                 src/contact/patch, which puts the tangents together"
             };
             assert!(
                 (exact - differences[index]).abs() <= tolerance,
@@ -239,4 +248,212 @@ fn slopes_at_creepage_0_are_those_of_a_step() {
     // d((ω r₀ − V)/V)/dω.
     let creepage = slopes.slip_creepage / (radius / speed);
     assert!((creepage - 1.0).abs() < 1e-6, "{creepage}");
+}
+
+/// A small patch that heats, wears and swells, under a thin rim in good contact with it.
+fn patch(slip_source: SlipSource, wheel: Wheel) -> Parameters {
+    Parameters {
+        contact_model: ContactModel::Patch,
+        slip_source,
+        wheel,
+        patch_nodes: 16,
+        patch_strips: 9,
+        depth_nodes: 17,
+        wheel_heating: WheelHeating::On,
+        wheel_wear_coefficient: 1e-12,
+        rim_depth: 1e-3,
+        rim_width: 5e-3,
+        contact_thermal_resistance: 200.0,
+        strip_half_length: 0.3,
+        ..Parameters::default()
+    }
+}
+
+/// Rolling at V with all three creepages, by the creepages and by the speeds.
+fn rolling(speed: f64, [creepage, lateral, spin]: [f64; 3]) -> Inputs {
+    Inputs {
+        wheel_speed: speed * (1.0 + creepage) / Parameters::default().wheel_radius,
+        vehicle_speed: speed,
+        creepage,
+        lateral_creepage: lateral,
+        spin_creepage: spin,
+        lateral_speed: lateral * speed,
+        spin_rate: spin * speed,
+        incoming_temperature: 310.0,
+        incoming_wear_depth: 2e-7,
+        ..Inputs::default()
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 12, ..ProptestConfig::default() })]
+    #[test]
+    fn sensitivities_of_a_patch_are_the_derivatives_of_a_step(
+        creepage in prop_oneof![-0.003..-0.0003, 0.0003..0.003, 0.005..0.05],
+        lateral in -0.002..0.002,
+        spin in -0.8..0.8,
+        speed in 2.0..40.0,
+        load in 20e3..95e3,
+        vehicle in any::<bool>(),
+        reverse in any::<bool>(),
+        wheel in prop_oneof![Just(Wheel::Rigid), Just(Wheel::Elastic)],
+        heating in prop_oneof![Just(WheelHeating::Off), Just(WheelHeating::On)],
+        long in any::<bool>(),
+        regularisation in prop_oneof![3 => Just(0.0), 1 => Just(1e-3)],
+        law in prop_oneof![Just(FrictionLaw::Constant), Just(FrictionLaw::PiecewiseLinear), Just(FrictionLaw::FlowStress)],
+    ) {
+        let source = if vehicle { SlipSource::VehicleSpeed } else { SlipSource::Creepage };
+        let parameters = Parameters {
+            friction_law: law,
+            wheel_heating: heating,
+            slip_regularisation: regularisation,
+            ..patch(source, wheel)
+        };
+        let direction = if reverse { -1.0 } else { 1.0 };
+        let inputs = Inputs { normal_load: load, ..rolling(direction * speed, [creepage, lateral, spin]) };
+        let step = if long { LONG } else { 1e-3 };
+        // 336 pairs; the rest crosses a corner.
+        prop_assert!(check(parameters, inputs, step) >= 150);
+    }
+}
+
+/// The scenarios of every effect: creepages and speeds, and the rigid wheel, whose pressure and shear are coupled.
+#[test]
+fn sensitivities_of_a_patch_where_all_effects_act() {
+    for (source, wheel) in [
+        (SlipSource::Creepage, Wheel::Elastic),
+        (SlipSource::VehicleSpeed, Wheel::Elastic),
+        (SlipSource::VehicleSpeed, Wheel::Rigid),
+    ] {
+        let compared = check(patch(source, wheel), rolling(15.0, [4e-3, 1e-3, 0.3]), 1e-3);
+        assert!(compared >= 300, "{source:?} {wheel:?}: {compared}");
+    }
+}
+
+/// At standstill all slip is the wheel's own, and what the surfaces move by within the step.
+#[test]
+fn sensitivities_of_a_patch_at_standstill() {
+    for [lateral, spin] in [[0.0, 0.0], [0.02, 0.0], [0.01, 2.0]] {
+        let inputs = Inputs {
+            wheel_speed: 0.05 / Parameters::default().wheel_radius,
+            lateral_speed: lateral,
+            spin_rate: spin,
+            ..rolling(0.0, [0.0; 3])
+        };
+        let parameters = patch(SlipSource::VehicleSpeed, Wheel::Elastic);
+        let compared = check(parameters, inputs, 1e-3);
+        assert!(compared >= 200, "{lateral} {spin}: {compared}");
+    }
+}
+
+/// A lifted wheel leaves a rail that cools and moves on.
+#[test]
+fn sensitivities_of_a_lifted_patch() {
+    let parameters = patch(SlipSource::Creepage, Wheel::Elastic);
+    let model = Model::new(parameters).unwrap();
+    let mut workspace = model.workspace();
+    let down = rolling(15.0, [4e-3, 1e-3, 0.3]);
+    let mut before = settled(&model, &mut workspace, &down, 1e-3);
+    let lifted = Inputs {
+        normal_load: 0.0,
+        ..down
+    };
+    model
+        .step(&mut workspace, &mut before, &lifted, &Inputs::ZERO, 1e-4)
+        .unwrap();
+    let run = |workspace: &mut Workspace, inputs: &Inputs| {
+        let mut state = before.clone();
+        model.step(workspace, &mut state, inputs, &Inputs::ZERO, 0.01).unwrap();
+        state
+    };
+    let state = run(&mut workspace, &lifted);
+    let slopes = model
+        .output_sensitivities(&mut workspace, &state, 0..INPUTS.len())
+        .unwrap();
+    for (row, input) in INPUTS
+        .iter()
+        .enumerate()
+        .filter(|(_, input)| input.name != "normal_load")
+    {
+        let h = 1e-4 * nominal(&model, row);
+        let [ahead, behind] = [h, -h].map(|change| {
+            let mut moved = lifted;
+            (input.set)(&mut moved, (input.get)(&lifted) + change);
+            run(&mut workspace, &moved)
+        });
+        for output in OUTPUTS {
+            let difference = ((output.get)(&ahead.outputs) - (output.get)(&behind.outputs)) / (2.0 * h);
+            let exact = (output.get)(&slopes[row]);
+            let scale = output.nominal.max((output.get)(&state.outputs).abs()) / nominal(&model, row);
+            // Truncation h², round-off over h.
+            let tolerance = 1e-4 * exact.abs() + 1e-8 * scale;
+            assert!(
+                (exact - difference).abs() <= tolerance,
+                "d {} / d {}: {exact} {difference}",
+                output.name,
+                input.name
+            );
+        }
+    }
+}
+
+/// After initialisation no time has passed: derivatives of the mechanics at given temperature and wear, those of an initial state.
+#[test]
+fn sensitivities_of_an_initial_patch() {
+    for (source, wheel, speed) in [
+        (SlipSource::Creepage, Wheel::Elastic, 15.0),
+        (SlipSource::VehicleSpeed, Wheel::Rigid, -15.0),
+        (SlipSource::VehicleSpeed, Wheel::Elastic, 0.0),
+    ] {
+        let mut settings = Settings::default();
+        settings.patch.tolerance = 1e-11;
+        settings.patch.least_tolerance = 1e-12;
+        let model = Model::with_settings(patch(source, wheel), settings).unwrap();
+        let mut workspace = model.workspace();
+        let mut inputs = rolling(speed, [4e-3, 1e-3, 0.3]);
+        if speed == 0.0 {
+            (inputs.wheel_speed, inputs.lateral_speed, inputs.spin_rate) = (0.1, 0.01, 1.0);
+        }
+        let mut run = |inputs: &Inputs| model.initial_state(&mut workspace, inputs).unwrap();
+        let state = run(&inputs);
+        let forces = [
+            "traction_force",
+            "lateral_force",
+            "spin_moment",
+            "penetration",
+            "peak_pressure",
+        ];
+        let mut differences = Vec::new();
+        for (row, input) in INPUTS.iter().enumerate() {
+            // At standstill |V| has a corner.
+            if speed == 0.0 && input.name == "vehicle_speed" {
+                continue;
+            }
+            let h = 1e-5 * nominal(&model, row);
+            let [ahead, behind] = [h, -h].map(|change| {
+                let mut moved = inputs;
+                (input.set)(&mut moved, (input.get)(&inputs) + change);
+                run(&moved)
+            });
+            for output in OUTPUTS.iter().filter(|output| forces.contains(&output.name)) {
+                let difference = ((output.get)(&ahead.outputs) - (output.get)(&behind.outputs)) / (2.0 * h);
+                differences.push((row, output, difference));
+            }
+        }
+        let slopes = model
+            .output_sensitivities(&mut workspace, &state, 0..INPUTS.len())
+            .unwrap();
+        for (row, output, difference) in differences {
+            let exact = (output.get)(&slopes[row]);
+            let scale = output.nominal.max((output.get)(&state.outputs).abs()) / nominal(&model, row);
+            // Truncation h², and the solvers' tolerance of 1e-11 over the relative step.
+            let tolerance = 1e-4 * exact.abs() + 4e-6 * scale;
+            assert!(
+                (exact - difference).abs() <= tolerance,
+                "{speed}: d {} / d {}: {exact} {difference}",
+                output.name,
+                INPUTS[row].name
+            );
+        }
+    }
 }

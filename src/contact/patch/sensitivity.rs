@@ -25,6 +25,11 @@ use crate::parameters::WheelHeating;
 use crate::settings::Settings;
 use crate::signals::{INPUTS, Inputs, OUTPUTS, OutputKind, Outputs};
 
+/// Change of the wheel's temperature, relative to the largest of the rail's, that counts as none.
+const LEAST_WHEEL_SHARE: f64 = 1e-4;
+/// A ratio of two changes below this one is not believed.
+const LEAST_CONTRACTION: f64 = 1e-3;
+
 /// Solvers and buffers of linearisations. What one leaves in them changes no result of another one.
 pub struct SensitivityScratch {
     mechanics: Tangent,
@@ -127,7 +132,7 @@ impl<'a> Linearisation<'a> {
     /// dz along one direction of the inputs.
     fn fields_tangent(&mut self, direction: &Direction) -> Result<()> {
         let rail = self.problem.rail;
-        let settings = self.problem.settings.sensitivity;
+        let settings = self.problem.settings.patch_sensitivity();
         let rigid_slip = self.rigid_slip(direction);
         self.start(direction);
         let mut residual = f64::INFINITY;
@@ -144,7 +149,7 @@ impl<'a> Linearisation<'a> {
                     self.fields,
                     (direction, iterate),
                     tangent,
-                    self.problem.settings.patch.least_tolerance,
+                    settings.tolerance,
                 )?;
             }
             if self.marches {
@@ -173,8 +178,11 @@ impl<'a> Linearisation<'a> {
                     }
                 }
             }
-            residual = relative_change(tangent, last, rigid_slip);
-            if residual <= settings.tolerance {
+            let change = relative_change(tangent, last, rigid_slip);
+            // What is left after a change is about the change times the ratio of the last two.
+            let left = change * (change / residual).clamp(LEAST_CONTRACTION, 1.0);
+            residual = change;
+            if left <= settings.tolerance {
                 self.finish(direction);
                 return Ok(());
             }
@@ -450,7 +458,8 @@ fn relative_change(now: &PatchFields, last: &PatchFields, rigid_slip: f64) -> f6
         vectors(|fields| &fields.slip),
         relative(
             (now.wheel_temperature - last.wheel_temperature).abs(),
-            now.wheel_temperature.abs(),
+            // In a direction across a symmetric contact the wheel's temperature stays.
+            now.wheel_temperature.abs().max(LEAST_WHEEL_SHARE * largest(&now.heat.surface)),
         ),
     ];
     pressure

@@ -240,12 +240,10 @@ impl Tangent {
             Constraint::Total(_) => Constraint::Total(total),
             Constraint::Penetration(_) => Constraint::Penetration(0.0),
         };
-        let shear = largest(&tangent.shear[0]).max(largest(&tangent.shear[1]));
         let size = [
             largest(&tangent.pressure),
             largest(&self.gap) / rail.approach.own,
             total.abs() / self.contact.cells() as f64,
-            shear,
         ];
         let size = size.into_iter().fold(f64::MIN_POSITIVE, f64::max);
         let data = normal_problem(problem, &self.gap, &self.softness, constraint, tolerance * size);
