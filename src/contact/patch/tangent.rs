@@ -20,6 +20,10 @@ use crate::settings::Settings;
 use crate::signals::{Inputs, Motion};
 use crate::transport::CellStep;
 
+/// A change of the pressure below this one, scaled and per unit of an input, counts as none: what comes in from far ahead is felt
+/// exponentially little, and the squares of numbers that small are 0.
+const LEAST_CHANGE: f64 = 1e-100;
+
 /// Change of the inputs in one direction and of the motion that they make.
 #[derive(Debug, Clone, Copy)]
 pub struct Direction {
@@ -245,7 +249,7 @@ impl Tangent {
             largest(&self.gap) / rail.approach.own,
             total.abs() / self.contact.cells() as f64,
         ];
-        let size = size.into_iter().fold(f64::MIN_POSITIVE, f64::max);
+        let size = size.into_iter().fold(LEAST_CHANGE, f64::max);
         let data = normal_problem(problem, &self.gap, &self.softness, constraint, tolerance * size);
         tangent.penetration = self.normal.tangent(&data, &self.contact, &mut tangent.pressure)?;
         self.edges(problem, fields, direction, tangent);
