@@ -4,7 +4,8 @@
 //!
 //! The middle of an ellipse is a line contact but for (a/b)² ln(b/a): the line gets the radius E* a/(2 p₀) and the width
 //! N/(p₀ a π/2), with which its half-length and its peak pressure are the ellipse's, and b/a is so large that what is left of that in the
-//! shear is small against the tolerance. Strain by pressure, where the bodies differ, comes from farther away: there it is a/b.
+//! shear is small against the tolerance. The line's load is the strip's own: where it is hot, the bulge draws load from the sides to the
+//! middle. Strain by pressure, where the bodies differ, comes from farther away: there it is a/b.
 
 use super::row::Row;
 use crate::error::Result;
@@ -20,6 +21,8 @@ const TOLERANCE: f64 = 0.01;
 const CURVATURE: f64 = 0.012;
 /// With the rigid wheel, b = 250 a: strain by pressure is b/(a + b) of the line's, that of a uniformly loaded ellipse.
 const RIGID_CURVATURE: f64 = 2.2e-4;
+/// a/(a + b) = 0.004 more, and the slip within a cell, which only the line engine corrects.
+const RIGID_TOLERANCE: f64 = 0.014;
 const LOAD: f64 = 100e3;
 const SPEED: f64 = 20.0;
 /// Longer than the rail is in the strip.
@@ -35,24 +38,27 @@ struct Middle {
     wear: f64,
     /// Peak pressure, `Pa`.
     pressure: f64,
+    /// Load per width, `N/m`.
+    load: f64,
 }
 
 /// The same parameters for the line engine at the middle of the ellipse.
-pub fn line(patch: &Parameters) -> Parameters {
+fn line(patch: &Parameters) -> Parameters {
     let ellipse = patch.hertz_ellipse(LOAD);
     Parameters {
         contact_model: ContactModel::Line,
         wheel_radius: 0.5 * patch.contact_modulus() * ellipse.along / ellipse.peak_pressure,
         contact_width: LOAD / (FRAC_PI_2 * ellipse.peak_pressure * ellipse.along),
         contact_nodes: 101,
+        largest_load: 1.2 * patch.largest_load,
         ..patch.clone()
     }
 }
 
-fn steady(parameters: &Parameters, creepage: f64) -> Result<Simulation> {
+fn steady(parameters: &Parameters, normal_load: f64, creepage: f64) -> Result<Simulation> {
     let inputs = Inputs {
         wheel_speed: SPEED * (1.0 + creepage) / parameters.wheel_radius,
-        normal_load: LOAD,
+        normal_load,
         creepage,
         ..Inputs::default()
     };
@@ -64,6 +70,7 @@ fn steady(parameters: &Parameters, creepage: f64) -> Result<Simulation> {
 /// The centre strip of a patch.
 fn centre(run: &Simulation) -> Middle {
     let nodes = run.contact_nodes();
+    let spacing = nodes[1].position - nodes[0].position;
     let middle = nodes.iter().filter(|node| node.lateral_position.abs() < 1e-9);
     let mut middle = middle.peekable();
     let wear = middle.peek().map_or(f64::NAN, |rear| rear.wear_depth);
@@ -79,6 +86,7 @@ fn centre(run: &Simulation) -> Middle {
         rise,
         wear,
         pressure,
+        load: spacing * sums.1,
     }
 }
 
@@ -89,6 +97,7 @@ fn of_line(run: &Simulation) -> Middle {
         rise: outputs.peak_temperature - run.state.inputs.ambient_temperature,
         wear: outputs.wear_depth,
         pressure: outputs.peak_pressure,
+        load: run.state.inputs.normal_load / run.model.parameters().contact_width,
     }
 }
 
@@ -104,6 +113,12 @@ pub fn rows() -> Result<Vec<Row>> {
         friction_temperature_hot: 400.0,
         wear_coefficient: 5e-12,
         ..Parameters::default()
+    };
+    // So hot, and of a material that expands so much, that peak pressure and wear are some per cent others without the bulge.
+    let hot = Parameters {
+        wear_coefficient: 5e-13,
+        thermal_expansion: 1e-4,
+        ..all.clone()
     };
     let plain = Parameters {
         friction_law: FrictionLaw::Constant,
@@ -122,17 +137,26 @@ pub fn rows() -> Result<Vec<Row>> {
         ..rigid.clone()
     };
     let mut rows = Vec::new();
-    for (name, parameters, creepage, quantities) in [
-        ("constant mu, creepage 0.001", &plain, 0.001, 4),
-        ("constant mu, creepage 0.01", &plain, 0.01, 4),
-        ("mu(theta), bulge and wear, creepage 0.003", &all, 0.003, 4),
-        ("mu(theta), bulge and wear, creepage 0.05", &all, 0.05, 4),
-        ("rigid wheel, creepage 0", &rigid, 0.0, 2),
-        ("rigid wheel, creepage -0.004", &rigid, -0.004, 4),
-        ("rigid wheel, creepage 0, twice as many cells along", &finer, 0.0, 4),
+    for (name, parameters, creepage, quantities, tolerance) in [
+        ("constant mu, creepage 0.001", &plain, 0.001, 4, TOLERANCE),
+        ("constant mu, creepage 0.01", &plain, 0.01, 4, TOLERANCE),
+        ("mu(theta), bulge and wear, creepage 0.003", &all, 0.003, 4, TOLERANCE),
+        ("mu(theta), bulge and wear, creepage 0.05", &all, 0.05, 4, TOLERANCE),
+        // Wear is left out: strain by the heat that the rail carries on behind the window is in the line engine only.
+        ("mu(theta), large bulge, creepage 0.5", &hot, 0.5, 3, TOLERANCE),
+        ("rigid wheel, creepage 0", &rigid, 0.0, 2, RIGID_TOLERANCE),
+        ("rigid wheel, creepage -0.004", &rigid, -0.004, 4, TOLERANCE),
+        (
+            "rigid wheel, creepage 0, twice as many cells along",
+            &finer,
+            0.0,
+            4,
+            RIGID_TOLERANCE,
+        ),
     ] {
-        let patch = centre(&steady(parameters, creepage)?);
-        let line = of_line(&steady(&line(parameters), creepage)?);
+        let patch = centre(&steady(parameters, LOAD, creepage)?);
+        let line = line(parameters);
+        let line = of_line(&steady(&line, patch.load * line.contact_width, creepage)?);
         let compared = [
             ("peak pressure", "Pa", line.pressure, patch.pressure),
             ("T/N", "1", line.traction, patch.traction),
@@ -141,7 +165,7 @@ pub fn rows() -> Result<Vec<Row>> {
         ];
         for (quantity, unit, line, patch) in compared.into_iter().take(quantities) {
             let quantity = format!("{quantity} at the middle, {name}");
-            rows.push(Row::relative(quantity, unit, line, patch, TOLERANCE, SOURCE));
+            rows.push(Row::relative(quantity, unit, line, patch, tolerance, SOURCE));
         }
     }
     Ok(rows)
