@@ -4,6 +4,7 @@
 // Each benchmark uses a part of this.
 #![allow(dead_code)]
 
+use wheelrail::parameters::ContactModel;
 use wheelrail::simulation::{Point, Schedule};
 use wheelrail::{Inputs, Parameters, Simulation, SlipSource};
 
@@ -20,6 +21,30 @@ pub fn parameters(contact_nodes: usize) -> Parameters {
         contact_nodes,
         ..Parameters::default()
     }
+}
+
+/// A patch of `cells` along its window and `strips` across it, else as [`parameters`].
+pub fn patch_parameters(cells: usize, strips: usize) -> Parameters {
+    Parameters {
+        contact_model: ContactModel::Patch,
+        slip_source: SlipSource::VehicleSpeed,
+        patch_nodes: cells,
+        patch_strips: strips,
+        ..Parameters::default()
+    }
+}
+
+/// The manoeuvre with a lateral creepage of 0.1 % and a spin of 0.3/m at most, which swing as those of a running wheelset.
+pub fn swaying_manoeuvre() -> Vec<Inputs> {
+    let swing = |step: usize, period: f64| (std::f64::consts::TAU * STEP * step as f64 / period).sin();
+    let straight = manoeuvre().into_iter().enumerate();
+    straight
+        .map(|(step, inputs)| Inputs {
+            lateral_speed: 1e-3 * inputs.vehicle_speed * swing(step, 1.3),
+            spin_rate: 0.3 * inputs.vehicle_speed * swing(step, 0.9),
+            ..inputs
+        })
+        .collect()
 }
 
 /// The inputs at the communication points, linear between the rows of the scenario.
@@ -58,9 +83,13 @@ pub struct Braking {
 impl Braking {
     /// At the beginning of the measured stretch, after a hundred steps from cold.
     pub fn new(contact_nodes: usize) -> Braking {
-        let manoeuvre = manoeuvre();
+        Braking::through(&parameters(contact_nodes), manoeuvre())
+    }
+
+    /// With other parameters, through another manoeuvre.
+    pub fn through(parameters: &Parameters, manoeuvre: Vec<Inputs>) -> Braking {
         let next = (FROM / STEP) as usize - 100;
-        let simulation = Simulation::new(&parameters(contact_nodes), &manoeuvre[next]).expect("a model");
+        let simulation = Simulation::new(parameters, &manoeuvre[next]).expect("a model");
         let mut braking = Braking {
             simulation,
             manoeuvre,

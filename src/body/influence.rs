@@ -91,6 +91,11 @@ impl Transform {
         }
     }
 
+    /// Number of neighbouring strips that it serves.
+    pub fn strips(&self) -> usize {
+        self.double.size().div_ceil(2)
+    }
+
     /// Harmonics 0 … P/2.
     fn harmonics(&self) -> usize {
         self.double.size() / 2 + 1
@@ -118,6 +123,7 @@ impl Transform {
         // The inverse transform lacks 1/P.
         let share = 1.0 / size as f64;
         let sum = |wave: fn(f64) -> f64, kernel: &dyn Fn(Lag) -> f64| {
+            let waves: Vec<f64> = (0..size).map(|turn| wave(TAU * turn as f64 / size as f64)).collect();
             let mut table = vec![0.0; self.table_len()];
             let largest = ((size - 1) / 2) as isize;
             for lag in 0..self.lags {
@@ -126,7 +132,7 @@ impl Transform {
                 for harmonic in 0..self.harmonics() {
                     let terms = (-largest..=largest).zip(&values).map(|(across, value)| {
                         let turn = (harmonic as isize * across).rem_euclid(size as isize);
-                        value * wave(TAU * turn as f64 / size as f64)
+                        value * waves[turn as usize]
                     });
                     table[harmonic * self.lags + lag] = share * terms.sum::<f64>();
                 }
@@ -223,7 +229,8 @@ impl<T: Real> WithSimd for Product<'_, T> {
             sums,
         } = scratch;
         for (rows, load) in [&mut rows.re, &mut rows.im].into_iter().zip(load) {
-            let (given, rest) = rows.split_at_mut(strips.len() * stride);
+            // The scratch may be that of a larger transform.
+            let (given, rest) = rows[..fourier.size() * stride].split_at_mut(strips.len() * stride);
             given.copy_from_slice(&load[strips.start * stride..strips.end * stride]);
             rest.fill(T::default());
         }

@@ -18,6 +18,8 @@ use std::f64::consts::PI;
 const OUTER_COLUMNS: f64 = 24.0;
 /// First cell under the surface at 41 depth nodes, `m`, as on the line's mesh.
 const FIRST_DEPTH: f64 = 10e-6;
+/// Shares of the strips for which there are products of their own: the contact at the default load has 0.7 of them.
+const NARROW: [f64; 3] = [0.35, 0.55, 0.76];
 /// ℓ over the product of compliance and creep stiffness, as of a line contact ([`crate::contact::line::relaxation`]).
 const RELAXATION_SHARE: f64 = 0.75;
 
@@ -33,6 +35,8 @@ pub struct PatchRail {
     pub approach: Approach,
     /// u by shear, scaled.
     pub displacement: Tables<f64>,
+    /// The same for fewer strips, ascending: a product costs as much as it serves strips.
+    pub narrow: Vec<(Transform, Tables<f64>)>,
     /// The kernels of u_x by τ_x and of u_y by τ_y of a strip on itself, by the lag along x, as the tables have it.
     pub own: [Vec<f64>; 2],
     /// u by pressure, and lift by shear with the same tables, scaled; none where the bodies are alike.
@@ -77,6 +81,11 @@ impl PatchRail {
         };
         let pair = HalfSpaces::of_pair(parameters);
         let transform = Transform::new(&grid, grid.strips);
+        let narrow: Vec<Transform> = NARROW
+            .map(|share| Transform::new(&grid, (share * grid.strips as f64).ceil() as usize))
+            .into_iter()
+            .filter(|narrow| narrow.strips() < transform.strips())
+            .collect();
         let rectangle = Rectangle {
             half_length: 0.5 * grid.length,
             half_breadth: 0.5 * grid.breadth,
@@ -147,6 +156,13 @@ impl PatchRail {
         Ok(PatchRail {
             approach: Approach::new(&grid, &transform, normal),
             displacement: transform.tables(along, mixed, across),
+            narrow: narrow
+                .into_iter()
+                .map(|transform| {
+                    let tables = transform.tables(along, mixed, across);
+                    (transform, tables)
+                })
+                .collect(),
             own,
             coupling,
             expansion,
@@ -161,6 +177,14 @@ impl PatchRail {
             transform,
             grid,
             scales,
+        })
+    }
+
+    /// The products for a contact on so many strips.
+    pub fn transform_for(&self, strips: usize) -> (&Transform, &Tables<f64>) {
+        let narrow = self.narrow.iter().find(|(transform, _)| transform.strips() >= strips);
+        narrow.map_or((&self.transform, &self.displacement), |(transform, tables)| {
+            (transform, tables)
         })
     }
 

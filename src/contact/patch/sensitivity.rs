@@ -459,7 +459,9 @@ fn relative_change(now: &PatchFields, last: &PatchFields, rigid_slip: f64) -> f6
         relative(
             (now.wheel_temperature - last.wheel_temperature).abs(),
             // In a direction across a symmetric contact the wheel's temperature stays.
-            now.wheel_temperature.abs().max(LEAST_WHEEL_SHARE * largest(&now.heat.surface)),
+            now.wheel_temperature
+                .abs()
+                .max(LEAST_WHEEL_SHARE * largest(&now.heat.surface)),
         ),
     ];
     pressure

@@ -109,7 +109,10 @@ pub struct Scratch {
     normal: Normal,
     friction: Friction,
     response: SlipResponse,
-    weights: Option<(SlipWeights, bool)>,
+    /// What the response is of: the weights, whether V ≥ 0, the strips that its transform serves.
+    weights: Option<(SlipWeights, bool, usize)>,
+    /// Strips that its transform serves.
+    strips: usize,
     products: influence::Scratch<f64>,
     iterate: Coupling,
     image: Coupling,
@@ -148,6 +151,7 @@ impl Scratch {
             friction: Friction::new(grid, transform, settings.patch),
             response: no_response(rail),
             weights: None,
+            strips: grid.strips,
             products: transform.scratch(),
             anderson: Anderson::new(iterate.values.len()),
             image: iterate.clone(),
@@ -266,17 +270,26 @@ fn start(problem: &Problem, fields: &PatchFields, scratch: &mut Scratch) {
     scratch.friction.start_step();
     scratch.anderson.restart();
     scratch.softness.fill(0.0);
-    respond(problem, problem.slip_weights(problem.transient(fields)), scratch);
+    let grid = &problem.rail.grid;
+    scratch.contact.list(grid, |place| fields.pressure[place] > 0.0);
+    let strips = scratch.contact.window(grid, 0).strips.len();
+    respond(
+        problem,
+        problem.slip_weights(problem.transient(fields)),
+        strips,
+        scratch,
+    );
 }
 
 /// Adapts the response of the slip to speed and step.
-fn respond(problem: &Problem, weights: SlipWeights, scratch: &mut Scratch) {
-    let forward = problem.is_forward();
-    if scratch.weights == Some((weights, forward)) {
+fn respond(problem: &Problem, weights: SlipWeights, strips: usize, scratch: &mut Scratch) {
+    scratch.strips = problem.rail.transform_for(strips).0.strips();
+    let conditions = (weights, problem.is_forward(), scratch.strips);
+    if scratch.weights == Some(conditions) {
         return;
     }
-    scratch.weights = Some((weights, forward));
-    adapt(problem, &weights, &mut scratch.response);
+    scratch.weights = Some(conditions);
+    adapt(problem, &weights, strips, &mut scratch.response);
 }
 
 /// No response yet.
@@ -290,15 +303,16 @@ pub(super) fn no_response(rail: &PatchRail) -> SlipResponse {
     }
 }
 
-/// The response of the slip to the shear at these weights.
-pub(super) fn adapt(problem: &Problem, weights: &SlipWeights, response: &mut SlipResponse) {
+/// The response of the slip to the shear at these weights, for a contact on so many strips.
+pub(super) fn adapt(problem: &Problem, weights: &SlipWeights, strips: usize, response: &mut SlipResponse) {
     let (rail, forward) = (problem.rail, problem.is_forward());
     response.forward = forward;
     // The displacement of the cell ahead is felt at one lag more towards it.
     let ahead = if forward { 1 } else { -1 };
     let (own, next) = (weights.strain + weights.change, -weights.strain);
-    rail.displacement.combine(
-        &rail.transform,
+    let (transform, displacement) = rail.transform_for(strips);
+    displacement.combine(
+        transform,
         (own, next, ahead),
         &mut response.double,
         &mut response.single,
@@ -426,6 +440,12 @@ fn solve_friction(problem: &Problem, fields: &mut PatchFields, scratch: &mut Scr
     let rail = problem.rail;
     let grid = &rail.grid;
     let weights = problem.slip_weights(problem.transient(fields));
+    let strips = scratch.contact.window(grid, 0).strips.len();
+    if strips > scratch.strips {
+        // The contact has become broader than it was at the start of the step.
+        scratch.friction.start_contact();
+        respond(problem, weights, strips, scratch);
+    }
     let forward = problem.is_forward();
     let ahead: isize = if forward { 1 } else { -1 };
     let law = problem.friction();
@@ -458,7 +478,7 @@ fn solve_friction(problem: &Problem, fields: &mut PatchFields, scratch: &mut Scr
     } else {
         let friction_problem = FrictionProblem {
             grid,
-            transform: &rail.transform,
+            transform: rail.transform_for(scratch.strips).0,
             contact: &scratch.contact,
             response: &scratch.response,
             edge: &scratch.edge,

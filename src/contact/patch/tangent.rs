@@ -111,7 +111,7 @@ impl Tangent {
         let (rail, grid) = (problem.rail, &problem.rail.grid);
         self.contact.list(grid, |place| fields.pressure[place] > 0.0);
         self.weights = problem.slip_weights(problem.transient(fields));
-        split::adapt(problem, &self.weights, &mut self.response);
+        split::adapt(problem, &self.weights, problem.rail.grid.strips, &mut self.response);
         self.soften(problem, fields);
         self.separate(problem, fields);
         let ahead = leading(problem);
