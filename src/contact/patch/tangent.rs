@@ -12,17 +12,13 @@ use crate::body::influence::{self, Tables, Window};
 use crate::error::Result;
 use crate::mechanics::normal::problem::Constraint;
 use crate::mechanics::patch::contact::Contact;
-use crate::mechanics::patch::friction::{Friction, FrictionChange, FrictionProblem, SlipResponse};
+use crate::mechanics::patch::friction::{Friction, FrictionChange, FrictionProblem, LEAST_CHANGE, SlipResponse};
 use crate::mechanics::patch::law::Vector;
 use crate::mechanics::patch::normal::{Normal, NormalProblem};
 use crate::numerics::dense::largest;
 use crate::settings::Settings;
 use crate::signals::{Inputs, Motion};
 use crate::transport::CellStep;
-
-/// A change of the pressure below this one, scaled and per unit of an input, counts as none: what comes in from far ahead is felt
-/// exponentially little, and the squares of numbers that small are 0.
-const LEAST_CHANGE: f64 = 1e-100;
 
 /// Change of the inputs in one direction and of the motion that they make.
 #[derive(Debug, Clone, Copy)]

@@ -7,7 +7,7 @@
 
 mod tangent;
 
-pub use tangent::FrictionChange;
+pub use tangent::{FrictionChange, LEAST_CHANGE};
 
 use super::blocks::{Blocks, OwnResponse};
 use super::contact::Contact;

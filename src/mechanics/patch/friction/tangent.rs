@@ -18,6 +18,10 @@ pub struct FrictionChange<'a> {
     pub tolerance: f64,
 }
 
+/// A change of the tractions below this one, scaled and per unit of an input, counts as none: what comes in from far ahead is felt
+/// exponentially little, down to where numbers lose their digits and their squares are 0.
+pub const LEAST_CHANGE: f64 = 1e-100;
+
 const UNIT: Matrix = [[1.0, 0.0], [0.0, 1.0]];
 
 impl Friction {
@@ -91,7 +95,7 @@ impl Friction {
             }
         }
         let largest = |values: &mut dyn Iterator<Item = f64>| values.fold(0.0, |m: f64, v| v.abs().max(m));
-        let cause = largest(&mut given.iter().flatten().copied());
+        let cause = largest(&mut given.iter().flatten().copied()).max(LEAST_CHANGE);
         let (mut residual, mut size) = (f64::INFINITY, cause);
         for _ in 0..=self.settings.newton_steps {
             {
