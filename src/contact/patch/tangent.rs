@@ -264,12 +264,30 @@ impl Tangent {
             free_slip: [&self.free_slip[0], &self.free_slip[1]],
             edge: &self.edge_change,
             bound: &self.bound_change,
+            noise: self.noise(problem, fields, direction, &tangent.pressure),
             tolerance,
         };
         self.friction
             .tangent(&law, &fields.shear, &change, &mut tangent.shear)?;
         self.mean_slip(problem, fields, tangent);
         Ok(())
+    }
+
+    /// The change of the slip that does not count as slip: it follows the response of a cell to its own shear, and the peak pressure.
+    fn noise(&self, problem: &Problem, fields: &PatchFields, direction: &Direction, pressure: &[f64]) -> f64 {
+        let [_, noise, _] = self.scheme;
+        if !noise.is_finite() {
+            return 0.0;
+        }
+        let (kernel, origin) = (&problem.rail.own[0], self.response.origin);
+        let weights = problem.slip_weights_tangent(fields, direction.speed);
+        let next = kernel[origin.wrapping_add_signed(leading(problem))];
+        let own_change = weights.strain * (kernel[origin] - next) + weights.change * kernel[origin];
+        let own = f64::from(self.response.own[0][origin]);
+        let places = self.contact.places(&problem.rail.grid);
+        let peak = places.max_by(|a, b| fields.pressure[*a].total_cmp(&fields.pressure[*b]));
+        let pressure = peak.map_or(0.0, |place| pressure[place] / fields.pressure[place]);
+        noise * (own_change / own + pressure)
     }
 
     /// The change of what the leading edge adds.

@@ -57,6 +57,8 @@ pub struct Row {
     pub by_behind: Matrix,
     /// By the bound.
     pub by_bound: Vector,
+    /// By w.
+    pub by_noise: Vector,
     /// Whether it sticks.
     pub sticks: bool,
 }
@@ -90,15 +92,16 @@ pub fn multiply(m: Matrix, v: Vector) -> Vector {
 }
 
 impl Scheme {
-    /// The slip of the law, and its derivatives by S and by B.
-    fn slip(&self, cell: &Cell) -> (Vector, Matrix, Matrix) {
+    /// The slip of the law, and its derivatives by S, by B and by w.
+    fn slip(&self, cell: &Cell) -> (Vector, Matrix, Matrix, Vector) {
         let half = [
             0.5 * (cell.ahead[0] - cell.behind[0]),
             0.5 * (cell.ahead[1] - cell.behind[1]),
         ];
         let (square, difference) = (dot(cell.ahead, cell.ahead), dot(half, half) + self.noise * self.noise);
         if square <= 0.0 || !difference.is_finite() {
-            return (cell.ahead, shifted(1.0, 0.0, Matrix::default()), Matrix::default());
+            let unit = shifted(1.0, 0.0, Matrix::default());
+            return (cell.ahead, unit, Matrix::default(), Vector::default());
         }
         let sum = square + difference;
         let share = square / sum;
@@ -110,12 +113,13 @@ impl Scheme {
             plus(cell.ahead, -share, half),
             shifted(1.0 - 0.5 * share, -1.0, outer(half, by_ahead)),
             shifted(0.5 * share, -1.0, outer(half, by_behind)),
+            half.map(|half| slope * square * self.noise * half),
         )
     }
 
     /// The law of a cell.
     pub fn row(&self, cell: &Cell) -> Row {
-        let (slip, slip_by_ahead, slip_by_behind) = self.slip(cell);
+        let (slip, slip_by_ahead, slip_by_behind, slip_by_noise) = self.slip(cell);
         let (residual, by_shear, by_slip, by_bound, sticks) = if self.regularisation > 0.0 {
             self.regularised(cell, slip)
         } else {
@@ -127,6 +131,7 @@ impl Scheme {
             by_ahead: product(by_slip, slip_by_ahead),
             by_behind: product(by_slip, slip_by_behind),
             by_bound,
+            by_noise: multiply(by_slip, slip_by_noise),
             sticks,
         }
     }
@@ -199,11 +204,11 @@ mod tests {
         fn derivatives_are_those_of_the_residual(
             shear in vector(), ahead in vector(), behind in vector(), bound in 0.05..1.0_f64,
             noise in prop_oneof![Just(0.01), Just(f64::INFINITY)], regularisation in prop_oneof![Just(0.0), Just(0.1)],
-            change in prop::array::uniform7(-1.0..1.0_f64),
+            change in prop::array::uniform8(-1.0..1.0_f64),
         ) {
-            let scheme = Scheme { scale: 0.7, noise, regularisation };
             let at = |h: f64| {
-                let [a, b, c, d, e, f, g] = change.map(|change| h * change);
+                let [a, b, c, d, e, f, g, w] = change.map(|change| h * change);
+                let scheme = Scheme { scale: 0.7, noise: noise + w, regularisation };
                 scheme.row(&Cell {
                     shear: [shear[0] + a, shear[1] + b],
                     ahead: [ahead[0] + c, ahead[1] + d],
@@ -215,10 +220,10 @@ mod tests {
             let (row, after, before) = (at(0.0), at(h), at(-h));
             // Not across the corner between stick and slip.
             prop_assume!(after.sticks == before.sticks);
-            let [a, b, c, d, e, f, g] = change;
+            let [a, b, c, d, e, f, g, w] = change;
             for i in 0..2 {
                 let exact = multiply(row.by_shear, [a, b])[i] + multiply(row.by_ahead, [c, d])[i]
-                    + multiply(row.by_behind, [e, f])[i] + row.by_bound[i] * g;
+                    + multiply(row.by_behind, [e, f])[i] + row.by_bound[i] * g + row.by_noise[i] * w;
                 let difference = (after.residual[i] - before.residual[i]) / (2.0 * h);
                 // Truncation: h² over the cube of the smallest slip that turns, which random numbers seldom make small.
                 prop_assert!((exact - difference).abs() < 1e-4 * (1.0 + exact.abs()), "{exact} {difference}");

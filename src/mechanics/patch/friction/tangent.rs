@@ -14,6 +14,8 @@ pub struct FrictionChange<'a> {
     pub edge: &'a [Vector],
     /// Of μp, cells.
     pub bound: &'a [f64],
+    /// Of w.
+    pub noise: f64,
     /// Residual to be reached, relative to the change or to what makes it.
     pub tolerance: f64,
 }
@@ -78,7 +80,7 @@ impl Friction {
         let (grid, n) = (problem.grid, problem.contact.cells());
         let window = problem.contact.window(grid, 1);
         let behind = if problem.response.forward { -1 } else { 1 };
-        let sum = |terms: [Vector; 4]| [0, 1].map(|i| terms.iter().map(|term| term[i]).sum::<f64>());
+        let sum = |terms: [Vector; 5]| [0, 1].map(|i| terms.iter().map(|term| term[i]).sum::<f64>());
         let at = |values: &[Vec<f64>; 2], place: usize| [values[0][place], values[1][place]];
         let mut given: Vec<Vector> = Vec::with_capacity(n);
         for run in problem.contact.runs() {
@@ -90,7 +92,8 @@ impl Friction {
                     multiply(row.by_ahead, slip(place)),
                     multiply(row.by_ahead, [edge[0] * own[0], edge[1] * own[1]]),
                     multiply(row.by_behind, slip(place.wrapping_add_signed(behind))),
-                    [row.by_bound[0] * bound, row.by_bound[1] * bound],
+                    row.by_bound.map(|by_bound| by_bound * bound),
+                    row.by_noise.map(|by_noise| by_noise * change.noise),
                 ]));
             }
         }
@@ -118,6 +121,7 @@ impl Friction {
                         multiply(row.by_shear, own),
                         multiply(row.by_ahead, ahead),
                         multiply(row.by_behind, at(&self.response, place.wrapping_add_signed(behind))),
+                        [0.0; 2],
                     ]);
                 }
             }
