@@ -14,6 +14,7 @@ use crate::parameters::{Control, Parameters, WheelHeating};
 use crate::settings::Settings;
 use crate::signals::{Inputs, Motion};
 use crate::wear::strips::StripWearMarch;
+use std::ops::Range;
 
 /// One implicit step.
 #[derive(Clone, Copy)]
@@ -161,6 +162,12 @@ impl<'a> Problem<'a> {
         let load = self.rail.unit_force() * fields.pressure.iter().sum::<f64>();
         let ratio = (load / self.parameters.largest_load).cbrt().min(1.0);
         self.rail.relaxation_length * if load > 0.0 { ratio } else { 1.0 }
+    }
+
+    /// The cells of a strip that have one ahead of them: the slip is taken between the two.
+    pub fn cells_with_next(&self) -> Range<usize> {
+        let cells = self.rail.grid.cells;
+        if self.is_forward() { 0..cells - 1 } else { 1..cells }
     }
 
     /// Rigid slip of the rail relative to the wheel at a point, `m/s`: w_x = V(ξ + φ y), w_y = −V(η + φ x).

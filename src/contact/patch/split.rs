@@ -525,7 +525,7 @@ fn free_slip(problem: &Problem, weights: &SlipWeights, fields: &PatchFields, scr
     let half = 0.5 * ahead as f64 * grid.length;
     for strip in 0..grid.strips {
         let y = grid.y(strip);
-        for cell in 1..grid.cells - 1 {
+        for cell in problem.cells_with_next() {
             let place = grid.place(strip, cell);
             let next = place.wrapping_add_signed(ahead);
             let rigid = problem.rigid_slip(grid.x(cell) + half, y);

@@ -119,7 +119,7 @@ impl Tangent {
             }
             let before = &self.before[component];
             for strip in 0..grid.strips {
-                for cell in 1..grid.cells - 1 {
+                for cell in problem.cells_with_next() {
                     let place = grid.place(strip, cell);
                     let next = place.wrapping_add_signed(ahead);
                     let rigid = problem.rigid_slip(grid.x(cell) + 0.5 * ahead as f64 * grid.length, grid.y(strip));
@@ -335,7 +335,7 @@ impl Tangent {
             let (now, before) = (&fields.displacement[component], &self.before[component]);
             let given = &self.given[component];
             for strip in 0..grid.strips {
-                for cell in 1..grid.cells - 1 {
+                for cell in problem.cells_with_next() {
                     let place = grid.place(strip, cell);
                     let next = place.wrapping_add_signed(ahead);
                     let x = grid.x(cell) + 0.5 * ahead as f64 * grid.length;
