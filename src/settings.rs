@@ -89,6 +89,9 @@ pub struct MechanicsSettings {
     pub sweeps: usize,
     /// Overlap of wheel and rail, scaled, above which an end of the window counts as cut off.
     pub overlap: f64,
+    /// Load over the largest one below which the wheel is lifted: the pressure that carries it would be of the size of round-off of
+    /// the bodies' profiles.
+    pub least_load: f64,
     /// Change of the shear, relative to the peak pressure, to which they are solved before they are linearised.
     pub linearisation_tolerance: f64,
 }
@@ -222,7 +225,19 @@ impl Default for MechanicsSettings {
         MechanicsSettings {
             sweeps: 200,
             overlap: 1e-9,
+            least_load: 1e-12,
             linearisation_tolerance: 1e-10,
+        }
+    }
+}
+
+impl MechanicsSettings {
+    /// The load that the contact carries: none where it is too small to be felt.
+    pub fn felt(&self, load: f64, largest_load: f64) -> f64 {
+        if load < self.least_load * largest_load {
+            0.0
+        } else {
+            load
         }
     }
 }

@@ -254,12 +254,18 @@ impl Mechanics {
             clamped = clamped.max((*shear - within).abs());
             *shear = within;
         }
+        let m = self.nodes.len();
+        // Nothing touches: a penetration that is given need not reach the rail.
+        if m == 0 {
+            tractions.slip.fill(0.0);
+            tractions.saturation.fill(0.0);
+            return Ok(clamped);
+        }
         self.displacement.copy_from_slice(problem.displacement);
         problem
             .compliance
             .add_along(1.0, tractions.pressure, tractions.shear, &mut self.displacement);
         self.update_slip_response(problem);
-        let m = self.nodes.len();
         for (row, &node) in self.nodes.iter().enumerate() {
             self.local.pressure[row] = tractions.pressure[node];
             self.local.shear[row] = tractions.shear[node];

@@ -92,10 +92,11 @@ impl<'a> Problem<'a> {
     /// Load or penetration, scaled.
     pub fn constraint(&self) -> Constraint {
         match self.parameters.control {
-            Control::Load => Constraint::Total(
-                self.rail
-                    .scaled_load(self.parameters, self.conditions.inputs.normal_load),
-            ),
+            Control::Load => {
+                let load = self.conditions.inputs.normal_load;
+                let load = self.settings.mechanics.felt(load, self.parameters.largest_load);
+                Constraint::Total(self.rail.scaled_load(self.parameters, load))
+            }
             Control::Penetration => {
                 Constraint::Penetration(self.parameters.prescribed_penetration / self.rail.scales.displacement)
             }

@@ -75,7 +75,11 @@ impl<'a> Problem<'a> {
     /// Load or penetration, scaled.
     pub fn constraint(&self) -> Constraint {
         match self.parameters.control {
-            Control::Load => Constraint::Total(self.conditions.inputs.normal_load / self.rail.unit_force()),
+            Control::Load => {
+                let load = self.conditions.inputs.normal_load;
+                let load = self.settings.mechanics.felt(load, self.parameters.largest_load);
+                Constraint::Total(load / self.rail.unit_force())
+            }
             Control::Penetration => {
                 Constraint::Penetration(self.parameters.prescribed_penetration / self.rail.scales.displacement)
             }
