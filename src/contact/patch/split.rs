@@ -585,16 +585,22 @@ fn given_displacement(problem: &Problem, fields: &PatchFields, scratch: &mut Scr
     }
 }
 
-/// At rest, where the slip is the wheel's alone: the shear is at its bound against it, and there is none without slip.
+/// At rest, where the slip is the wheel's alone: the law gives the shear, and there is none without slip.
 fn slide_on_the_spot(problem: &Problem, fields: &mut PatchFields, scratch: &mut Scratch) {
     let grid = &problem.rail.grid;
+    let epsilon = problem.parameters.slip_regularisation;
     for run in scratch.contact.runs() {
         for (index, place) in run.own().zip(run.places(grid)) {
             let slip = [scratch.free_slip[0][place], scratch.free_slip[1][place]];
             let speed = coulomb::magnitude(slip);
+            let saturation = if epsilon > 0.0 {
+                coulomb::saturation(speed, epsilon)
+            } else {
+                1.0
+            };
             for (slip, shear) in slip.into_iter().zip(&mut fields.shear) {
                 shear[place] = if speed > 0.0 {
-                    -scratch.bound[index] * slip / speed
+                    -scratch.bound[index] * saturation * slip / speed
                 } else {
                     0.0
                 };

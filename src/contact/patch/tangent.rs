@@ -143,9 +143,9 @@ impl Tangent {
             self.edge[index] = rail.opening.map(|factor| self.weights.strain_speed * factor * opening);
         }
         let own = f64::from(self.response.own[0][self.response.origin]);
-        // At rest without a step before there is Coulomb's law for the slip ahead, and no response to it.
+        // At rest without a step before there is the law for the slip ahead, and no response to it.
         self.scheme = if own == 0.0 {
-            [1.0, f64::INFINITY, 0.0]
+            [1.0, f64::INFINITY, problem.parameters.slip_regularisation]
         } else {
             let noise = problem.settings.patch.noise * own * largest(&fields.pressure);
             [1.0 / own, noise, problem.parameters.slip_regularisation]

@@ -11,7 +11,8 @@
 //! from counting as slip.
 //!
 //! The law is τ = Π(τ − r s), where Π moves a vector that is longer than the bound μp back onto it, and r > 0 any scale
-//! (Alart and Curnier 1991): it holds if the cell sticks within the bound, or slides with τ = −μp s/|s|.
+//! (Alart and Curnier 1991): it holds if the cell sticks within the bound, or slides with τ = −μp s/|s|. The regularised law (30) is
+//! written in the same way, with another Π.
 
 use std::f64::consts::FRAC_2_PI;
 
@@ -163,31 +164,64 @@ impl Scheme {
         )
     }
 
-    /// τ + μp (2/π) arctan(|s|/ε) s/|s|, (30) with vectors.
+    /// The same with (30): the shear t and the slip σ against it that together are z = τ − r s, t + r σ = |z| with
+    /// t = μp (2/π) arctan(σ/ε). For ε → 0 this is Coulomb's law to the limit, as well conditioned for a small ε as for a large one.
     fn regularised(&self, cell: &Cell, slip: Vector) -> (Vector, Matrix, Matrix, Vector, bool) {
-        let epsilon = self.regularisation;
-        let speed = dot(slip, slip).sqrt();
-        let relative = speed / epsilon;
-        // φ(|s|)/|s| and its derivative by |s|, over |s|.
-        let (share, slope) = if relative < 1e-4 {
+        let (r, epsilon) = (self.scale, self.regularisation);
+        let pulled = plus(cell.shear, -r, slip);
+        let length = dot(pulled, pulled).sqrt();
+        let relative = relative_slip(cell.bound, r * epsilon, length);
+        let saturation = FRAC_2_PI * relative.atan();
+        // dt/dσ of the law, and of t and σ with |z|.
+        let slope = cell.bound * FRAC_2_PI / (epsilon * (1.0 + relative * relative));
+        let stays = slope / (slope + r);
+        let shear = cell.bound * saturation;
+        let (residual, by_pulled, by_bound) = if length > 0.0 {
+            let direction = [pulled[0] / length, pulled[1] / length];
+            let share = shear / length;
             (
-                FRAC_2_PI / epsilon * (1.0 - relative * relative / 3.0),
-                -FRAC_2_PI * 2.0 / (3.0 * epsilon.powi(3)),
+                plus(cell.shear, -shear, direction),
+                shifted(share, stays - share, outer(direction, direction)),
+                [0, 1].map(|i: usize| -saturation * (1.0 - stays) * direction[i]),
             )
         } else {
-            let share = FRAC_2_PI * relative.atan() / speed;
-            let derivative = FRAC_2_PI * epsilon / (epsilon * epsilon + speed * speed);
-            (share, (derivative - share) / (speed * speed))
+            (cell.shear, shifted(stays, 0.0, Matrix::default()), Vector::default())
         };
-        let by_slip = shifted(cell.bound * share, cell.bound * slope, outer(slip, slip));
         (
-            plus(cell.shear, cell.bound * share, slip),
-            shifted(1.0, 0.0, Matrix::default()),
-            by_slip,
-            [share * slip[0], share * slip[1]],
-            share * speed < crate::friction::coulomb::STICK_SATURATION,
+            residual,
+            shifted(1.0, -1.0, by_pulled),
+            shifted(0.0, r, by_pulled),
+            by_bound,
+            saturation < crate::friction::coulomb::STICK_SATURATION,
         )
     }
+}
+
+/// Limit of the Newton steps for the slip of one cell. From the start chosen they take three to five.
+const SLIP_STEPS: usize = 20;
+
+/// x ≥ 0 with b (2/π) arctan x + c x = z. The left side is concave, so that Newton's method from below stays below; it starts with
+/// arctan x ≤ (π/2) x/(x + 2/π), which is exact for small and large x in its order.
+fn relative_slip(b: f64, c: f64, z: f64) -> f64 {
+    if z <= 0.0 {
+        return 0.0;
+    }
+    let linear = c * FRAC_2_PI + b - z;
+    let root = (linear * linear + 4.0 * c * FRAC_2_PI * z).sqrt();
+    // The larger root of c x² + linear x − (2/π) z = 0, without the difference of nearly equal numbers.
+    let mut x = if linear > 0.0 {
+        2.0 * FRAC_2_PI * z / (linear + root)
+    } else {
+        (root - linear) / (2.0 * c)
+    };
+    for _ in 0..SLIP_STEPS {
+        let change = (z - b * FRAC_2_PI * x.atan() - c * x) / (b * FRAC_2_PI / (1.0 + x * x) + c);
+        x = (x + change).max(0.0);
+        if change <= 1e-15 * x {
+            break;
+        }
+    }
+    x
 }
 
 #[cfg(test)]
@@ -242,6 +276,54 @@ mod tests {
             let sticks = Cell { shear: [share * bound * unit[0], share * bound * unit[1]], ahead: [0.0; 2], behind: slip, bound };
             let row = scheme.row(&sticks);
             prop_assert!(row.sticks && row.residual == [0.0; 2]);
+        }
+    }
+
+    /// The regularised law in its own words: τ = −μp (2/π) arctan(|s|/ε) s/|s|, for any ε however small.
+    #[test]
+    fn the_regularised_residual_vanishes_where_the_law_holds() {
+        for exponent in -12..=2 {
+            let epsilon = 10.0_f64.powi(exponent);
+            for decade in -14..=3 {
+                let slip = [0.6, -0.8].map(|part: f64| part * 10.0_f64.powi(decade));
+                let bound = 0.3;
+                let share = FRAC_2_PI * (10.0_f64.powi(decade) / epsilon).atan();
+                let scheme = Scheme {
+                    scale: 3.0,
+                    noise: f64::INFINITY,
+                    regularisation: epsilon,
+                };
+                let row = scheme.row(&Cell {
+                    shear: [-0.6 * bound * share, 0.8 * bound * share],
+                    ahead: slip,
+                    behind: slip,
+                    bound,
+                });
+                let size = bound + scheme.scale * 10.0_f64.powi(decade);
+                let residual = row.residual[0].abs().max(row.residual[1].abs());
+                assert!(residual < 1e-14 * size, "{epsilon:e} {slip:?}: {residual:e}");
+            }
+        }
+        // A small regularisation is Coulomb's law.
+        let cell = Cell {
+            shear: [0.1, 0.05],
+            ahead: [0.3, -0.2],
+            behind: [0.3, -0.2],
+            bound: 0.3,
+        };
+        let [exact, close] = [0.0, 1e-13].map(|regularisation| {
+            let scheme = Scheme {
+                scale: 3.0,
+                noise: f64::INFINITY,
+                regularisation,
+            };
+            scheme.row(&cell)
+        });
+        for i in 0..2 {
+            assert!((exact.residual[i] - close.residual[i]).abs() < 1e-11);
+            for (exact, close) in exact.by_shear[i].iter().zip(close.by_shear[i]) {
+                assert!((exact - close).abs() < 1e-11);
+            }
         }
     }
 }

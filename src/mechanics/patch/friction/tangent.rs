@@ -44,7 +44,7 @@ impl Friction {
         };
         self.update_rows(problem, &scheme, shear, 0.0);
         let n = problem.contact.cells();
-        if problem.response.own[0][problem.response.origin] == 0.0 {
+        if problem.regularisation == 0.0 && problem.response.own[0][problem.response.origin] == 0.0 {
             // Without a response of the slip nothing says what shear a cell without slip has: it keeps the one it has.
             for row in self.rows[..n].iter_mut().filter(|row| row.sticks) {
                 *row = Row {
