@@ -1,30 +1,43 @@
 //! Random parameters in the ranges of engineering, and with some probability at their ends.
 
 use super::random::Random;
-use crate::parameters::{Control, FrictionLaw, Parameters, SlipSource, TABLE_POINTS, Wheel, WheelHeating};
+use crate::parameters::{
+    ContactModel, Control, FrictionLaw, Parameters, SlipSource, TABLE_POINTS, Wheel, WheelHeating,
+};
 
 /// How much wider the contact window must fit the limits of [`Parameters::validate`]: for runs with a window wider than
 /// usual.
 pub const WIDEST_WINDOW: f64 = 3.0;
 
 /// Parameters that can be together. Those that are refused are drawn again.
-pub fn parameters(random: &mut Random) -> Parameters {
+pub fn parameters(random: &mut Random, contact_model: ContactModel) -> Parameters {
     loop {
-        let drawn = draw(random);
+        let mut drawn = draw(random);
+        if contact_model == ContactModel::Patch {
+            patch(random, &mut drawn);
+        }
         if drawn.validate().is_ok() && with_window(&drawn, WIDEST_WINDOW).validate().is_ok() {
             return drawn;
         }
     }
 }
 
-/// The same with `factor` times the window, at the same spacing of the nodes: the window grows with the root of
-/// `largest_load`.
+/// The same with `factor` times the window, at the same spacing of the nodes: the window of a line grows with the root of
+/// `largest_load`, that of a patch with its cube root.
 pub fn with_window(parameters: &Parameters, factor: f64) -> Parameters {
-    let intervals = factor * (parameters.contact_nodes - 1) as f64;
-    Parameters {
-        largest_load: factor * factor * parameters.largest_load,
-        contact_nodes: intervals.round() as usize + 1,
-        ..parameters.clone()
+    let widened = |count: usize| (factor * count as f64).round() as usize;
+    match parameters.contact_model {
+        ContactModel::Line => Parameters {
+            largest_load: factor * factor * parameters.largest_load,
+            contact_nodes: widened(parameters.contact_nodes - 1) + 1,
+            ..parameters.clone()
+        },
+        ContactModel::Patch => Parameters {
+            largest_load: factor * factor * factor * parameters.largest_load,
+            patch_nodes: widened(parameters.patch_nodes),
+            patch_strips: widened(parameters.patch_strips),
+            ..parameters.clone()
+        },
     }
 }
 
@@ -37,7 +50,7 @@ fn draw(random: &mut Random) -> Parameters {
         },
         slip_source: random.one_of(SlipSource::ALL),
         largest_load: random.between(50e3, 150e3),
-        contact_nodes: if random.chance(0.5) { 61 } else { random.count(31, 121) },
+        contact_nodes: if random.chance(0.5) { 51 } else { random.count(31, 121) },
         depth_nodes: if random.chance(0.5) { 41 } else { random.count(21, 61) },
         wheel_radius: random.between(0.3, 0.6),
         strip_height: random.between(0.2, 1.5),
@@ -82,6 +95,27 @@ fn draw(random: &mut Random) -> Parameters {
     table(random, &mut parameters);
     tune(random, &mut parameters);
     parameters
+}
+
+/// What a patch has besides: transverse curvatures, of hollow wheels among them, cells and strips.
+fn patch(random: &mut Random, parameters: &mut Parameters) {
+    parameters.contact_model = ContactModel::Patch;
+    // B/A, from a contact four times as long as broad to one seven times as broad as long.
+    let sum = random.decades(0.05, 20.0) / parameters.wheel_radius;
+    parameters.wheel_transverse_curvature = match random.count(0, 2) {
+        0 => 0.0,
+        1 => random.between(0.0, 1.0) * sum,
+        _ => -random.decades(0.1, 10.0),
+    };
+    parameters.rail_transverse_curvature = sum - parameters.wheel_transverse_curvature;
+    // Few cells more often than many: they are the hard ones, and fast.
+    (parameters.patch_nodes, parameters.patch_strips) = match random.count(0, 5) {
+        0 => (Parameters::default().patch_nodes, Parameters::default().patch_strips),
+        1 => (random.count(20, 60), random.count(9, 31)),
+        _ => (random.count(8, 26), random.count(3, 15)),
+    };
+    let approach = parameters.hertz_ellipse(parameters.largest_load).approach;
+    parameters.prescribed_penetration = random.between(0.1, 0.6) * approach;
 }
 
 /// The steepest friction, `1/K`: twice the paper's. Where the coefficient changes much faster, a contact has several

@@ -3,7 +3,7 @@
 //! is lifted.
 
 use super::random::Random;
-use crate::parameters::{Parameters, SlipSource};
+use crate::parameters::{ContactModel, Parameters, SlipSource};
 use crate::signals::{INPUTS, Inputs};
 
 /// Largest rolling speed, `m/s`.
@@ -82,19 +82,24 @@ impl<'a> Drive<'a> {
         if random.chance(0.7) {
             set_motion(random, self.parameters, &mut inputs);
         }
+        if self.parameters.contact_model == ContactModel::Patch && random.chance(0.7) {
+            set_lateral_motion(random, self.parameters, &mut inputs);
+        }
         if random.chance(0.6) {
             inputs.normal_load = match random.count(0, 19) {
                 0 | 1 => 0.0,
+                // A wheel that hardly touches, and loads at which numbers lose their digits.
+                2 if random.chance(0.3) => random.decades(f64::MIN_POSITIVE, 1e-6),
                 2 => random.decades(1e-6, 1.0) * self.largest_load,
                 3 | 4 => self.largest_load,
                 _ => random.between(0.02, 1.0) * self.largest_load,
             };
         }
         if random.chance(0.2) {
-            inputs.friction_scale = if random.chance(0.5) {
-                1.0
-            } else {
-                random.between(0.2, 1.0)
+            inputs.friction_scale = match random.count(0, 9) {
+                0 => 0.0,
+                1..=4 => random.between(0.2, 1.0),
+                _ => 1.0,
             };
         }
         if random.chance(0.15) {
@@ -163,10 +168,12 @@ fn set_motion(random: &mut Random, parameters: &Parameters, inputs: &mut Inputs)
             3..=5 => random.decades(0.1, LARGEST_SPEED),
             _ => random.between(0.0, LARGEST_SPEED),
         };
+    // A patch, whose pressure is higher, soon glows where it slides as fast as a line may.
+    let calm = parameters.contact_model == ContactModel::Patch && random.chance(0.8);
     let creepage = match random.count(0, 9) {
         0 => 0.0,
-        1 => -1.0,
-        _ => random.sign() * random.decades(1e-5, 2.0),
+        1 if !calm => -1.0,
+        _ => random.sign() * random.decades(1e-5, if calm { 0.03 } else { 2.0 }),
     };
     let on_the_spot = if random.chance(0.4) {
         0.0
@@ -191,6 +198,33 @@ fn set_motion(random: &mut Random, parameters: &Parameters, inputs: &mut Inputs)
         SlipSource::Creepage => {
             inputs.creepage = creepage.max(-0.99);
             inputs.wheel_speed = speed * (1.0 + inputs.creepage) / parameters.wheel_radius;
+        }
+    }
+}
+
+/// Draws what moves a patch besides: a lateral creepage up to 0.5 and a spin up to 10 1/m, or what they are at the present speed;
+/// across and about the contact at standstill.
+fn set_lateral_motion(random: &mut Random, parameters: &Parameters, inputs: &mut Inputs) {
+    let largest = if random.chance(0.8) { 0.03 } else { 0.5 };
+    let lateral = if random.chance(0.3) {
+        0.0
+    } else {
+        random.sign() * random.decades(1e-5, largest)
+    };
+    let spin = if random.chance(0.3) {
+        0.0
+    } else {
+        random.sign() * random.decades(1e-3, 10.0)
+    };
+    match parameters.slip_source {
+        SlipSource::Creepage => (inputs.lateral_creepage, inputs.spin_creepage) = (lateral, spin),
+        SlipSource::VehicleSpeed => {
+            let speed = if inputs.vehicle_speed == 0.0 || random.chance(0.1) {
+                1.0
+            } else {
+                inputs.vehicle_speed
+            };
+            (inputs.lateral_speed, inputs.spin_rate) = (speed * lateral, speed * spin);
         }
     }
 }

@@ -11,7 +11,7 @@ mod random;
 mod slow;
 
 use crate::error::Error;
-use crate::parameters::Parameters;
+use crate::parameters::{ContactModel, Parameters};
 use crate::signals::OUTPUTS;
 use crate::wheel_rail::{Model, State, Workspace};
 use drive::Drive;
@@ -31,6 +31,18 @@ const RUNS_PER_MODEL: u64 = 4;
 /// properties are constants here, so that well above 1000 K the model answers for nothing.
 pub const LARGEST_TEMPERATURE: f64 = 1373.15;
 
+/// Which contact models are tortured.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Engines {
+    /// The line contact.
+    Line,
+    /// The patch.
+    Patch,
+    /// Both in turn.
+    #[default]
+    Both,
+}
+
 /// Runs of a seed.
 #[derive(Debug, Clone, Copy)]
 pub struct Torture {
@@ -40,6 +52,8 @@ pub struct Torture {
     pub steps: usize,
     /// Half-width of the contact window in units of the usual one, at the same spacing of the nodes; at most 3.
     pub window: f64,
+    /// The contact models of the runs.
+    pub engines: Engines,
 }
 
 /// How a run failed.
@@ -122,7 +136,14 @@ pub struct Run {
 impl Torture {
     /// Parameters of a run.
     pub fn parameters(&self, run: u64) -> Parameters {
-        let mut parameters = draw::parameters(&mut Random::new(self.seed, 2 * (run / RUNS_PER_MODEL)));
+        let model = run / RUNS_PER_MODEL;
+        let contact_model = match self.engines {
+            Engines::Line => ContactModel::Line,
+            Engines::Patch => ContactModel::Patch,
+            Engines::Both if model.is_multiple_of(2) => ContactModel::Line,
+            Engines::Both => ContactModel::Patch,
+        };
+        let mut parameters = draw::parameters(&mut Random::new(self.seed, 2 * model), contact_model);
         draw::tune(&mut self.random(run), &mut parameters);
         parameters
     }
@@ -259,16 +280,21 @@ fn check(model: &Model, state: &State) -> Result<(), Failure> {
     }
 }
 
-/// How far the contact reaches, under which load.
+/// How far the contact reaches along the rail, under which load.
 fn reach(model: &Model, parameters: &Parameters, state: &State) -> Reach {
     let nodes = model.contact_nodes(state);
-    let spacing = nodes[1].position - nodes[0].position;
     let pressed = || nodes.iter().filter(|node| node.pressure > 0.0);
     let force: f64 = pressed().map(|node| node.pressure).sum();
     let outermost = pressed().map(|node| node.position.abs()).fold(0.0, f64::max);
+    let spacing = nodes[1].position - nodes[0].position;
+    let (half_length, _) = parameters.contact_half_axes(parameters.largest_load);
+    let breadth = match parameters.contact_model {
+        ContactModel::Line => parameters.contact_width,
+        ContactModel::Patch => nodes[model.parameters().patch_nodes].lateral_position - nodes[0].lateral_position,
+    };
     Reach {
-        outermost: outermost / parameters.hertz_half_length(parameters.largest_load),
-        load: force * spacing * parameters.contact_width / parameters.largest_load,
+        outermost: outermost / half_length,
+        load: force * spacing * breadth / parameters.largest_load,
         temperature: state.outputs.peak_temperature,
     }
 }

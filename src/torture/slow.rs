@@ -40,6 +40,7 @@ const METHODS: [Method; 5] = [
     ("shorter tries", |settings| settings.step.retries = 0),
     ("continuation in the regularisation", |settings| {
         settings.tangential.continuation = 0;
+        settings.patch.continuation = 0;
     }),
     ("descent in the normal problem", |settings| {
         settings.normal.descents_per_node = 0;

@@ -111,6 +111,8 @@ fn check(parameters: Parameters, inputs: Inputs, step: f64) -> Result<usize, Err
     settings.patch.shear_tolerance = 1e-11;
     settings.patch.least_tolerance = 1e-11;
     settings.patch.sensitivity_tolerance = 1e-9;
+    // Else the mechanics of the last iteration may take what the one before left, 1e-5 of the pressure off, and nothing changes.
+    settings.patch.first_mechanics_tolerance = 1e-10;
     let model = Model::with_settings(parameters, settings).unwrap();
     let mut workspace = model.workspace();
     let mut moved = inputs;

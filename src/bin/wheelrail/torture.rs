@@ -1,11 +1,11 @@
 //! `wheelrail torture`: wheels driven at random, what fails and what is slow.
 
-use clap::Args;
+use clap::{Args, ValueEnum};
 use std::collections::BTreeMap;
 use std::io::{self, Write};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Mutex, PoisonError};
-use wheelrail::torture::{Failure, LARGEST_TEMPERATURE, Run, Slow, StepTime, Torture, explain};
+use wheelrail::torture::{Engines, Failure, LARGEST_TEMPERATURE, Run, Slow, StepTime, Torture, explain};
 
 /// Options of `torture`.
 #[derive(Args)]
@@ -28,9 +28,23 @@ pub struct Options {
     /// Half-width of the contact window in units of the usual one, at equal spacing of the nodes.
     #[arg(long, default_value_t = 1.0, value_parser = window)]
     window: f64,
+    /// The contact models that are driven.
+    #[arg(long, value_enum, default_value_t = ContactModels::Both)]
+    model: ContactModels,
     /// Number of the slowest steps to explain.
     #[arg(long, default_value_t = 10)]
     slowest: usize,
+}
+
+/// The contact models of the runs.
+#[derive(Clone, Copy, ValueEnum)]
+enum ContactModels {
+    /// The line contact
+    Line,
+    /// The patch
+    Patch,
+    /// Both in turn
+    Both,
 }
 
 /// So many times as many of the slowest steps are timed again: what interrupted a step made it slow once.
@@ -80,6 +94,11 @@ impl Options {
             seed: self.seed,
             steps: self.steps,
             window: self.window,
+            engines: match self.model {
+                ContactModels::Line => Engines::Line,
+                ContactModels::Patch => Engines::Patch,
+                ContactModels::Both => Engines::Both,
+            },
         };
         let mut out = io::stdout().lock();
         if let Some(number) = self.run {
