@@ -5,7 +5,8 @@
 - the accuracy of the patch, from results/patch_accuracy.csv, which examples/patch_creep_curves.py writes;
 - the figures of the verification, from target/verification.txt, which `make verify` writes.
 
-With the argument `couplings` (`make couplings-docs`) the tables of docs/couplings/stiff.md, from results/stiff.md.
+With the argument `couplings` (`make couplings-docs`) the tables of docs/couplings/stiff.md and hunting.md, from those
+in results/.
 """
 
 import csv
@@ -23,7 +24,7 @@ INDEX = REPOSITORY / "docs" / "index.md"
 PAGE = REPOSITORY / "modelDescription" / "documentation" / "index.html"
 VERIFICATION = REPOSITORY / "target" / "verification.txt"
 STIFF = REPOSITORY / "docs" / "couplings" / "stiff.md"
-STIFF_TABLES = REPOSITORY / "results" / "stiff.md"
+COUPLING_PAGES = (STIFF, REPOSITORY / "docs" / "couplings" / "hunting.md")
 PAPER_CASES = REPOSITORY / "results" / "paper_cases.csv"
 PATCH = REPOSITORY / "docs" / "patch.md"
 PATCH_ACCURACY = REPOSITORY / "results" / "patch_accuracy.csv"
@@ -181,7 +182,8 @@ def blocks(text):
 def main():
     """Write all parts."""
     if sys.argv[1:] == ["couplings"]:
-        write(STIFF, blocks(STIFF_TABLES.read_text()))
+        for page in COUPLING_PAGES:
+            write(page, blocks((REPOSITORY / "results" / page.name).read_text()))
         return
     write(README, {"first variables": first_variables_markdown()})
     write(VARIABLES, {"wheelrail describe": variables_markdown()})
