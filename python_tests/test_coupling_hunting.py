@@ -12,7 +12,17 @@ sys.path.insert(0, str(REPOSITORY / "examples"))
 
 import hunting  # noqa: E402
 import running_wheelset  # noqa: E402
-from running_wheelset import CLEARANCE, LOAD, SIDES, Suspension, Wheelset, motion, motion_slopes, running  # noqa: E402
+from running_wheelset import (  # noqa: E402
+    CLEARANCE,
+    LOAD,
+    SIDES,
+    Suspension,
+    Wheel,
+    Wheelset,
+    motion,
+    motion_slopes,
+    running,
+)
 
 
 @pytest.fixture(scope="module")
@@ -37,7 +47,7 @@ def slopes(critical):
 
 @pytest.fixture(scope="module")
 def cycle(critical):
-    """Return 1.5 s at 112 % of the critical speed, from a flange on; the profiles of the end; the wheelset."""
+    """Return 1.5 s at 112 % of the critical speed, from a flange on, and the wheelset with the last profiles."""
     wheelset = Wheelset(1.12 * critical, CLEARANCE)
     wheelset.run(1.1, 1.12 * critical)
     result = wheelset.run(1.5, 1.12 * critical, strips_every=4)
@@ -60,6 +70,19 @@ def test_motion_and_its_derivatives():
         assert spin_rate / speed == pytest.approx(-side * running_wheelset.CONICITY / hunting.WHEEL_RADIUS)
 
 
+def test_load_on_the_cones():
+    """The wheels' loads are normal to the cones: the axle rolled by λ y/b0 they push back, yawed by ψ they turn on."""
+    free, y, yaw = running_wheelset.FREE, 2e-3, 3e-3
+    thrust = turning = 0.0
+    for side in SIDES.values():
+        # The normal of the left cone leans to the right, more so when the left wheel has climbed.
+        roll = running_wheelset.CONICITY * y / running_wheelset.HALF_GAUGE
+        thrust += LOAD * (-side * running_wheelset.CONICITY - roll)
+        along = -side * running_wheelset.HALF_GAUGE * yaw
+        turning += along * LOAD * -side * running_wheelset.CONICITY
+    assert free.forces(np.array([y, yaw, 0.0, 0.0, 0.0])) == pytest.approx([thrust, turning, 0.0])
+
+
 def test_coefficients_are_kalkers(theory):
     """At creepages of 0, C11, C22, C23 = -C32 within 3 %: 2 % of the grid, 1 % of the table between Poisson's ratios.
 
@@ -71,6 +94,14 @@ def test_coefficients_are_kalkers(theory):
     assert found[:4] == pytest.approx([c11, c22, c23, c23], rel=0.03)
     assert found[4] == pytest.approx(c33, rel=0.05)
     assert its_axes == pytest.approx(axes, rel=0.08)
+    wheel = Wheel(0.0, running(60.0), 60.0).settle(0.05)
+    slopes, linear = wheel.slopes(), hunting.creep_slopes(0.0, 60.0, *theory)
+    wheel.close()
+    # Torques over the wheel's radius and the contact's size, and spin as a speed at its edge: all of one magnitude.
+    size = np.sqrt(axes[0] * axes[1])
+    lengths = np.array([hunting.WHEEL_RADIUS, 1.0, 1.0, size])
+    slopes, linear = (matrix / np.outer(lengths, [hunting.WHEEL_RADIUS, 1.0, 1.0, size]) for matrix in (slopes, linear))
+    assert slopes == pytest.approx(linear, rel=0.05, abs=0.01 * np.abs(linear).max())
 
 
 def test_wheels_are_mirrored(slopes):
@@ -143,7 +174,7 @@ def test_energy(cycle):
 
 
 def test_wear_across_the_tread(cycle):
-    """Over a cycle the tread is worn as much as the rail, over more width and less deep."""
+    """Over a cycle the tread is worn as much as the rail, wider and less deep; to the left, near the flange."""
     result, wheelset = cycle
     place, rail, tread = hunting.mean_wear(wheelset, hunting.last_cycle(result))
     assert rail.max() > 0.0
@@ -151,6 +182,10 @@ def test_wear_across_the_tread(cycle):
     assert tread.max() < 0.6 * rail.max()
     width = {name: np.ptp(place[wear > 0.05 * wear.max()]) for name, wear in (("rail", rail), ("tread", tread))}
     assert width["tread"] > width["rail"] + CLEARANCE
+    place, rail, tread = hunting.mean_wear(wheelset, hunting.last_cycle(result) & (result["y"] > 0.5 * CLEARANCE))
+    assert place @ tread / tread.sum() == pytest.approx(
+        place @ rail / rail.sum() + 0.75 * CLEARANCE, abs=0.3 * CLEARANCE
+    )
 
 
 def test_yawed_in_a_curve():
