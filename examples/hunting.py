@@ -120,7 +120,7 @@ def klingel():
     return 2.0 * np.pi * np.sqrt(WHEEL_RADIUS * HALF_GAUGE / CONICITY)
 
 
-def free_rolling(waves=2.4, speed=10.0, y=3e-3, step=2e-3):
+def free_rolling(waves=2.4, speed=10.0, y=3e-3, step=5e-3):
     """Let a wheelset without a suspension roll from a displacement."""
     wheelset = Wheelset(speed, y, FREE)
     result = wheelset.run(waves * klingel() / speed, speed, step)

@@ -84,16 +84,16 @@ def test_load_on_the_cones():
 
 
 def test_coefficients_are_kalkers(theory):
-    """At creepages of 0, C11, C22, C23 = -C32 within 3 %: 2 % of the grid, 1 % of the table between Poisson's ratios.
+    """At creepages of 0, C11, C22, C23 and C33 within 1 %, of which the table's interpolation takes a part.
 
-    C33, which weighs the contact's edge most and is curved over Poisson's ratio, within 5 %. Length and breadth of the
-    contact to a cell of the grid.
+    -C32, which weighs the contact's edge and in the limit of fine grids is C23, within 2.5 %. Length and breadth of the
+    contact within 0.5 %.
     """
     axes, (c11, c22, c23, c33), _ = theory
     found, its_axes = hunting.measured_coefficients(axes, 60.0)
-    assert found[:4] == pytest.approx([c11, c22, c23, c23], rel=0.03)
-    assert found[4] == pytest.approx(c33, rel=0.05)
-    assert its_axes == pytest.approx(axes, rel=0.08)
+    assert found[[0, 1, 2, 4]] == pytest.approx([c11, c22, c23, c33], rel=0.01)
+    assert found[3] == pytest.approx(c23, rel=0.025)
+    assert its_axes == pytest.approx(axes, rel=0.005)
     wheel = Wheel(0.0, running(60.0), 60.0).settle(0.05)
     slopes, linear = wheel.slopes(), hunting.creep_slopes(0.0, 60.0, *theory)
     wheel.close()
@@ -101,7 +101,7 @@ def test_coefficients_are_kalkers(theory):
     size = np.sqrt(axes[0] * axes[1])
     lengths = np.array([hunting.WHEEL_RADIUS, 1.0, 1.0, size])
     slopes, linear = (matrix / np.outer(lengths, [hunting.WHEEL_RADIUS, 1.0, 1.0, size]) for matrix in (slopes, linear))
-    assert slopes == pytest.approx(linear, rel=0.05, abs=0.01 * np.abs(linear).max())
+    assert slopes == pytest.approx(linear, rel=0.025, abs=1e-5 * np.abs(linear).max())
 
 
 def test_wheels_are_mirrored(slopes):
@@ -112,16 +112,17 @@ def test_wheels_are_mirrored(slopes):
 
 
 def test_rolls_in_klingels_wavelength():
-    """Without a suspension, 2 pi sqrt(r0 b0 / conicity) within 0.5 %: inertia and the cones' load take 0.1 %."""
-    assert hunting.wavelength(hunting.free_rolling(1.9)) == pytest.approx(hunting.klingel(), rel=5e-3)
+    """Without a suspension, 2 pi sqrt(r0 b0 / conicity) within 0.05 %."""
+    assert hunting.wavelength(hunting.free_rolling(1.9)) == pytest.approx(hunting.klingel(), rel=5e-4)
 
 
 def test_critical_speed_is_that_of_the_linear_model(critical, slopes):
     """The eigenvalues with the component's derivatives and with Kalker's coefficients, and swings: within 2 %.
 
     The cones' spin takes a part of the friction, which Kalker's coefficients leave out: some 10 % of the lateral
-    slope, and 1 % of the speed. Swings grow as the component's derivatives say, to 0.3 % of a cycle's angular
-    frequency; between 95 and 105 % of the speed growth is so straight that 0 is found to 0.2 %.
+    slope, and 1.8 % of the speed. Swings grow as the component's derivatives say, to 0.03 % of a cycle's angular
+    frequency, which the midpoint rule's (w h)^2/12 makes 0.05 % less; between 95 and 105 % of the speed growth is so
+    straight that 0 is found to 0.2 %.
     """
     suspension = Suspension()
     linear = hunting.critical_speed(lambda speed: [slope * critical / speed for slope in slopes], suspension)
@@ -131,11 +132,11 @@ def test_critical_speed_is_that_of_the_linear_model(critical, slopes):
         found = hunting.measured_mode(speed)
         at = [slope * critical / speed for slope in slopes]
         expected = hunting.hunting_mode(hunting.system(running(speed), speed, at, suspension))
-        assert found.real == pytest.approx(expected.real, abs=3e-3 * expected.imag)
-        assert found.imag == pytest.approx(expected.imag, rel=0.01)
+        assert found.real == pytest.approx(expected.real, abs=3e-4 * expected.imag)
+        assert found.imag == pytest.approx(expected.imag, rel=1e-3)
         growths.append(found.real)
     assert growths[0] < 0.0 < growths[1]
-    assert hunting.zero(speeds, growths) == pytest.approx(linear, rel=0.01)
+    assert hunting.zero(speeds, growths) == pytest.approx(linear, rel=3e-3)
 
 
 def test_settles_below(critical):
@@ -152,25 +153,25 @@ def test_hunts_above(cycle):
     starts = hunting.crossings(result["time"], result["y"])
     heights = [result["y"][(result["time"] >= a) & (result["time"] < b)].max() for a, b in pairwise(starts)]
     assert min(heights[-3:]) > CLEARANCE
-    assert heights[-1] == pytest.approx(heights[-2], rel=0.02)
+    assert heights[-1] == pytest.approx(heights[-2], rel=1e-3)
     last = hunting.last_cycle(result)
-    assert -result["y"][last].min() == pytest.approx(heights[-1], rel=0.02)
+    assert -result["y"][last].min() == pytest.approx(heights[-1], rel=1e-3)
     warm = result["peak_temperature_left"][last]
     assert warm.max() > warm.min() + 1.0
 
 
 def test_energy(cycle):
-    """What the frame pulls goes into creep, dampers and springs, but for 0.1 %; and creep is the component's friction.
+    """What the frame pulls goes into creep, dampers and springs, but for 0.02 %; and creep is the component's friction.
 
     The balance is the master's, of second order in the step. Friction is |traction times slip| summed over the
-    contact, creep is forces times creepages: in partial slip they differ by the grid's first order, at the creepages of
-    a cycle up to 10 %.
+    contact, creep is forces times creepages: in a contact that a cycle hardly disturbs on its way through, they agree
+    to 0.1 %.
     """
     result, wheelset = cycle
     spent = hunting.books(result, wheelset)
     assert spent["guide_work"] > 0.0 and spent["creep_work"] > 0.0 and spent["damper_work"] > 0.0
-    assert abs(spent["missing"]) < 1e-3 * spent["guide_work"]
-    assert spent["friction"] == pytest.approx(spent["creep_work"], rel=0.1)
+    assert abs(spent["missing"]) < 2e-4 * spent["guide_work"]
+    assert spent["friction"] == pytest.approx(spent["creep_work"], rel=1e-3)
 
 
 def test_wear_across_the_tread(cycle):
@@ -178,7 +179,7 @@ def test_wear_across_the_tread(cycle):
     result, wheelset = cycle
     place, rail, tread = hunting.mean_wear(wheelset, hunting.last_cycle(result))
     assert rail.max() > 0.0
-    assert tread.sum() == pytest.approx(rail.sum(), rel=0.01)
+    assert tread.sum() == pytest.approx(rail.sum(), rel=2e-3)
     assert tread.max() < 0.6 * rail.max()
     width = {name: np.ptp(place[wear > 0.05 * wear.max()]) for name, wear in (("rail", rail), ("tread", tread))}
     assert width["tread"] > width["rail"] + CLEARANCE
@@ -191,9 +192,9 @@ def test_wear_across_the_tread(cycle):
 def test_yawed_in_a_curve():
     """Spin pulls the left wheel to the left and the right one to the right; yawed, both go left, within the friction.
 
-    At large angles the contact is hot and friction falls: so does the force.
+    At large angles, where both slide, the contact is hot and friction falls: so does the force.
     """
-    curve = hunting.in_curve(np.array([0.0, 2.0, 6.0, 15.0]) * 1e-3)
+    curve = hunting.in_curve(np.array([0.0, 2.0, 8.0, 15.0]) * 1e-3)
     left, right = curve["lateral_force_left"], curve["lateral_force_right"]
     assert left[0] > 0.0 > right[0]
     assert np.all(left[:3] > right[:3])
@@ -205,7 +206,7 @@ def test_yawed_in_a_curve():
 
 
 def test_creep_curve_beside_contact():
-    """F_y and M_z over the lateral creepage within 0.012 of CONTACT's limit; M_z of its finer grid, some 0.003 more."""
+    """F_y over the lateral creepage within 0.003 of CONTACT's limit, and M_z of its finer grid."""
     (lateral, moment), limit = hunting.beside_contact()
-    assert lateral == pytest.approx(limit, abs=0.012)
-    assert moment == pytest.approx(hunting.REFERENCE[3], abs=0.015)
+    assert lateral == pytest.approx(limit, abs=0.003)
+    assert moment == pytest.approx(hunting.REFERENCE[3], abs=0.003)
