@@ -1,10 +1,11 @@
 //! The patch engine: half-spaces, the contact resolved along the rail and across it.
 //!
-//! [`engine`] is what the outside sees. [`rail`] is what is computed once, [`fields`] what a step changes, [`problem`] one
+//! [`engine`] is what the outside sees. [`rail`] is what is computed once, with [`expansion`] by heat, [`fields`] what a step changes, [`problem`] one
 //! step as a problem, [`split`] solves it: pressure, friction, wear and heat in turn, until they rest. [`sensitivity`]
 //! are its derivatives, with the [`tangent`] of the tractions. [`readings`] and [`profiles`] are what is read off the fields.
 
 pub mod engine;
+pub mod expansion;
 pub mod extent;
 pub mod fields;
 pub mod problem;

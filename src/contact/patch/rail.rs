@@ -1,8 +1,8 @@
 //! Rail and wheel: everything that is computed once, at initialisation.
 
+use super::expansion::Expansion;
 use crate::body::compliance::Scales;
 use crate::body::grid::Grid;
-use crate::body::half_plane::HalfPlane;
 use crate::body::half_space::{HalfSpaces, Rectangle};
 use crate::body::influence::{Tables, Transform};
 use crate::body::mesh::Mesh;
@@ -41,10 +41,8 @@ pub struct PatchRail {
     pub own: [Vec<f64>; 2],
     /// u by pressure, and lift by shear with the same tables, scaled; none where the bodies are alike.
     pub coupling: Option<Tables<f64>>,
-    /// u by the heat content of the cells, and of the columns behind the window, scaled, per `K m`.
-    pub expansion: Tables<f64>,
-    /// Lift by the heat content of a cell, scaled, per `K m`.
-    pub bulge: f64,
+    /// Displacement by heat.
+    pub expansion: Expansion,
     /// Opening ahead of the leading edge over that of the gap, per τ/p: along x and y.
     pub opening: [f64; 2],
     /// Undeformed gap of the cells, scaled, on the grid.
@@ -116,15 +114,6 @@ impl PatchRail {
                 |_| 0.0,
             )
         });
-        // A thin hot layer on a half-space: u = (1+ν)α/π ∫ Θ (x, y)/r³ dA and a lift of 2(1+ν)αΘ.
-        let rail = HalfPlane::new(parameters.lame_lambda, parameters.shear_modulus);
-        let swelling = (1.0 + rail.poisson_ratio) * parameters.thermal_expansion / scales.displacement;
-        let pull = swelling / PI;
-        let expansion = transform.tables(
-            |lag| pull * rectangle.pull_along(place(lag).0, place(lag).1),
-            |lag| pull * rectangle.pull_across(place(lag).0, place(lag).1),
-            |_| 0.0,
-        );
         let columns = 2 * grid.stride() as isize + 8;
         let own = |kernel: &dyn Fn((isize, isize)) -> f64| -> Vec<f64> {
             (0..columns)
@@ -165,8 +154,13 @@ impl PatchRail {
                 .collect(),
             own,
             coupling,
-            expansion,
-            bulge: 2.0 * swelling,
+            expansion: Expansion::new(
+                parameters,
+                &grid,
+                &transform,
+                parameters.strip_half_length,
+                scales.displacement,
+            ),
             opening: [1.0, pair.direct / pair.normal()],
             gap,
             strips: Strips::new(&mesh.x, (mesh.first_contact, grid.cells), grid.strips, grid.breadth),

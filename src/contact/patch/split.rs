@@ -5,6 +5,7 @@
 //! last iteration is followed by what acts on nothing any more within the step: the heat under the surface, the rail behind the
 //! window, the displacement.
 
+use super::expansion;
 use super::fields::{PatchFields, PatchTrend};
 use super::problem::{Problem, SlipWeights};
 use super::rail::PatchRail;
@@ -22,7 +23,7 @@ use crate::mechanics::patch::friction::{Friction, FrictionProblem, SlipResponse}
 use crate::mechanics::patch::normal::{self, Normal, NormalProblem};
 use crate::mechanics::sweep::Sweep;
 use crate::numerics::anderson::Anderson;
-use crate::numerics::dense::{largest, largest_change};
+use crate::numerics::dense::{add_multiple, largest, largest_change};
 use crate::parameters::WheelHeating;
 use crate::settings::Settings;
 use crate::transport::CellStep;
@@ -84,7 +85,7 @@ impl Coupling {
                 let index = strip * rail.grid.cells + cell;
                 let place = rail.grid.place(strip, cell);
                 self.values[index] = fields.heat.surface[index] / TEMPERATURE_UNIT;
-                self.values[cells + index] = rail.bulge * fields.heat.content[index];
+                self.values[cells + index] = rail.expansion.bulge * fields.heat.content[index];
                 self.values[2 * cells + index] =
                     fields.wear.depth[index] / rail.scales.displacement - softness[place] * fields.pressure[place];
             }
@@ -128,7 +129,7 @@ pub struct Scratch {
     given: [Vec<f64>; 2],
     before: [Vec<f64>; 2],
     free_slip: [Vec<f64>; 2],
-    content: Vec<f64>,
+    expansion: expansion::Scratch,
     nothing: Vec<f64>,
     shear_before: [Vec<f64>; 2],
     /// Of the cells under pressure.
@@ -166,7 +167,7 @@ impl Scratch {
             given: vectors(),
             before: vectors(),
             free_slip: vectors(),
-            content: on_grid(),
+            expansion: expansion::Scratch::new(grid, transform),
             nothing: on_grid(),
             shear_before: vectors(),
             bound: on_grid(),
@@ -558,29 +559,13 @@ fn given_displacement(problem: &Problem, fields: &PatchFields, scratch: &mut Scr
             &mut scratch.products,
         );
     }
-    if rail.bulge == 0.0 || largest(scratch.iterate.lift()) == 0.0 {
-        return;
-    }
-    for strip in 0..grid.strips {
-        let own = strip * grid.cells..(strip + 1) * grid.cells;
-        for (content, lift) in scratch.content[grid.row(strip)]
-            .iter_mut()
-            .zip(&scratch.iterate.lift()[own])
-        {
-            *content = lift / rail.bulge;
-        }
-    }
-    let [x, y] = &mut scratch.lift;
-    rail.transform.apply(
-        &rail.expansion,
-        &window,
-        [&scratch.content, &scratch.nothing],
-        [x, y],
-        &mut scratch.products,
-    );
-    for component in 0..2 {
-        for (given, thermal) in scratch.given[component].iter_mut().zip(&scratch.lift[component]) {
-            *given += thermal;
+    let heat = &mut scratch.expansion;
+    if rail
+        .expansion
+        .displace(grid, &rail.transform, scratch.iterate.lift(), heat)
+    {
+        for (given, by_heat) in scratch.given.iter_mut().zip(&heat.displacement) {
+            add_multiple(by_heat, 1.0, given);
         }
     }
 }

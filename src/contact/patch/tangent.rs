@@ -4,18 +4,19 @@
 //! It has solvers and tables of its own: what a step has left in the others is not needed, so that it starts from the fields
 //! alone.
 
+use super::expansion;
 use super::fields::PatchFields;
 use super::problem::{Problem, SlipWeights, rigid_slip};
 use super::rail::PatchRail;
 use super::split::{self, Coupling};
-use crate::body::influence::{self, Tables, Window};
+use crate::body::influence::{self, Window};
 use crate::error::Result;
 use crate::mechanics::normal::problem::Constraint;
 use crate::mechanics::patch::contact::Contact;
 use crate::mechanics::patch::friction::{Friction, FrictionChange, FrictionProblem, LEAST_CHANGE, SlipResponse};
 use crate::mechanics::patch::law::Vector;
 use crate::mechanics::patch::normal::{Normal, NormalProblem};
-use crate::numerics::dense::largest;
+use crate::numerics::dense::{add_multiple, largest};
 use crate::settings::Settings;
 use crate::signals::{Inputs, Motion};
 use crate::transport::CellStep;
@@ -59,7 +60,7 @@ pub struct Tangent {
     /// Changes of the cells.
     bound_change: Vec<f64>,
     edge_change: Vec<Vector>,
-    content: Vec<f64>,
+    expansion: expansion::Scratch,
     nothing: Vec<f64>,
 }
 
@@ -94,7 +95,7 @@ impl Tangent {
             lift: vectors(),
             bound_change: on_grid(),
             edge_change: vec![[0.0; 2]; grid.len()],
-            content: on_grid(),
+            expansion: expansion::Scratch::new(grid, transform),
             nothing: on_grid(),
         }
     }
@@ -181,7 +182,7 @@ impl Tangent {
             for (cell, place) in grid.row(strip).enumerate() {
                 let index = strip * grid.cells + cell;
                 self.gap[place] = rail.gap[place] + fields.wear.depth[index] / rail.scales.displacement
-                    - rail.bulge * fields.heat.content[index]
+                    - rail.expansion.bulge * fields.heat.content[index]
                     - self.lift[0][place];
             }
         }
@@ -317,17 +318,16 @@ impl Tangent {
         let (rail, grid) = (problem.rail, &problem.rail.grid);
         self.given.iter_mut().for_each(|component| component.fill(0.0));
         if let Some(tables) = &rail.coupling {
-            self.displace(problem, tables, pressure);
+            let [x, y] = &mut self.given;
+            let load = [pressure, &self.nothing[..]];
+            let window = Window::whole(grid);
+            rail.transform.apply(tables, &window, load, [x, y], &mut self.products);
         }
-        if rail.bulge != 0.0 && largest(iterate.lift()) > 0.0 {
-            let mut content = std::mem::take(&mut self.content);
-            for (strip, lifts) in iterate.lift().chunks_exact(grid.cells).enumerate() {
-                for (content, lift) in content[grid.row(strip)].iter_mut().zip(lifts) {
-                    *content = lift / rail.bulge;
-                }
+        let heat = &mut self.expansion;
+        if rail.expansion.displace(grid, &rail.transform, iterate.lift(), heat) {
+            for (given, by_heat) in self.given.iter_mut().zip(&heat.displacement) {
+                add_multiple(by_heat, 1.0, given);
             }
-            self.displace(problem, &rail.expansion, &content);
-            self.content = content;
         }
         let ahead = leading(problem);
         let weights_change = problem.slip_weights_tangent(fields, direction.speed);
@@ -343,24 +343,6 @@ impl Tangent {
                         + self.weights.slip([given[place], given[next]], [0.0; 2])
                         + weights_change.slip([now[place], now[next]], [before[place], before[next]]);
                 }
-            }
-        }
-    }
-
-    /// Adds to the change of u that does not come from shear.
-    fn displace(&mut self, problem: &Problem, tables: &Tables<f64>, load: &[f64]) {
-        let rail = problem.rail;
-        let [x, y] = &mut self.free_slip;
-        rail.transform.apply(
-            tables,
-            &Window::whole(&rail.grid),
-            [load, &self.nothing],
-            [x, y],
-            &mut self.products,
-        );
-        for (given, displaced) in self.given.iter_mut().zip(&self.free_slip) {
-            for (given, displaced) in given.iter_mut().zip(displaced) {
-                *given += displaced;
             }
         }
     }
