@@ -394,8 +394,8 @@ pub struct PatchSettings {
 impl Default for PatchSettings {
     fn default() -> Self {
         PatchSettings {
-            split_tolerance: 1e-8,
-            shear_tolerance: 1e-8,
+            split_tolerance: 1e-6,
+            shear_tolerance: 1e-6,
             first_mechanics_tolerance: 1e-5,
             tolerance: 1e-9,
             least_tolerance: 1e-10,

@@ -293,7 +293,7 @@ impl Friction {
                 let mut ahead = slip(place);
                 ahead[0] += edge[0] * own[0];
                 ahead[1] += edge[1] * own[1];
-                let row = scheme.row(&Cell {
+                let row = scheme.at_edge(edge).row(&Cell {
                     shear: own,
                     ahead,
                     behind: slip(place.wrapping_add_signed(behind)),

@@ -118,6 +118,15 @@ impl Scheme {
         )
     }
 
+    /// The same for a cell to whose slip per shear the leading edge adds. A cell that has just joined answers its own shear a hundredfold: under
+    /// an r that ignores this its residual outweighs all others, and the line search shortens each step of Newton's method.
+    pub fn at_edge(&self, edge: Vector) -> Scheme {
+        Scheme {
+            scale: self.scale / (1.0 + self.scale * edge[0].max(edge[1])),
+            ..*self
+        }
+    }
+
     /// The law of a cell.
     pub fn row(&self, cell: &Cell) -> Row {
         let (slip, slip_by_ahead, slip_by_behind, slip_by_noise) = self.slip(cell);
