@@ -179,18 +179,21 @@ impl<'a> Problem<'a> {
         rigid_slip(&self.conditions.motion, x, y)
     }
 
-    /// The cells as the rim sees them, or with changes of fields their changes.
-    pub fn heated_nodes<'f>(&'f self, fields: &'f PatchFields) -> impl Iterator<Item = HeatedNode> + 'f {
+    /// The cells under the pressure of `fields` as the rim sees them in `values`: the same fields, or with changes of them their changes.
+    pub fn heated_nodes<'f>(
+        &'f self,
+        fields: &'f PatchFields,
+        values: &'f PatchFields,
+    ) -> impl Iterator<Item = HeatedNode> + 'f {
         let grid = &self.rail.grid;
         (0..grid.strips).flat_map(move |strip| {
-            (0..grid.cells).map(move |cell| {
-                let place = grid.place(strip, cell);
-                HeatedNode {
-                    pressure: fields.pressure[place],
-                    shear: [fields.shear[0][place], fields.shear[1][place]],
-                    slip: [fields.slip[0][place], fields.slip[1][place]],
-                    rise: fields.heat.surface[strip * grid.cells + cell],
-                }
+            let cells = grid.row(strip).enumerate();
+            let heated = cells.filter(|(_, place)| fields.pressure[*place] > 0.0);
+            heated.map(move |(cell, place)| HeatedNode {
+                pressure: values.pressure[place],
+                shear: [values.shear[0][place], values.shear[1][place]],
+                slip: [values.slip[0][place], values.slip[1][place]],
+                rise: values.heat.surface[strip * grid.cells + cell],
             })
         })
     }

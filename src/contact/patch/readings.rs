@@ -27,7 +27,11 @@ pub fn readings(problem: &Problem, fields: &PatchFields) -> Readings {
             .fold(0.0, f64::max),
         leaving_rise: rail.incoming.equivalent_rise(&rail.basis, heat.leaving(&fields.heat)),
         leaving_wear_depth: problem.wear_march().leaving(&fields.wear),
-        wheel_heat: ContactHeat::new(problem.parameters, rail.unit_force(), problem.heated_nodes(fields)),
+        wheel_heat: ContactHeat::new(
+            problem.parameters,
+            rail.unit_force(),
+            problem.heated_nodes(fields, fields),
+        ),
         wheel_temperature: fields.wheel_temperature,
     }
 }

@@ -323,9 +323,9 @@ impl<'a> Linearisation<'a> {
     fn wheel_tangent(&mut self, direction: &Direction) {
         let (problem, fields, tangent) = (&self.problem, self.fields, &mut self.scratch.tangent);
         let (parameters, force) = (problem.parameters, problem.rail.unit_force());
-        let heat = ContactHeat::new(parameters, force, problem.heated_nodes(fields));
-        let changes = problem.heated_nodes(tangent);
-        let heat_tangent = ContactHeat::tangent(parameters, force, problem.heated_nodes(fields).zip(changes));
+        let heat = ContactHeat::new(parameters, force, problem.heated_nodes(fields, fields));
+        let changes = problem.heated_nodes(fields, tangent);
+        let heat_tangent = ContactHeat::tangent(parameters, force, problem.heated_nodes(fields, fields).zip(changes));
         let ambient = problem.conditions.inputs.ambient_temperature;
         tangent.wheel_temperature = rim::temperature_tangent(
             parameters,

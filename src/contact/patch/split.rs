@@ -682,7 +682,7 @@ fn warm_wheel(problem: &Problem, before: &PatchFields, fields: &mut PatchFields)
     let heat = ContactHeat::new(
         problem.parameters,
         problem.rail.unit_force(),
-        problem.heated_nodes(fields),
+        problem.heated_nodes(fields, fields),
     );
     fields.wheel_temperature = rim::temperature(
         problem.parameters,

@@ -14,6 +14,7 @@ use crate::error::{Error, Result};
 use crate::mechanics::normal::problem::Constraint;
 use crate::numerics::dense;
 use crate::settings::PatchSettings;
+use nalgebra::DMatrix;
 
 /// What of the influence does not change.
 #[derive(Debug, Clone)]
@@ -22,9 +23,10 @@ pub struct Approach {
     pub tables: Tables<f64>,
     /// Influence of a cell on itself.
     pub own: f64,
-    /// Cholesky factor of a whole strip's own block, row by row. That of a shorter run is its upper left part, because the
-    /// influence depends on the distance only.
-    factor: Vec<f64>,
+    /// Inverse W of the Cholesky factor of a whole strip's own block, column by column and row by row. That of a shorter run is its
+    /// upper left part, because the influence depends on the distance only.
+    columns: Vec<f64>,
+    rows: Vec<f64>,
     cells: usize,
 }
 
@@ -32,40 +34,42 @@ impl Approach {
     /// Of the influence as a function of the lag.
     pub fn new(grid: &Grid, transform: &Transform, influence: impl Fn((isize, isize)) -> f64) -> Approach {
         let n = grid.cells;
-        let mut factor = vec![0.0; n * n];
-        for i in 0..n {
-            for j in 0..=i {
-                let known: f64 = (0..j).map(|k| factor[i * n + k] * factor[j * n + k]).sum();
-                let rest = influence(((i - j) as isize, 0)) - known;
-                factor[i * n + j] = if i == j {
-                    rest.max(f64::MIN_POSITIVE).sqrt()
-                } else {
-                    rest / factor[j * n + j]
-                };
-            }
-        }
+        let block = DMatrix::from_fn(n, n, |i, j| influence((i as isize - j as isize, 0)));
+        let factor = block.cholesky().map(|cholesky| cholesky.unpack());
+        // The influence is positive definite; without a factor there is a start for conjugate gradients still.
+        let inverse = factor
+            .and_then(|factor| factor.solve_lower_triangular(&DMatrix::identity(n, n)))
+            .unwrap_or_else(|| DMatrix::identity(n, n));
         Approach {
             own: influence((0, 0)),
             tables: transform.scalar_tables(influence),
-            factor,
+            rows: inverse.transpose().as_slice().to_vec(),
+            columns: inverse.as_slice().to_vec(),
             cells: n,
         }
     }
 
-    /// Solves with the block of a run, in place.
-    fn solve(&self, values: &mut [f64]) {
-        let n = self.cells;
-        for i in 0..values.len() {
-            let known: f64 = (0..i).map(|k| self.factor[i * n + k] * values[k]).sum();
-            values[i] = (values[i] - known) / self.factor[i * n + i];
-        }
-        for i in (0..values.len()).rev() {
-            let value = values[i] / self.factor[i * n + i];
-            values[i] = value;
-            for (before, factor) in values[..i].iter_mut().zip(&self.factor[i * n..]) {
-                *before -= factor * value;
-            }
-        }
+    /// The values of the runs times Wᵀ W, run by run, in place: solved with the strips' own blocks. `work` holds those of one.
+    fn precondition(&self, contact: &Contact, values: &mut [f64], work: &mut [f64]) {
+        let cells = self.cells;
+        dense::vectorised(
+            #[inline(always)]
+            |arithmetic| {
+                for run in contact.runs() {
+                    let own = &mut values[run.own()];
+                    let n = own.len();
+                    let work = &mut work[..n];
+                    work.fill(0.0);
+                    for (i, value) in own.iter().enumerate() {
+                        arithmetic.add_multiple(&self.columns[i * cells + i..i * cells + n], *value, &mut work[i..]);
+                    }
+                    own.fill(0.0);
+                    for (i, value) in work.iter().enumerate() {
+                        arithmetic.add_multiple(&self.rows[i * cells..=i * cells + i], *value, &mut own[..=i]);
+                    }
+                }
+            },
+        );
     }
 }
 
@@ -104,6 +108,7 @@ pub struct Normal {
     direction: Vec<f64>,
     corrected: Vec<f64>,
     ones: Vec<f64>,
+    work: Vec<f64>,
     image: Vec<f64>,
     pressure: Vec<f64>,
     softness: Vec<f64>,
@@ -132,6 +137,7 @@ impl Normal {
             direction: on_grid(),
             corrected: on_grid(),
             ones: on_grid(),
+            work: vec![0.0; grid.cells],
             image: on_grid(),
             pressure: on_grid(),
             softness: on_grid(),
@@ -234,13 +240,15 @@ impl Normal {
         }
         let load_given = matches!(problem.constraint, Constraint::Total(_));
         self.ones[..n].fill(1.0);
-        precondition(problem.approach, contact, &mut self.ones);
+        problem.approach.precondition(contact, &mut self.ones, &mut self.work);
         let weight: f64 = self.ones[..n].iter().sum();
         let (mut last, mut level) = (0.0, 0.0);
         let mut error = 0.0;
         for iteration in 0..self.settings.normal_iterations {
             self.corrected[..n].copy_from_slice(&self.residual[..n]);
-            precondition(problem.approach, contact, &mut self.corrected);
+            problem
+                .approach
+                .precondition(contact, &mut self.corrected, &mut self.work);
             if load_given && n > 0 {
                 // The penetration takes what all cells have in common off the residual: kept in it, its round-off would grow into
                 // a change of the load.
@@ -358,12 +366,6 @@ fn start(problem: &NormalProblem, settings: &PatchSettings, pressure: &mut [f64]
 pub fn is_free(grid: &Grid, place: usize) -> bool {
     let cell = place % grid.stride();
     cell > 0 && cell + 1 < grid.cells
-}
-
-fn precondition(approach: &Approach, contact: &Contact, values: &mut [f64]) {
-    for run in contact.runs() {
-        approach.solve(&mut values[run.own()]);
-    }
 }
 
 #[cfg(test)]
