@@ -32,7 +32,7 @@ from running_wheelset import (
 )
 
 GROWTH_SPEEDS = (60.0, 67.5, 75.0, 82.5, 90.0)  # m/s
-RAMP, RAMP_TIME, RAMP_STEP = (64.0, 86.0), 11.0, 2e-3  # m/s, s, s
+RAMP, RAMP_TIME, RAMP_STEP = (68.0, 90.0), 8.0, 2e-3  # m/s, s, s
 CYCLE_SPEED, CYCLE_SETTLED, CYCLE_END = 84.0, 1.5, 2.0  # m/s, s, s
 
 
@@ -310,7 +310,7 @@ def measure():
     found.critical["small swings"] = zero(GROWTH_SPEEDS, [value.real for value in found.modes])
 
     slow, fast = RAMP
-    wheelset = Wheelset(slow, 4e-3)
+    wheelset = Wheelset(slow, 2e-3)
     found.ramp = wheelset.run(RAMP_TIME, lambda now: slow + (fast - slow) * now / RAMP_TIME, RAMP_STEP, title="ramp")
     wheelset.close()
     found.critical["slow ramp"] = loses_stability(found.ramp)
@@ -362,7 +362,7 @@ def draw_stability(found, free, growth, ramp):
     for edge in (-1e3 * CLEARANCE, 1e3 * CLEARANCE):
         ramp.axhline(edge, color="#888888", linewidth=0.8)
     ramp.set(xlabel="speed [m/s]", ylabel="displacement [mm]", title="Slowly faster", xlim=RAMP, ylim=(-11, 17))
-    ramp.legend(loc="upper left", fontsize=8)
+    ramp.legend(loc="upper left", fontsize=8, frameon=True, framealpha=1.0, edgecolor="none")
 
 
 def draw_cycle(found, swing, heat, across):
@@ -462,6 +462,7 @@ def animate(found, frames=60):
     hottest = max(found.cycle[f"peak_temperature_{side}"][found.last].max() for side in SIDES) - 273.15
     coldest = min(found.cycle[f"peak_temperature_{side}"][found.last].min() for side in SIDES) - 273.15
     colours = plt.Normalize(coldest, hottest)
+    base = min(left[1].min() for _, (left, _) in profiles) - 273.15
     most = max(left[2].max() for _, (left, _) in profiles)
     reach = 1e3 * np.abs(found.wear[0]).max()
     figure = plt.figure(figsize=(7.2, 6.0), layout="constrained", dpi=80)
@@ -476,14 +477,14 @@ def animate(found, frames=60):
             draw_wheelset(above, found, row, colours)
             position, temperature, wear = left
             place = 1e3 * on_tread(position, found.cycle["y"][row])
-            for axes, values, top_value, label in (
-                (heat, temperature - 273.15, hottest, "temperature [°C]"),
-                (worn, 1e9 * wear, 1e9 * most, "wear of a passage [nm]"),
+            for axes, values, bottom_value, top_value, label in (
+                (heat, temperature - 273.15, base, hottest, "temperature [°C]"),
+                (worn, 1e9 * wear, 0.0, 1e9 * most, "wear of a passage [nm]"),
             ):
                 axes.clear()
-                axes.fill_between(place, values[::-1], coldest if axes is heat else 0.0, color=ORANGE, alpha=0.8)
+                axes.fill_between(place, values[::-1], bottom_value, color=ORANGE, alpha=0.8)
                 axes.set(xlim=(-reach, reach), xlabel="on the left tread, towards the flange [mm]", ylabel=label)
-                axes.set_ylim(coldest if axes is heat else 0.0, 1.05 * top_value)
+                axes.set_ylim(bottom_value, top_value + 0.05 * (top_value - bottom_value))
             writer.grab_frame()
             show((number + 1) / len(profiles), "animation")
     plt.close(figure)
