@@ -7,7 +7,7 @@ import numpy as np
 # The digits were typed from memory, without the book at hand, so they were compared with a solution of their own
 # definition: full adhesion on the ellipse, constant tractions on 120 and 240 elements over each axis, referred to the
 # area of those elements, extrapolated to infinitely many. All of C11, C22 and C23 here are within 0.3 % of that, C33
-# within 0.7 %, where half a unit of the third digit is up to 0.5 %. What is interpolated for that ellipse is within 0.6 %.
+# within 0.7 %, where half a unit of the third digit is up to 0.5 %. What is interpolated for that ellipse: 0.6 %.
 POISSON = np.array([0.0, 0.25, 0.5])
 TABLE = {  # b/a: C11, C22, C23 and C33, each at these Poisson's ratios
     0.7: [[3.82, 4.54, 5.58], [3.82, 4.21, 4.67], [1.76, 1.95, 2.18], [1.05, 0.965, 0.852]],
