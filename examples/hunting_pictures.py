@@ -136,7 +136,7 @@ def draw_wheelset(axes, found, row, colours):
         axes.annotate("", tip, tail, arrowprops={"arrowstyle": "-|>", "color": GREEN, "linewidth": 2.0}, zorder=4)
     axes.annotate("", (-3.5, -1.2), (-4.0, -1.2), arrowprops={"arrowstyle": "-|>", "color": GREEN, "linewidth": 2.0})
     axes.text(
-        -3.4, -1.2, f"{1e-3 * 0.5 * ARROW:g} kN: friction on a wheel; it runs to the right", va="center", fontsize=9
+        -3.4, -1.2, f"{1e-3 * 0.5 * ARROW:g} kN of friction on a wheel; running to the right", va="center", fontsize=9
     )
     axes.set(xlim=(-4.2, 1.2), ylim=(-1.5, 1.5), aspect="equal", xticks=[], yticks=[])
     axes.grid(False)
