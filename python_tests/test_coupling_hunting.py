@@ -49,10 +49,10 @@ def slopes(critical):
 
 @pytest.fixture(scope="module")
 def cycle(critical):
-    """Return 1.5 s at 112 % of the critical speed, from a flange on, and the wheelset with the last profiles."""
+    """Return 1.1 s at 112 % of the critical speed, from a flange on, and the wheelset with the last profiles."""
     wheelset = Wheelset(1.12 * critical, CLEARANCE)
-    wheelset.run(1.1, 1.12 * critical)
-    result = wheelset.run(1.5, 1.12 * critical, strips_every=4)
+    wheelset.run(0.7, 1.12 * critical)
+    result = wheelset.run(1.1, 1.12 * critical, strips_every=4)
     wheelset.close()
     return result, wheelset
 
@@ -167,7 +167,10 @@ def test_settles_below(critical):
 
 
 def test_hunts_above(cycle):
-    """At 112 % it goes from flange to flange, cycle after cycle the same, left and right alike."""
+    """At 112 % it goes from flange to flange, cycle after cycle the same, left and right alike.
+
+    To 0.1 %: the highest of rows that are 1 ms apart is up to 0.02 % below the summit.
+    """
     result, _ = cycle
     starts = hunting.crossings(result["time"], result["y"])
     heights = [result["y"][(result["time"] >= a) & (result["time"] < b)].max() for a, b in pairwise(starts)]
@@ -194,18 +197,23 @@ def test_energy(cycle):
 
 
 def test_wear_across_the_tread(cycle):
-    """Over a cycle the tread is worn as much as the rail, wider and less deep; to the left, near the flange."""
+    """Over a cycle the tread is worn as much as the rail, wider and less deep; to the left, nearer to the flange.
+
+    As much: to the sampling of both at the same places, measured 0.05 %. Wider: by the way of the contact, some two
+    clearances and more. Nearer: by the mean displacement, weighted by the wear, to a twentieth of a clearance.
+    """
     result, wheelset = cycle
-    place, rail, tread = hunting.mean_wear(wheelset, hunting.last_cycle(result))
+    last = hunting.last_cycle(result)
+    place, rail, tread = hunting.mean_wear(wheelset, last)
     assert rail.max() > 0.0
     assert tread.sum() == pytest.approx(rail.sum(), rel=2e-3)
     assert tread.max() < 0.6 * rail.max()
     width = {name: np.ptp(place[wear > 0.05 * wear.max()]) for name, wear in (("rail", rail), ("tread", tread))}
-    assert width["tread"] > width["rail"] + CLEARANCE
-    place, rail, tread = hunting.mean_wear(wheelset, hunting.last_cycle(result) & (result["y"] > 0.5 * CLEARANCE))
-    assert place @ tread / tread.sum() == pytest.approx(
-        place @ rail / rail.sum() + 0.75 * CLEARANCE, abs=0.3 * CLEARANCE
-    )
+    assert width["tread"] > width["rail"] + 2.0 * CLEARANCE
+    to_the_left = last & (result["y"] > 0.5 * CLEARANCE)
+    place, rail, tread = hunting.mean_wear(wheelset, to_the_left)
+    nearer = place @ tread / tread.sum() - place @ rail / rail.sum()
+    assert nearer == pytest.approx(result["y"][to_the_left].mean(), abs=0.05 * CLEARANCE)
 
 
 def test_yawed_in_a_curve():
