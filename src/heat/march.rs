@@ -123,7 +123,8 @@ impl HeatMarch<'_> {
             upstream_flux = match heating {
                 Some(exchange) => {
                     let position = self.transport.position(column.index);
-                    self.surface.flux(exchange, unheated, heat.response, position)?
+                    self.surface
+                        .flux(exchange, (unheated, heat.response), f64::INFINITY, position)?
                 }
                 None => 0.0,
             };

@@ -111,12 +111,20 @@ pub struct CommonChange {
 }
 
 impl SurfaceCondition<'_> {
-    /// The flux q into the rail that satisfies (23) where θ = `unheated` + `response` q: Newton with a bracket. `position`
-    /// is that of the column, `m`, for the error.
+    /// The flux q into the rail that satisfies (23) where θ = `unheated` + `response` q: Newton with a bracket, from the `guess` of θ
+    /// if that can be it, else from the hot end. `position` is that of the column, `m`, for the error.
+    ///
+    /// Friction that rises with temperature may have several solutions: from a guess it is one next to it.
     ///
     /// # Errors
     /// [`Error::SurfaceHeatNotConverged`].
-    pub fn flux(&self, exchange: &SurfaceExchange, unheated: f64, response: f64, position: f64) -> Result<f64> {
+    pub fn flux(
+        &self,
+        exchange: &SurfaceExchange,
+        (unheated, response): (f64, f64),
+        guess: f64,
+        position: f64,
+    ) -> Result<f64> {
         let parameters = self.friction.parameters;
         let gain = response * parameters.heat_partition;
         let loss = exchange.loss();
@@ -127,7 +135,7 @@ impl SurfaceCondition<'_> {
         let mut low = unheated / damping;
         let mut high = low + gain * largest * exchange.friction / damping;
         let tolerance = self.settings.surface_tolerance * (low.abs() + high.abs() + 1.0);
-        let mut theta = high;
+        let mut theta = if low < guess && guess < high { guess } else { high };
         let mut residual = f64::INFINITY;
         for _ in 0..self.settings.surface_newton_steps {
             let (mu, slope) = self.friction.coefficient(theta);
@@ -216,7 +224,7 @@ mod tests {
             let parameters = parameters(10.0_f64.powf(log_resistance));
             let condition = condition(&parameters);
             let exchange = SurfaceExchange::new(&parameters, pressure, Sliding::new(-speed, -saturation), wheel_rise);
-            let flux = condition.flux(&exchange, unheated, response, 0.0).unwrap();
+            let flux = condition.flux(&exchange, (unheated, response), f64::INFINITY, 0.0).unwrap();
             // (23), written out.
             let rise = unheated + response * flux;
             let mu = 0.9 * friction::coefficient(&parameters, 293.15 + rise).0;
@@ -260,7 +268,7 @@ mod tests {
                     },
                     wheel_rise + h * change.wheel_rise,
                 );
-                let flux = condition.flux(&exchange, unheated + h * du, response, 0.0).unwrap();
+                let flux = condition.flux(&exchange, (unheated + h * du, response), f64::INFINITY, 0.0).unwrap();
                 let rise = unheated + h * du + response * flux;
                 (flux, friction::coefficient(&parameters, condition.friction.ambient + rise).1)
             };
@@ -285,7 +293,7 @@ mod tests {
         condition.settings.surface_newton_steps = 0;
         let exchange = SurfaceExchange::new(&parameters, 1e9, Sliding::new(0.1, 1.0), 0.0);
         assert!(matches!(
-            condition.flux(&exchange, 0.0, 1e-7, 1.5e-3),
+            condition.flux(&exchange, (0.0, 1e-7), f64::INFINITY, 1.5e-3),
             Err(Error::SurfaceHeatNotConverged { position, iterations: 0, .. }) if position == 1.5e-3
         ));
     }

@@ -118,9 +118,9 @@ fn patch(random: &mut Random, parameters: &mut Parameters) {
     parameters.prescribed_penetration = random.between(0.1, 0.6) * approach;
 }
 
-/// The steepest friction, `1/K`: twice the paper's. Where the coefficient changes much faster, a contact has several
+/// The steepest friction, `1/K`: the paper's. Where the coefficient changes much faster, a contact has several
 /// temperatures, and no method finds the right one.
-const STEEPEST: f64 = 0.004;
+const STEEPEST: f64 = 0.002;
 
 /// A table of friction coefficients that rise or fall between temperatures some degrees to some hundred degrees apart.
 fn table(random: &mut Random, parameters: &mut Parameters) {

@@ -313,7 +313,7 @@ pub struct Cells<'a> {
 }
 
 /// The flux of the cells, one after the other along the way of the rail, from the temperature that their surface has without
-/// it, at a place among `cells` and a cell; and surface temperature and heat content.
+/// it, at a place among `cells` and a cell, and a guess of that with it; and surface temperature and heat content.
 #[inline(always)]
 pub fn respond(
     arithmetic: Arithmetic,
@@ -322,7 +322,7 @@ pub fn respond(
     (unheated, unheated_content): (&[Block], &[Block]),
     flux: &mut [Block],
     cells: &mut Cells,
-    mut flux_at: impl FnMut(usize, usize, f64) -> Result<f64>,
+    mut flux_at: impl FnMut(usize, usize, f64, f64) -> Result<f64>,
 ) -> Result<()> {
     let count = order.columns - 2;
     // The columns upstream that have a flux are those from the first one with any.
@@ -345,7 +345,7 @@ pub fn respond(
         let mut taken = [0.0; LANES];
         for strip in 0..cells.strips {
             let place = strip * count + cell;
-            taken[strip] = flux_at(place, cell, rise[0][strip])?;
+            taken[strip] = flux_at(place, cell, rise[0][strip], cells.surface[place])?;
             cells.flux[place] = taken[strip];
         }
         if !is_zero(&taken) && first.is_none() {

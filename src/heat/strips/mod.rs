@@ -163,13 +163,13 @@ impl StripHeatMarch<'_> {
     ) -> Result<()> {
         let response = scratch.responses.surface[0];
         let window = self.strips.window(self.speed);
-        self.respond(after, scratch, |place, cell, unheated| {
+        self.respond(after, scratch, |place, cell, unheated, guess| {
             let exchange = &exchange[place];
             if exchange.is_open() {
                 return Ok(0.0);
             }
             self.surface
-                .flux(exchange, unheated, response, window.position(cell + 1))
+                .flux(exchange, (unheated, response), guess, window.position(cell + 1))
         })
     }
 
@@ -328,7 +328,7 @@ impl StripHeatMarch<'_> {
         &self,
         after: &mut StripTemperature,
         scratch: &mut StripHeatScratch,
-        mut flux: impl FnMut(usize, usize, f64) -> Result<f64>,
+        mut flux: impl FnMut(usize, usize, f64, f64) -> Result<f64>,
     ) -> Result<()> {
         let (order, cells) = (self.order(), self.strips.cells);
         dense::vectorised(
@@ -354,7 +354,7 @@ impl StripHeatMarch<'_> {
                         ),
                         &mut scratch.flux[columns],
                         &mut cells_of_block,
-                        |place, cell, unheated| flux(first * cells + place, cell, unheated),
+                        |place, cell, unheated, guess| flux(first * cells + place, cell, unheated, guess),
                     )?;
                 }
                 Ok(())

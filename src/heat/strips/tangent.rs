@@ -75,7 +75,7 @@ impl StripHeatMarch<'_> {
         scratch: &mut StripHeatScratch,
     ) -> Result<()> {
         let response = scratch.responses.surface[0];
-        self.respond(tangent, scratch, |place, _, unheated| {
+        self.respond(tangent, scratch, |place, _, unheated, _| {
             let exchange = &change.exchange[place];
             if exchange.is_open() {
                 return Ok(0.0);
