@@ -6,9 +6,10 @@
 //! rigid wheel takes the part of its mirror image, which makes the creepage of two like bodies that of a rigid wheel.
 
 use super::row::Row;
+use super::set_up::mechanics_alone;
 use crate::error::Result;
 use crate::friction::coulomb;
-use crate::parameters::{FrictionLaw, Parameters, Wheel};
+use crate::parameters::{Parameters, Wheel};
 use crate::signals::Inputs;
 use crate::simulation::Simulation;
 
@@ -26,11 +27,8 @@ const STICK_CREEPAGE: f64 = 0.002;
 pub fn parameters() -> Parameters {
     Parameters {
         wheel: Wheel::Rigid,
-        friction_law: FrictionLaw::Constant,
         normal_tangential_coupling: false,
-        thermal_expansion: 0.0,
-        wear_coefficient: 0.0,
-        ..Parameters::default()
+        ..mechanics_alone()
     }
 }
 

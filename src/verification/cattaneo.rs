@@ -8,9 +8,10 @@
 //! the displacement is f(T) = direct/(2π) (μN − T) ln(1 − T/(μN)) per width, and a cycle between ±T* takes the area of its loop.
 
 use super::row::Row;
+use super::set_up::mechanics_alone;
 use crate::body::half_plane::HalfPlanes;
 use crate::error::Result;
-use crate::parameters::{FrictionLaw, Parameters, SlipSource, Wheel};
+use crate::parameters::{Parameters, SlipSource, Wheel};
 use crate::signals::Inputs;
 use crate::simulation::Simulation;
 use std::f64::consts::PI;
@@ -26,11 +27,8 @@ const TURN: f64 = 0.9;
 fn parameters() -> Parameters {
     Parameters {
         wheel: Wheel::Elastic,
-        friction_law: FrictionLaw::Constant,
         slip_source: SlipSource::VehicleSpeed,
-        thermal_expansion: 0.0,
-        wear_coefficient: 0.0,
-        ..Parameters::default()
+        ..mechanics_alone()
     }
 }
 

@@ -3,8 +3,10 @@
 //! depends on temperature, in partial slip, against the same limit.
 
 use super::row::Row;
+use super::set_up::{self, mechanics_alone};
 use crate::error::Result;
-use crate::parameters::{FrictionLaw, Parameters, Wheel};
+use crate::numerics::dense::largest_change;
+use crate::parameters::{Parameters, Wheel};
 use crate::signals::{Inputs, Outputs};
 use crate::simulation::Simulation;
 
@@ -20,10 +22,7 @@ fn parameters(wheel: Wheel, contact_nodes: usize) -> Parameters {
     Parameters {
         wheel,
         contact_nodes,
-        friction_law: FrictionLaw::Constant,
-        thermal_expansion: 0.0,
-        wear_coefficient: 0.0,
-        ..Parameters::default()
+        ..mechanics_alone()
     }
 }
 
@@ -59,16 +58,11 @@ pub fn rows() -> Result<Vec<Row>> {
     for (wheel, name) in [(Wheel::Rigid, "rigid wheel"), (Wheel::Elastic, "elastic wheel")] {
         let limit = curves(wheel, FINE)?;
         for (nodes, tolerance) in [(31, 0.0075), (61, 0.005), (121, 0.003)] {
-            let values = curves(wheel, nodes)?;
-            let worst = values
-                .iter()
-                .zip(&limit)
-                .fold(0.0, |worst: f64, (value, limit)| worst.max((value - limit).abs()));
             rows.push(Row::absolute(
                 format!("largest error of T/(mu N) at {nodes} nodes, {name}"),
                 "1",
                 0.0,
-                worst,
+                largest_change(&curves(wheel, nodes)?, &limit),
                 tolerance,
                 SOURCE,
             ));
@@ -94,20 +88,9 @@ fn free_rolling(contact_nodes: usize) -> Result<f64> {
         ..Inputs::default()
     };
     let mut run = Simulation::new(&parameters(Wheel::Rigid, contact_nodes), &inputs(0.0))?;
-    let mut traction =
-        |creepage: f64| -> Result<f64> { Ok(run.hold(&inputs(creepage), PASSAGE, 1)?.traction_coefficient) };
-    // The curve is nearly straight here: a few secant steps.
-    let (mut before, mut now) = (-0.001, -0.002);
-    let mut traction_before = traction(before)?;
-    for _ in 0..5 {
-        let traction_now = traction(now)?;
-        if traction_now == traction_before {
-            break;
-        }
-        let next = now - traction_now * (now - before) / (traction_now - traction_before);
-        (before, traction_before, now) = (now, traction_now, next);
-    }
-    Ok(now)
+    set_up::free_rolling([-0.001, -0.002], |creepage| {
+        Ok(run.hold(&inputs(creepage), PASSAGE, 1)?.traction_coefficient)
+    })
 }
 
 /// Partial slip at 0.5 % with friction that falls with temperature: force and peak temperature.

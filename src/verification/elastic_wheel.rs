@@ -3,6 +3,7 @@
 //! rolling at creepage 0 where the rigid wheel's is −0.0016 (6e6 N/m).
 
 use super::row::Row;
+use super::set_up::{self, mechanics_alone};
 use super::{carter, hertz};
 use crate::error::Result;
 use crate::parameters::{FrictionLaw, Parameters, Wheel};
@@ -110,11 +111,9 @@ fn mean_error(contact_nodes: usize) -> Result<f64> {
 /// Like bodies without heat or wear in the gap.
 fn like_bodies(contact_nodes: usize) -> Result<Simulation> {
     let parameters = Parameters {
-        friction_law: FrictionLaw::Constant,
-        thermal_expansion: 0.0,
-        wear_coefficient: 0.0,
+        wheel: Wheel::Elastic,
         contact_nodes,
-        ..like()
+        ..mechanics_alone()
     };
     Simulation::new(&parameters, &Inputs::default())
 }
@@ -143,23 +142,12 @@ fn free_rolling(parameters: Parameters) -> Result<f64> {
         ..parameters
     };
     let mut run = Simulation::new(&parameters, &Inputs::default())?;
-    let mut traction = |creepage| -> Result<f64> {
+    // Like bodies roll freely at the second guess.
+    set_up::free_rolling([-0.001, 0.0], |creepage| {
         let inputs = Inputs {
             creepage,
             ..Inputs::default()
         };
         Ok(run.hold(&inputs, 1e-2, 60)?.traction_coefficient)
-    };
-    // The curve is nearly straight here: a few secant steps. Like bodies roll freely at the first guess.
-    let (mut before, mut now) = (-0.001, 0.0);
-    let mut traction_before = traction(before)?;
-    for _ in 0..5 {
-        let traction_now = traction(now)?;
-        if traction_now.abs() <= f64::EPSILON {
-            break;
-        }
-        let next = now - traction_now * (now - before) / (traction_now - traction_before);
-        (before, traction_before, now) = (now, traction_now, next);
-    }
-    Ok(now)
+    })
 }

@@ -32,6 +32,7 @@ pub mod power_balance;
 pub mod rigid_wheel;
 pub mod rolling_start;
 mod row;
+mod set_up;
 pub mod standstill;
 pub mod wheel_temperature;
 

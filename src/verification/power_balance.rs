@@ -4,8 +4,9 @@
 //! cells, the work of the tractions on the elastic bodies vanishes in the sum, but for the nodes at the edges.
 
 use super::row::Row;
+use super::set_up::mechanics_alone;
 use crate::error::Result;
-use crate::parameters::{FrictionLaw, Parameters, Wheel};
+use crate::parameters::{Parameters, Wheel};
 use crate::signals::Inputs;
 use crate::simulation::Simulation;
 
@@ -45,12 +46,9 @@ pub fn rows() -> Result<Vec<Row>> {
 /// |P − supplied| / supplied on `contact_nodes` nodes, without the small work of thermal expansion and wear.
 fn defect(wheel: Wheel, contact_nodes: usize, creepage: f64) -> Result<f64> {
     let parameters = Parameters {
-        friction_law: FrictionLaw::Constant,
-        thermal_expansion: 0.0,
-        wear_coefficient: 0.0,
         contact_nodes,
         wheel,
-        ..Parameters::default()
+        ..mechanics_alone()
     };
     let inputs = Inputs {
         creepage,

@@ -4,8 +4,10 @@
 
 use super::carter;
 use super::row::Row;
+use super::set_up::mechanics_alone;
 use crate::error::Result;
-use crate::parameters::{FrictionLaw, Parameters, SlipSource, Wheel};
+use crate::numerics::dense::largest_change;
+use crate::parameters::{Parameters, SlipSource, Wheel};
 use crate::signals::Inputs;
 use crate::simulation::Simulation;
 
@@ -17,12 +19,9 @@ const WAY: usize = 30;
 fn parameters(contact_nodes: usize) -> Parameters {
     Parameters {
         wheel: Wheel::Elastic,
-        friction_law: FrictionLaw::Constant,
         slip_source: SlipSource::VehicleSpeed,
-        thermal_expansion: 0.0,
-        wear_coefficient: 0.0,
         contact_nodes,
-        ..Parameters::default()
+        ..mechanics_alone()
     }
 }
 
@@ -64,16 +63,11 @@ pub fn rows() -> Result<Vec<Row>> {
     let fine = transient(2 * default - 1, 80)?;
     let mut rows = Vec::new();
     for (steps, tolerance) in [(10, 0.01), (2, 0.02)] {
-        let values = transient(default, steps)?;
-        let worst = values
-            .iter()
-            .zip(&fine)
-            .fold(0.0, |worst: f64, (value, fine)| worst.max((value - fine).abs()));
         rows.push(Row::absolute(
             format!("largest error of T/(mu N) while rolling begins, {steps} steps a half-length"),
             "1",
             0.0,
-            worst,
+            largest_change(&transient(default, steps)?, &fine),
             tolerance,
             SOURCE,
         ));

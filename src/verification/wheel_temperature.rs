@@ -3,8 +3,9 @@
 //! C and A of the ring (`rim_depth`, `rim_width`). What it wears is k_w ∫∫ |s| p dA dt, spread over the circumference.
 
 use super::row::Row;
+use super::set_up::mechanics_alone;
 use crate::error::Result;
-use crate::parameters::{FrictionLaw, Parameters, WheelHeating};
+use crate::parameters::{Parameters, WheelHeating};
 use crate::signals::Inputs;
 use crate::simulation::Simulation;
 use std::f64::consts::PI;
@@ -17,9 +18,6 @@ const STEPS: usize = 100;
 /// neither heat nor wear in the gap.
 fn parameters() -> Parameters {
     Parameters {
-        friction_law: FrictionLaw::Constant,
-        thermal_expansion: 0.0,
-        wear_coefficient: 0.0,
         contact_thermal_resistance: 1e12,
         wheel_heating: WheelHeating::On,
         heat_partition: 0.6,
@@ -28,7 +26,7 @@ fn parameters() -> Parameters {
         rim_depth: 2e-3,
         rim_width: 5e-3,
         wheel_heat_transfer: 200.0,
-        ..Parameters::default()
+        ..mechanics_alone()
     }
 }
 
