@@ -7,7 +7,8 @@
 
 mod draw;
 mod drive;
-mod random;
+#[doc(hidden)]
+pub mod random;
 mod slow;
 
 use crate::error::Error;

@@ -1,4 +1,4 @@
-//! Random numbers that repeat.
+//! Random numbers that repeat, for the tests too.
 
 /// Sebastiano Vigna's SplitMix64.
 #[derive(Debug, Clone)]

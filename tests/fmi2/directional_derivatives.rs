@@ -2,9 +2,9 @@
 //! back with fmi2SetFMUstate, over random operating points in stick, partial slip and sliding.
 
 use super::importer::{Api, Client, Handle, OK, reference};
-use super::random::Random;
 use wheelrail::parameters::Parameters;
 use wheelrail::signals::{INPUTS, OUTPUTS};
+use wheelrail::torture::random::Random;
 
 const STEP: f64 = 1e-3;
 const POINTS: usize = 30;
@@ -91,7 +91,7 @@ impl Point<'_> {
 #[test]
 fn directional_derivatives_are_the_differences_of_a_rolled_back_step() {
     let api = Api::load();
-    let mut random = Random(3);
+    let mut random = Random::new(3, 0);
     let (mut compared, mut large, mut corners, mut regimes, mut worst) = (0, 0, 0, [0; 3], 0.0_f64);
     for point in 0..POINTS {
         let vehicle = point % 2 == 1;

@@ -4,7 +4,6 @@
 
 mod importer;
 mod own_process;
-mod random;
 
 mod abi;
 mod calls;

@@ -4,13 +4,13 @@
 
 use super::importer::{Api, Client, Handle, OK, reference};
 use super::own_process::in_own_process;
-use super::random::Random;
 use std::env::var;
 use std::fs::read_to_string;
 use std::ptr::null_mut;
 use std::time::{Duration, Instant};
 use wheelrail::parameters::Parameters;
 use wheelrail::signals::OUTPUTS;
+use wheelrail::torture::random::Random;
 
 /// Communication step, [s].
 const STEP: f64 = 1e-3;
@@ -82,7 +82,7 @@ struct Given {
 impl Scenario {
     fn new(seed: u64) -> Scenario {
         Scenario {
-            random: Random(seed),
+            random: Random::new(seed, 0),
             speed: Ramp::at(20.0),
             creepage: Ramp::at(0.0),
             load: Ramp::at(60e3),
@@ -97,7 +97,7 @@ impl Scenario {
     fn choose_speed(&mut self) {
         let random = &mut self.random;
         let now = self.speed.value;
-        let target = match random.bits() % 5 {
+        let target = match random.count(0, 4) {
             0 | 1 if now != 0.0 => 0.0,
             0 => now,
             1 => random.between(-10.0, 40.0),
@@ -112,7 +112,7 @@ impl Scenario {
 
     fn choose_creepage(&mut self) {
         let random = &mut self.random;
-        let target = match random.bits() % 8 {
+        let target = match random.count(0, 7) {
             // Locked wheel, slide, partial slip, free rolling.
             0 => -1.0,
             1 => random.between(-0.5, -0.02),
