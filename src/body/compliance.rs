@@ -30,6 +30,11 @@ impl Scales {
             displacement: half_length * half_length / parameters.wheel_radius,
         }
     }
+
+    /// A compliance, displacement per traction `m/Pa`, in these units.
+    pub fn compliance(&self, compliance: f64) -> f64 {
+        compliance * self.pressure / self.displacement
+    }
 }
 
 /// Displacement of the n contact nodes per traction at the n contact nodes, all n × n and scaled. The first word is

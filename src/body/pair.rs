@@ -74,8 +74,10 @@ fn by_half_planes(
 ) -> Result<(RollingCompliance, ThermalDisplacement)> {
     let remainder = |(lambda, shear): Lame| Remainder::new(parameters, lambda, shear);
     let blocks = |displacement: DMatrix<f64>| {
-        let traction = scales.pressure / scales.displacement;
-        Compliance::from_blocks(&(displacement * traction), parameters.normal_tangential_coupling)
+        Compliance::from_blocks(
+            &(displacement * scales.compliance(1.0)),
+            parameters.normal_tangential_coupling,
+        )
     };
     let (n, spacing) = (mesh.contact_nodes, mesh.contact_spacing());
     // A nodal force is the traction times the tributary length.
@@ -200,7 +202,7 @@ mod tests {
             let (mesh, scales) = (Mesh::new(&parameters), Scales::new(&parameters));
             let (pair, _) = build(&mesh, &parameters, &scales).unwrap();
             let planes = HalfPlanes::of_pair(&parameters);
-            let (h, scale) = (mesh.contact_spacing(), scales.pressure / scales.displacement);
+            let (h, scale) = (mesh.contact_spacing(), scales.compliance(1.0));
             let along = (planes.along(0.0, h) - planes.along(h, h)) * scale;
             let across = planes.across(h, h) * scale;
             let c = &pair.at_rest;

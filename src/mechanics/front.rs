@@ -17,6 +17,9 @@
 //! ahead just touches, 1 where the leading node has just joined, so that nothing jumps when a node joins. The two numbers
 //! of S are fitted to solutions on refined nodes; they do not depend on Poisson's ratio, friction or creepage.
 
+use crate::body::compliance::Scales;
+use crate::body::half_plane::HalfPlanes;
+
 /// Separation, pressures and shears below this multiple of the unit pressure are not divided by.
 const LEAST_PRESSURE: f64 = 1e-12;
 /// S at ω = 0 and 1, and its rise towards ω = ½ over ω(1 − ω).
@@ -80,6 +83,17 @@ impl Added {
             change += self.by_pressure[node] * edge.pressure[node] + self.by_shear[node] * edge.shear[node];
         }
         change
+    }
+}
+
+impl NearField {
+    /// Of half-planes, on cells `spacing` `m` long.
+    pub fn new(half_planes: &HalfPlanes, spacing: f64, scales: &Scales) -> NearField {
+        let cell = scales.compliance(spacing);
+        NearField {
+            direct: half_planes.direct * cell,
+            coupling: half_planes.coupling * cell,
+        }
     }
 }
 

@@ -515,13 +515,8 @@ mod tests {
 
     fn near_field() -> NearField {
         let parameters = parameters();
-        let scales = Scales::new(&parameters);
-        let cell = Mesh::new(&parameters).contact_spacing() * scales.pressure / scales.displacement;
-        let half_planes = HalfPlanes::of_pair(&parameters);
-        NearField {
-            direct: half_planes.direct * cell,
-            coupling: half_planes.coupling * cell,
-        }
+        let spacing = Mesh::new(&parameters).contact_spacing();
+        NearField::new(&HalfPlanes::of_pair(&parameters), spacing, &Scales::new(&parameters))
     }
 
     fn solve(problem: &MechanicsProblem) -> Solved {

@@ -39,12 +39,7 @@ impl Rail {
         let scales = Scales::new(parameters);
         let (compliance, thermal) = pair::build(&mesh, parameters, &scales)?;
         let heat = Heat::new(&mesh, &thermal, parameters)?;
-        let half_planes = HalfPlanes::of_pair(parameters);
-        let cell = mesh.contact_spacing() * scales.pressure / scales.displacement;
-        let near_field = NearField {
-            direct: half_planes.direct * cell,
-            coupling: half_planes.coupling * cell,
-        };
+        let near_field = NearField::new(&HalfPlanes::of_pair(parameters), mesh.contact_spacing(), &scales);
         let relaxation = Relaxation::new(parameters, &mesh, &compliance.at_rest, near_field);
         let r0 = parameters.wheel_radius;
         let profile = (0..mesh.contact_nodes)

@@ -200,12 +200,11 @@ fn solve_tractions(problem: &Problem, fields: &mut Fields, scratch: &mut Scratch
 
 /// Adapts the normal compliance to the wear of the step.
 fn soften(problem: &Problem, fields: &Fields, scratch: &mut Scratch) {
-    let scales = problem.rail.scales;
     let transport = problem.upwind();
     let changed = scratch.softening.update(
         &problem.rail.compliance.at_rest.normal_normal,
         &fields.slip,
-        problem.parameters.wear_coefficient * scales.pressure / scales.displacement,
+        problem.rail.scales.compliance(problem.parameters.wear_coefficient),
         CellStep::new(
             1.0 / problem.conditions.duration,
             problem.rail.mesh.contact_spacing(),
