@@ -10,7 +10,7 @@ use crate::transport::{CellStep, Cells, Upwind};
 pub struct WearMarch<'a> {
     /// Columns from inflow to outflow.
     pub transport: Upwind<'a>,
-    /// CellStep Δt, `s`; infinite for the steady depth.
+    /// Step Δt, `s`; infinite for the steady depth.
     pub duration: f64,
     /// First column of the contact window; wear rates start there.
     pub first_contact: usize,

@@ -3,19 +3,19 @@
 //! **The strain of the leading node.** The difference to the node ahead contains the jump of u₁ out of the contact, as the
 //! difference of the gaps does: where pressure and shear leave the edge in a fixed ratio, both with the root of the distance,
 //! both jumps are in that ratio, too. The jump of the gap is known: the separation w of the node ahead. So w τ/p of the
-//! leading node is taken off its strain. Without that the slip is of first order in the spacing, with it of higher order.
+//! leading node is taken off its strain.
 //!
-//! **The slip that is smaller than a cell.** Unlike bodies (Dundurs) have τ/p that grows at the leading edge with the logarithm
-//! of the distance from it, until the edge slips: on 0.005 to 0.04 of the half-length, less than a cell. The nodes that stick
-//! behind it feel the rest of that slip. Beside an edge at which a zone of length d slips, the shear is that of full stick
-//! less k K d/(2√x), with k = β E*/(2π), and d falls exponentially with the distance of τ/p from μ. The rows of the first
-//! two nodes receive it as a prescribed slip
+//! **The slip that is smaller than a cell.** Unlike bodies (Dundurs) have τ/p that grows towards the leading edge with the
+//! logarithm of the distance from it, until the edge slips, on less than a cell. The strain between the nodes contains that slip,
+//! although they stick. Beside an edge at which a zone of length d slips, the shear is that of full stick less k K d/(2√x),
+//! with k = β E*/(2π), and d falls exponentially with the distance of τ/p from μ. So the rows of the first two nodes are given
+//! back the slip in their strains, which is against the shear,
 //!
 //! S β p̂ |V|/Δx exp((ρ̂ − μ)/k),  S = 0.21 + 0.57 ω(1 − ω),
 //!
 //! with p̂ and ρ̂ the pressure and τ/p of the next nodes, shared by ω = γ/(1 + γ), γ = w E*/(2 Δx p): 0 where the node
 //! ahead just touches, 1 where the leading node has just joined, so that nothing jumps when a node joins. The two numbers
-//! of S are fitted to solutions on refined nodes; they do not depend on Poisson's ratio, friction or creepage.
+//! of S are fitted to solutions on refined nodes. The verification's creep curves show what both corrections leave.
 
 use crate::body::compliance::Scales;
 use crate::body::half_plane::HalfPlanes;
@@ -129,7 +129,8 @@ impl Front {
         rows: &mut [Added; 2],
     ) {
         let NearField { direct, coupling } = self.near_field;
-        // Of a slip towards −x₁ for travel along +x₁ on a rail softer than the wheel, mirrored with each of the two.
+        // Sign of the shear at an edge that slips: + on a rail softer than the wheel that is travelled along +x₁. A harder rail
+        // turns it, and so does travel along −x₁.
         let sign = if (coupling > 0.0) == self.forward { 1.0 } else { -1.0 };
         let slope = coupling.abs() / (std::f64::consts::PI * direct);
         let [_, p1, p2] = edge.pressure;

@@ -324,7 +324,7 @@ pub(super) fn law_slip(problem: &MechanicsProblem, displacement: &[f64], node: u
 
 /// Slip velocity that heats, wears and takes power: the mean of those in the middle of the two cells beside a node, `m/s`.
 /// With it the work of the tractions on the body vanishes in the sum over the nodes, as it does on an elastic body, but for
-/// the edges; with the slip of the law, taken on one side, some 4 % of the power would be lost at creepage 0.
+/// the edges. With the slip of the law, taken on one side, it would not.
 fn mean_slip(problem: &MechanicsProblem, displacement: &[f64], node: usize) -> f64 {
     problem.rigid_slip
         + 0.5 * problem.strain_speed * (displacement[node - 1] - displacement[node + 1])

@@ -1,5 +1,6 @@
 //! How long the steps of an explicit master may be at low speed: wheel and contact take turns, each with the other's newest
-//! value. Contact and wheel are a spring and a mass in series with a damper, so that the limit is that of the spring, at any speed.
+//! value. Contact and wheel are a spring and a mass in series with a damper, so that the limit is that of the spring, at any speed:
+//! an explicit master must be able to take steps of a millisecond.
 
 use super::row::Row;
 use crate::error::Result;
@@ -7,7 +8,7 @@ use crate::parameters::{Parameters, SlipSource};
 use crate::signals::Inputs;
 use crate::simulation::Simulation;
 
-const SOURCE: &str = "an explicit master must be able to take steps of a millisecond";
+const SOURCE: &str = "stability: the swing on the contact's spring dies down";
 /// Of a driven wheelset's wheel, `kg m²`.
 const INERTIA: f64 = 60.0;
 const STEP: f64 = 1e-3;
