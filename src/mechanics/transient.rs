@@ -1,8 +1,8 @@
 //! ∂u₁/∂t in the slip velocity: the material under the wheel has come from the displacement of the step before.
 //!
-//! Backward Euler would take (u₁ − u₁ of the step before)/Δt. It relaxes a jump by 1/(1 + |V|Δt/ℓ) a step, where ℓ is the
+//! Backward Euler would take (u₁ − u₁ of the step before)/Δt. It relaxes a jump to 1/(1 + |V|Δt/ℓ) in a step, where ℓ is the
 //! way on which rolling forgets it, several half-lengths of the contact, because the compliance of the whole body is in
-//! series with that of the contact: after 26 half-lengths some 15 % of μN would still be left. So the step is fitted to the
+//! series with that of the contact: a step of 5ℓ would leave a sixth of it, in place of exp(−5). So the step is fitted to the
 //! exponential that is the solution, Δt* = (ℓ/|V|)(exp(|V|Δt/ℓ) − 1): exact for ∂u/∂t + |V|u/ℓ = F, Δt where the step is
 //! short, and without trace where it is long. At rest Δt* = Δt.
 

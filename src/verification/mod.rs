@@ -9,6 +9,7 @@ pub mod chained;
 pub mod contact_points;
 pub mod convergence;
 pub mod creep_curve;
+pub mod creepage_jump;
 pub mod elastic_wheel;
 pub mod energy;
 pub mod explicit_master;
@@ -107,6 +108,10 @@ pub const CHECKS: &[Check] = &[
     Check {
         name: "Rolling from rest",
         rows: rolling_start::rows,
+    },
+    Check {
+        name: "Jump of the creepage",
+        rows: creepage_jump::rows,
     },
     Check {
         name: "Steps of an explicit master",
