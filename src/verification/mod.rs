@@ -14,6 +14,7 @@ pub mod elastic_wheel;
 pub mod energy;
 pub mod explicit_master;
 pub mod flash_temperature;
+pub mod groove;
 pub mod hertz;
 pub mod kalker;
 pub mod locked_wheel;
@@ -140,6 +141,10 @@ pub const CHECKS: &[Check] = &[
     Check {
         name: "Wheel temperature and wear",
         rows: wheel_temperature::rows,
+    },
+    Check {
+        name: "Groove of a wheel on the spot",
+        rows: groove::rows,
     },
     Check {
         name: "Rail from wheel to wheel",
