@@ -93,3 +93,124 @@ impl Blocks {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::body::grid::Grid;
+    use nalgebra::{DMatrix, DVector};
+
+    const CELLS: usize = 9;
+    const STRIPS: usize = 4;
+
+    /// Runs of different lengths, one of a single cell.
+    fn contact() -> Contact {
+        let grid = Grid::new(CELLS, STRIPS, 1.0, 1.0);
+        let inside = ["001111100", "000000000", "011010110", "111111111"];
+        let mut contact = Contact::new(&grid);
+        contact.list(&grid, |place| {
+            let (strip, cell) = (place / grid.stride(), place % grid.stride());
+            inside[strip].as_bytes()[cell] == b'1'
+        });
+        contact
+    }
+
+    /// Slip along and across at so many cells ahead of a shear there.
+    fn kernel(component: usize, lag: isize) -> f64 {
+        let x = lag as f64;
+        [1.0, 0.8][component] * (-0.3 * x * x).exp() + [0.04, -0.03][component] * x / (1.0 + x * x)
+    }
+
+    /// Rows without any structure.
+    fn rows(cells: usize) -> Vec<Row> {
+        let wave = |i: usize, k: usize| (1.3 * i as f64 + 2.1 * k as f64).sin();
+        let matrix = |i: usize, k: usize, unit: f64| {
+            [
+                [unit + 0.2 * wave(i, k), 0.2 * wave(i, k + 1)],
+                [0.2 * wave(i, k + 2), unit + 0.2 * wave(i, k + 3)],
+            ]
+        };
+        (0..cells)
+            .map(|i| Row {
+                by_shear: matrix(i, 0, 0.7),
+                by_ahead: matrix(i, 4, 1.0),
+                by_behind: matrix(i, 8, -0.2),
+                ..Row::default()
+            })
+            .collect()
+    }
+
+    /// by_shear + by_ahead (T + edge) + by_behind T′ of one run, T′ that of the cells behind: x components first.
+    fn dense(rows: &[Row], edge: &[[f64; 2]], behind: isize) -> DMatrix<f64> {
+        let n = rows.len();
+        DMatrix::from_fn(2 * n, 2 * n, |line, column| {
+            let ((i, line), (j, component)) = ((line % n, line / n), (column % n, column / n));
+            let (lag, row) = (i as isize - j as isize, &rows[i]);
+            let own = if i == j { 1.0 } else { 0.0 };
+            own * row.by_shear[line][component]
+                + row.by_ahead[line][component] * (kernel(component, lag) + own * edge[i][component])
+                + row.by_behind[line][component] * kernel(component, lag + behind)
+        })
+    }
+
+    /// Each run by itself is solved as its whole matrix in double precision is, for either direction of travel.
+    #[test]
+    fn the_blocks_solve_each_run() {
+        let contact = contact();
+        let n = contact.cells();
+        let rows = rows(n);
+        let edge: Vec<[f64; 2]> = (0..n).map(|i| [0.3 * (i % 3) as f64, 0.1 * (i % 2) as f64]).collect();
+        let origin = CELLS + 1;
+        let table = |component: usize| -> Vec<f32> {
+            (0..2 * origin + 1)
+                .map(|place| kernel(component, place as isize - origin as isize) as f32)
+                .collect()
+        };
+        let (along, across) = (table(0), table(1));
+        let right: Vec<f32> = (0..2 * n).map(|i| (0.9 * i as f64).cos() as f32).collect();
+        for behind in [-1, 1] {
+            let response = OwnResponse {
+                along: &along,
+                across: &across,
+                origin,
+                behind,
+            };
+            let mut blocks = Blocks::new(CELLS, CELLS * STRIPS);
+            assert!(blocks.factorise(&contact, &rows, &edge, &response));
+            let mut solved = right.clone();
+            blocks.solve(&mut solved);
+            for run in contact.runs() {
+                let own = || run.own().chain(run.own().map(|cell| n + cell));
+                let matrix = dense(&rows[run.own()], &edge[run.own()], behind);
+                let values: Vec<f64> = own().map(|place| f64::from(right[place])).collect();
+                let exact = matrix.lu().solve(&DVector::from_vec(values)).unwrap();
+                for (place, exact) in own().zip(exact.iter()) {
+                    // Single precision, and a condition of some tens.
+                    assert!(
+                        (f64::from(solved[place]) - exact).abs() < 1e-5 * exact.abs().max(1.0),
+                        "{behind} {place}: {} {exact}",
+                        solved[place]
+                    );
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_singular_block_is_refused() {
+        let contact = contact();
+        let n = contact.cells();
+        let zero = vec![0.0; 2 * CELLS + 3];
+        let response = OwnResponse {
+            along: &zero,
+            across: &zero,
+            origin: CELLS + 1,
+            behind: -1,
+        };
+        let mut rows = rows(n);
+        // Of one cell that sticks without compliance.
+        rows[n - 1].by_shear = [[0.0; 2]; 2];
+        let mut blocks = Blocks::new(CELLS, CELLS * STRIPS);
+        assert!(!blocks.factorise(&contact, &rows, &vec![[0.0; 2]; n], &response));
+    }
+}

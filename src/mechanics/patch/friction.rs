@@ -395,3 +395,6 @@ impl Friction {
         [self.response[0][place], self.response[1][place]]
     }
 }
+
+#[cfg(test)]
+mod tests;
