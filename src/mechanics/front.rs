@@ -254,6 +254,31 @@ mod tests {
         }
     }
 
+    /// The formula of the heading with its numbers: where the node ahead just touches, and half-way to where it has joined; on an
+    /// edge that sticks, and on one that slips.
+    #[test]
+    fn the_hidden_slip_is_that_of_the_formula() {
+        let pressure = [0.1, 0.2, 0.3];
+        // k = β E*/(2π).
+        let k = 0.012 / (std::f64::consts::PI * 0.04);
+        let unit = 20.0 * 0.012;
+        for (ratio, decay) in [(0.2, (-0.1 / k).exp()), (0.31, 1.0)] {
+            let edge = |gap: f64| Edge {
+                pressure,
+                shear: [0.0, ratio * 0.2, ratio * 0.3],
+                friction: 0.3,
+                gap,
+            };
+            let [first, second] = FRONT.added(&edge(0.0));
+            assert!((first.slip - unit * 0.21 * 0.2 * decay).abs() < 1e-15);
+            assert_eq!(second.slip, 0.0);
+            // w E*/(2 Δx p) = 1: ω = ½.
+            for row in FRONT.added(&edge(0.004)) {
+                assert!((row.slip - 0.5 * unit * (0.21 + 0.57 / 4.0) * 0.25 * decay).abs() < 1e-15);
+            }
+        }
+    }
+
     #[test]
     fn like_bodies_have_no_hidden_slip() {
         let mut front = FRONT;

@@ -55,9 +55,14 @@ fn curves(wheel: Wheel, contact_nodes: usize) -> Result<Vec<f64>> {
 /// A solver that did not converge.
 pub fn rows() -> Result<Vec<Row>> {
     let mut rows = Vec::new();
-    for (wheel, name) in [(Wheel::Rigid, "rigid wheel"), (Wheel::Elastic, "elastic wheel")] {
+    // As measured, rounded up by less than what a change of the correction of the leading edge's strain by a tenth does. Like bodies
+    // need that correction alone, and it leaves second order; where a part of the slip is hidden in a cell, it is nearly the first.
+    for (wheel, name, tolerances) in [
+        (Wheel::Rigid, "rigid wheel", [0.004, 0.0023, 0.0013]),
+        (Wheel::Elastic, "elastic wheel", [0.0024, 0.0006, 0.00015]),
+    ] {
         let limit = curves(wheel, FINE)?;
-        for (nodes, tolerance) in [(31, 0.0075), (61, 0.005), (121, 0.003)] {
+        for (nodes, tolerance) in [31, 61, 121].into_iter().zip(tolerances) {
             rows.push(Row::absolute(
                 format!("largest error of T/(mu N) at {nodes} nodes, {name}"),
                 "1",
