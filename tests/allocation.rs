@@ -12,7 +12,7 @@ use wheelrail::fmi2::functions::{
     fmi2Instantiate, fmi2SetReal, fmi2SetRealInputDerivatives, fmi2SetupExperiment,
 };
 use wheelrail::fmi2::types::{CallbackFunctions, Status};
-use wheelrail::parameters::{NormalSolver, Parameters, SlipSource, Wheel, WheelHeating};
+use wheelrail::parameters::{ContactModel, NormalSolver, Parameters, SlipSource, Wheel, WheelHeating};
 use wheelrail::signals::Inputs;
 use wheelrail::wheel_rail::Model;
 
@@ -94,6 +94,16 @@ fn inputs(step: u32) -> Inputs {
     }
 }
 
+/// The same with motion across the rail, for a patch.
+fn swaying(step: u32) -> Inputs {
+    let phase = f64::from(step % 60) / 60.0 - 0.5;
+    Inputs {
+        lateral_speed: 0.1 * phase,
+        spin_rate: -3.0 * phase,
+        ..inputs(step)
+    }
+}
+
 const STEPS: u32 = 500;
 const WARM_UP: u32 = 1;
 
@@ -131,6 +141,40 @@ fn a_step_of_the_model_allocates_nothing() {
 }
 
 #[test]
+fn a_step_of_a_patch_allocates_nothing() {
+    for (wheel, wheel_heating) in [
+        (Wheel::Elastic, WheelHeating::Off),
+        (Wheel::Elastic, WheelHeating::On),
+        (Wheel::Rigid, WheelHeating::Off),
+    ] {
+        let model = Model::new(Parameters {
+            contact_model: ContactModel::Patch,
+            slip_source: SlipSource::VehicleSpeed,
+            wheel,
+            wheel_heating,
+            contact_thermal_resistance: 10.0,
+            rim_depth: 1e-3,
+            rim_width: 1e-3,
+            patch_nodes: 20,
+            patch_strips: 11,
+            ..Parameters::default()
+        })
+        .unwrap();
+        let mut workspace = model.workspace();
+        let mut state = model.initial_state(&mut workspace, &swaying(1)).unwrap();
+        for step in 1..STEPS {
+            let (count, result) =
+                allocations(|| model.step(&mut workspace, &mut state, &swaying(step), &Inputs::ZERO, 1e-3));
+            result.unwrap();
+            assert!(
+                step <= WARM_UP || count == 0,
+                "{wheel:?}, {wheel_heating:?}, step {step}: {count} allocations"
+            );
+        }
+    }
+}
+
+#[test]
 fn the_allocator_counts() {
     let before = HELD.get();
     let (count, held) = allocations(|| std::hint::black_box(vec![0_u8; 100]));
@@ -139,12 +183,16 @@ fn the_allocator_counts() {
     assert_eq!(HELD.get(), before);
 }
 
-/// Model, scratch and state of one instance at default settings hold at most 16 MiB, with a rigid and an elastic wheel.
+/// Model, scratch and state of one instance at default settings hold at most 16 MiB, of either engine with a rigid and an elastic wheel.
 #[test]
 fn an_instance_holds_at_most_16_mib() {
-    for wheel in [Wheel::Rigid, Wheel::Elastic] {
+    for (contact_model, wheel) in ContactModel::ALL
+        .iter()
+        .flat_map(|model| Wheel::ALL.iter().map(|wheel| (*model, *wheel)))
+    {
         let before = HELD.get();
         let parameters = Parameters {
+            contact_model,
             wheel,
             ..Parameters::default()
         };
@@ -155,7 +203,10 @@ fn an_instance_holds_at_most_16_mib() {
         drop((model, workspace, state));
         let left = HELD.get() - before;
         // Not before: the text itself is held until the test ends.
-        println!("{wheel:?}: {:.2} MiB", held as f64 / f64::from(1 << 20));
+        println!(
+            "{contact_model:?}, {wheel:?}: {:.2} MiB",
+            held as f64 / f64::from(1 << 20)
+        );
         assert!((1 << 18..=16 << 20).contains(&held), "{held} bytes");
         assert_eq!(left, 0, "bytes left behind");
     }
