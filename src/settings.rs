@@ -339,6 +339,11 @@ pub struct PatchSettings {
     pub split_tolerance: f64,
     /// Error of the shear at which it rests, relative to the peak pressure.
     pub shear_tolerance: f64,
+    /// Iterations of the split after which it rests at `late_tolerance`: where slip heats so much that friction has hardly one solution,
+    /// Anderson's method circles around it.
+    pub late_after: usize,
+    /// Change of temperature, lift and wear at which it then rests, a tenth of what the cells resolve.
+    pub late_tolerance: f64,
     /// Tolerance of the tractions in the first iteration of the split, whose temperature is only a guess.
     pub first_mechanics_tolerance: f64,
     /// Tolerance of the tractions where they are solved alone, for the initial state.
@@ -396,6 +401,8 @@ impl Default for PatchSettings {
         PatchSettings {
             split_tolerance: 1e-6,
             shear_tolerance: 1e-6,
+            late_after: 40,
+            late_tolerance: 1e-4,
             first_mechanics_tolerance: 1e-5,
             tolerance: 1e-9,
             least_tolerance: 1e-10,

@@ -114,8 +114,9 @@ fn patch(random: &mut Random, parameters: &mut Parameters) {
         1 => (random.count(20, 60), random.count(9, 31)),
         _ => (random.count(8, 26), random.count(3, 15)),
     };
+    // The bulge of a hot rail adds to the load here, too.
     let approach = parameters.hertz_ellipse(parameters.largest_load).approach;
-    parameters.prescribed_penetration = random.between(0.1, 0.6) * approach;
+    parameters.prescribed_penetration = random.between(0.1, 0.3) * approach;
 }
 
 /// The steepest friction, `1/K`: the paper's. Where the coefficient changes much faster, a contact has several

@@ -210,7 +210,8 @@ pub fn solve(
         let change = scratch
             .iterate
             .change_to(&scratch.image, settings.split.least_temperature);
-        if rest.is_reached(change, &sweep) && iterations > 1 {
+        let late = iterations > settings.patch.late_after && change <= settings.patch.late_tolerance;
+        if (rest.is_reached(change, &sweep) || late) && iterations > 1 {
             let fills_window = fills_window(problem, fields, scratch)?;
             finish(problem, before, fields, scratch)?;
             return Ok(Convergence {
