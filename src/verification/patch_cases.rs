@@ -32,7 +32,7 @@ pub fn parameters(ellipse: usize, refinement: usize) -> Parameters {
         wear_coefficient: 0.0,
         largest_load: LOAD * default.largest_load / Inputs::default().normal_load,
         patch_nodes: refinement * default.patch_nodes,
-        patch_strips: refinement * default.patch_strips | 1,
+        patch_strips: (refinement * default.patch_strips) | 1,
         ..default
     }
 }

@@ -41,7 +41,7 @@ fn strips(refinement: usize) -> Result<Vec<(f64, f64, f64)>> {
     let mut strips = Vec::new();
     for strip in run.contact_nodes().chunks_exact(parameters.patch_nodes) {
         let place = strip[0].lateral_position / ellipse.across;
-        if place < -1e-9 || place > 0.8 {
+        if !(-1e-9..=0.8).contains(&place) {
             continue;
         }
         let share = (1.0 - place * place).sqrt();
