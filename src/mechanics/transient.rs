@@ -97,6 +97,14 @@ mod tests {
         );
     }
 
+    /// The change is centred between the nodes where the step is long, and not at all where it is short.
+    #[test]
+    fn the_change_is_centred_as_far_as_the_step_goes() {
+        for (cells, share) in [(0.0, 0.0), (1.0, 0.25), (4.0, 0.4), (99.0, 0.495)] {
+            assert!((at(cells * SPACING / 1e-3, 1e-3).centring - share).abs() < 1e-15);
+        }
+    }
+
     #[test]
     fn the_tangent_is_the_derivative() {
         for (speed, duration) in [(1e-9, 1e-3), (0.1, 1e-3), (10.0, 1e-3), (10.0, 1e-2), (80.0, 1e-2)] {
