@@ -87,7 +87,7 @@ pub fn rows() -> Result<Vec<Row>> {
     Ok(rows)
 }
 
-/// F_x over ξ, F_y over η and M_z over η on the circle, the creepages as in [`points`]: which force (0 to 2), creepage, share,
+/// F_x over ξ, F_y over η and M_z over η on the circle, the creepages as in `points`: which force (0 to 2), creepage, share,
 /// CONTACT's.
 ///
 /// # Errors

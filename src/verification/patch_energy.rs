@@ -1,7 +1,7 @@
 //! The discrete balances of heat and wear of a patch, to round-off of the sums: as for a line contact ([`super::energy`]), strip by strip.
 //!
 //! What the strips hold at a column of the window is S = B a_beside + Σ b (a_j − a_beside), B the breadth of the contact, b that of a
-//! strip; the rail ahead of the window and behind it is as broad as the contact and holds B a ([`crate::transport::strips`]). With it
+//! strip; the rail ahead of the window and behind it is as broad as the contact and holds B a (`transport::strips`). With it
 //!
 //! d/dt ∫ρc S + |V| ρc (B a) (outflow less inflow) + bottom = ᾱ b Σ Δx (|τ·s| − k ρ c θ |s| p − (θ − θ_w) p/r),
 //!
