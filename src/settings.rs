@@ -342,7 +342,7 @@ pub struct PatchSettings {
     /// Iterations of the split after which it rests at `late_tolerance`: where slip heats so much that friction has hardly one solution,
     /// Anderson's method circles around it.
     pub late_after: usize,
-    /// Change of temperature, lift and wear at which it then rests, a tenth of what the cells resolve.
+    /// Change of temperature, lift and wear at which it then rests: about as much as the cells resolve.
     pub late_tolerance: f64,
     /// Tolerance of the tractions in the first iteration of the split, whose temperature is only a guess.
     pub first_mechanics_tolerance: f64,
@@ -402,7 +402,7 @@ impl Default for PatchSettings {
             split_tolerance: 1e-6,
             shear_tolerance: 1e-6,
             late_after: 40,
-            late_tolerance: 1e-4,
+            late_tolerance: 1e-3,
             first_mechanics_tolerance: 1e-5,
             tolerance: 1e-9,
             least_tolerance: 1e-10,
