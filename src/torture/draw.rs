@@ -119,8 +119,8 @@ fn patch(random: &mut Random, parameters: &mut Parameters) {
     parameters.prescribed_penetration = random.between(0.1, 0.3) * approach;
 }
 
-/// The steepest friction, `1/K`: the paper's. Where the coefficient changes much faster, a contact has several
-/// temperatures, and no method finds the right one.
+/// The steepest friction, `1/K`: the paper's. Where the coefficient changes much faster, a contact has several temperatures, and a
+/// step of any length may have to jump from one to another.
 const STEEPEST: f64 = 0.002;
 
 /// A table of friction coefficients that rise or fall between temperatures some degrees to some hundred degrees apart.
@@ -153,5 +153,6 @@ pub fn tune(random: &mut Random, parameters: &mut Parameters) {
     parameters.friction_cold = random.between(0.05, 0.7);
     parameters.friction_hot = parameters.friction_cold * random.between(0.3, 1.0);
     parameters.friction_temperature_cold = random.between(290.0, 600.0);
-    parameters.friction_temperature_hot = parameters.friction_temperature_cold + random.decades(10.0, 500.0);
+    let range = (parameters.friction_cold - parameters.friction_hot) / STEEPEST;
+    parameters.friction_temperature_hot = parameters.friction_temperature_cold + random.decades(10.0, 500.0).max(range);
 }

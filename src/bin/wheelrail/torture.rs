@@ -183,7 +183,7 @@ impl Summary {
         }
         writeln!(
             out,
-            "{} rails above {LARGEST_TEMPERATURE} K replaced by cold ones",
+            "{} rails above {LARGEST_TEMPERATURE} K, or too thick for a penetration, replaced by cold ones",
             self.replaced
         )?;
         writeln!(out, "outermost contact: {:.3} a(largest_load)", self.outermost)?;
