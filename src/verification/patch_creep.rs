@@ -7,6 +7,7 @@ use super::patch_cases::{self, Rolling};
 use super::patch_limits::LIMITS;
 use super::row::Row;
 use crate::error::Result;
+use crate::parameters::Parameters;
 
 /// Forces over μN, moments over μN √(ab), at the default number of cells and at twice as many each way. The references are known
 /// to some 0.002.
@@ -85,6 +86,31 @@ pub fn rows() -> Result<Vec<Row>> {
         }
     }
     Ok(rows)
+}
+
+/// Largest deviation of F_x/(μN) and F_y/(μN) from CONTACT's limits under ξ or η alone on the circle, with so many cells and strips.
+///
+/// # Errors
+/// A solver that did not converge.
+pub fn largest_deviation(patch_nodes: usize, patch_strips: usize) -> Result<f64> {
+    let rolling = Rolling::new(Parameters {
+        patch_nodes,
+        patch_strips,
+        ..patch_cases::parameters(CIRCLE, 1)
+    })?;
+    let mut deviations = Deviations::default();
+    for (creepages, [along, across, _]) in points() {
+        deviations.take(rolling.shares(creepages)?, [along, across, None]);
+    }
+    Ok(deviations.0.into_iter().fold(0.0, f64::max))
+}
+
+/// CONTACT's own, at n = 40.
+pub fn largest_deviation_of_contact() -> f64 {
+    let points = LONGITUDINAL.iter().chain(&LATERAL);
+    points
+        .map(|point| (point.coarse - point.limit()).abs())
+        .fold(0.0, f64::max)
 }
 
 /// F_x over ξ, F_y over η and M_z over η on the circle, the creepages as in `points`: which force (0 to 2), creepage, share,
