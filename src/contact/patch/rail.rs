@@ -89,7 +89,7 @@ impl PatchRail {
             half_breadth: 0.5 * grid.breadth,
         };
         let place = |(along, across): (isize, isize)| (along as f64 * grid.length, across as f64 * grid.breadth);
-        let unit = scales.pressure / scales.displacement;
+        let unit = scales.compliance(1.0);
         let normal = |lag| {
             let (x, y) = place(lag);
             unit * pair.normal() * rectangle.inverse(x, y)

@@ -7,12 +7,12 @@
 //! under pressure stay the same under an infinitesimal change. Held fixed are the fields at the beginning of the sub-step and its
 //! length.
 
+use super::coupling::Coupling;
 use super::extent::extent;
 use super::fields::PatchFields;
 use super::problem::Problem;
 use super::rail::PatchRail;
 use super::readings::readings;
-use super::split::Coupling;
 use super::tangent::{Direction, Tangent};
 use crate::contact::rim::{self, ContactHeat};
 use crate::error::{Error, Result};

@@ -4,11 +4,12 @@
 //! It has solvers and tables of its own: what a step has left in the others is not needed, so that it starts from the fields
 //! alone.
 
+use super::coupling::Coupling;
 use super::expansion;
 use super::fields::PatchFields;
 use super::problem::{Problem, SlipWeights, rigid_slip};
 use super::rail::PatchRail;
-use super::split::{self, Coupling};
+use super::response;
 use crate::body::influence::{self, Window};
 use crate::error::Result;
 use crate::mechanics::normal::problem::Constraint;
@@ -74,7 +75,7 @@ impl Tangent {
             contact: Contact::new(grid),
             normal: Normal::new(grid, transform, settings.patch),
             friction: Friction::new(grid, transform, settings.patch),
-            response: split::no_response(rail),
+            response: response::none(rail),
             products: transform.scratch(),
             weights: SlipWeights {
                 strain: 0.0,
@@ -108,7 +109,7 @@ impl Tangent {
         let (rail, grid) = (problem.rail, &problem.rail.grid);
         self.contact.list(grid, |place| fields.pressure[place] > 0.0);
         self.weights = problem.slip_weights(problem.transient(fields));
-        split::adapt(problem, &self.weights, problem.rail.grid.strips, &mut self.response);
+        response::adapt(problem, &self.weights, problem.rail.grid.strips, &mut self.response);
         self.soften(problem, fields);
         self.separate(problem, fields);
         let ahead = leading(problem);

@@ -1,0 +1,89 @@
+//! The buffers of a split: made once, so that a step allocates nothing.
+
+use super::coupling::Coupling;
+use super::expansion;
+use super::problem::SlipWeights;
+use super::rail::PatchRail;
+use super::response;
+use crate::body::influence;
+use crate::heat::strips::StripHeatScratch;
+use crate::heat::surface::SurfaceExchange;
+use crate::mechanics::patch::contact::Contact;
+use crate::mechanics::patch::friction::{Friction, SlipResponse};
+use crate::mechanics::patch::normal::Normal;
+use crate::numerics::anderson::Anderson;
+use crate::settings::Settings;
+use crate::wear::strips::StripWearSteps;
+
+/// Buffers of a split.
+pub struct Scratch {
+    pub(super) contact: Contact,
+    pub(super) contact_before: Contact,
+    pub(super) normal: Normal,
+    pub(super) friction: Friction,
+    pub(super) response: SlipResponse,
+    /// What the response is of: the weights, whether V ≥ 0, the strips that its transform serves.
+    pub(super) weights: Option<(SlipWeights, bool, usize)>,
+    /// Strips that its transform serves.
+    pub(super) strips: usize,
+    pub(super) products: influence::Scratch<f64>,
+    pub(super) iterate: Coupling,
+    pub(super) image: Coupling,
+    pub(super) anderson: Anderson,
+    pub(super) exchange: Vec<SurfaceExchange>,
+    pub(super) heat: StripHeatScratch,
+    pub(super) wear_rate: Vec<f64>,
+    pub(super) wear_steps: StripWearSteps,
+    /// On the grid: gap, softness by wear, lift by shear, u that does not come from shear, u before, slip without shear.
+    pub(super) gap: Vec<f64>,
+    pub(super) softness: Vec<f64>,
+    pub(super) lift: [Vec<f64>; 2],
+    pub(super) given: [Vec<f64>; 2],
+    pub(super) before: [Vec<f64>; 2],
+    pub(super) free_slip: [Vec<f64>; 2],
+    pub(super) expansion: expansion::Scratch,
+    pub(super) nothing: Vec<f64>,
+    pub(super) shear_before: [Vec<f64>; 2],
+    /// Of the cells under pressure.
+    pub(super) bound: Vec<f64>,
+    pub(super) edge: Vec<[f64; 2]>,
+}
+
+impl Scratch {
+    /// Buffers for the given rail.
+    pub fn new(rail: &PatchRail, settings: &Settings) -> Scratch {
+        let (grid, transform) = (&rail.grid, &rail.transform);
+        let on_grid = || vec![0.0; grid.len()];
+        let vectors = || [on_grid(), on_grid()];
+        let iterate = Coupling::new(rail);
+        let cells = grid.strips * grid.cells;
+        Scratch {
+            contact: Contact::new(grid),
+            contact_before: Contact::new(grid),
+            normal: Normal::new(grid, transform, settings.patch),
+            friction: Friction::new(grid, transform, settings.patch),
+            response: response::none(rail),
+            weights: None,
+            strips: grid.strips,
+            products: transform.scratch(),
+            anderson: Anderson::new(iterate.values.len()),
+            image: iterate.clone(),
+            iterate,
+            exchange: vec![SurfaceExchange::default(); cells],
+            heat: StripHeatScratch::new(&rail.basis, &rail.strips),
+            wear_rate: vec![0.0; cells],
+            wear_steps: StripWearSteps::new(&rail.strips),
+            gap: on_grid(),
+            softness: on_grid(),
+            lift: vectors(),
+            given: vectors(),
+            before: vectors(),
+            free_slip: vectors(),
+            expansion: expansion::Scratch::new(grid, transform),
+            nothing: on_grid(),
+            shear_before: vectors(),
+            bound: on_grid(),
+            edge: vec![[0.0; 2]; grid.len()],
+        }
+    }
+}
