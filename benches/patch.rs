@@ -103,7 +103,9 @@ fn main() {
     println!(
         "one step of 1 ms, braking manoeuvre with lateral creepage and spin, all effects on; fastest of {ROUNDS} rounds"
     );
-    println!("cells x strips  in contact  median [us]  99 % [us]  99.9 % [us]  iterations  cold start [ms]  error of the forces");
+    println!(
+        "cells x strips  in contact  median [us]  99 % [us]  99.9 % [us]  iterations  cold start [ms]  error of the forces"
+    );
     let mut table = String::from(
         "patch_nodes,patch_strips,cells_in_contact,median_us,quantile_99_us,quantile_999_us,cold_start_ms,error\n",
     );
