@@ -25,6 +25,7 @@ pub mod patch_creep;
 pub mod patch_energy;
 pub mod patch_flash;
 pub mod patch_hertz;
+pub mod patch_jump;
 pub mod patch_kalker;
 pub mod patch_limits;
 pub mod patch_long;
@@ -181,6 +182,10 @@ pub const CHECKS: &[Check] = &[
     Check {
         name: "Patch: creep forces",
         rows: patch_creep::rows,
+    },
+    Check {
+        name: "Patch: jump of the creepage",
+        rows: patch_jump::rows,
     },
     Check {
         name: "Patch: full slip and power",
