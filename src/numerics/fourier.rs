@@ -1,7 +1,14 @@
-//! Discrete Fourier transform of rows: element by element over rows of numbers, so that the loops run along the rows.
+//! The complex discrete Fourier transform of length P down the columns of P rows: X_k = Σ_j exp(−2πi jk/P) x_j, where each x_j is
+//! a row of `width` numbers. So `width` transforms run side by side, and every loop runs along a row, where its numbers are adjacent
+//! and fill vector registers.
 //!
-//! Stockham's algorithm with factors 4, 3 and 2: it sorts itself. The inverse is the same transform with real and imaginary
-//! part exchanged, without the factor 1/P.
+//! P is a power of two or three times one ([`good_size`]): convolutions are filled up with zeros to it. Rows follow each other in
+//! memory, real parts in one vector and imaginary parts in another.
+//!
+//! Stockham's algorithm with factors 4, 3 and 2 (Van Loan, Computational Frameworks for the Fast Fourier Transform, 1992, 1.7): one pass
+//! for each factor R of P takes R rows that are P/R apart, combines them and writes them where the next pass wants them, from one
+//! buffer into the other. The rows end in their order, without the reordering by reversed digits that a transform in place needs. The
+//! inverse is the same transform with real and imaginary part exchanged, without the factor 1/P.
 
 use super::real::Real;
 use pulp::Simd;
@@ -160,7 +167,8 @@ type Target<'a, T, S> = (&'a mut [<T as Real>::Vector<S>], &'a mut [<T as Real>:
 /// Complex numbers side by side, real and imaginary parts.
 type Complex<T, S> = (<T as Real>::Vector<S>, <T as Real>::Vector<S>);
 
-/// One pass: what is left to transform in so many parts, what is done in runs of `stride`, rows of so many vectors.
+/// One pass: `parts` butterflies on rows that are `stride` times `parts` apart, each for the `stride` rows that earlier passes have
+/// combined; a row is `vectors` registers long.
 struct Pass {
     parts: usize,
     stride: usize,

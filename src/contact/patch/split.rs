@@ -195,7 +195,9 @@ fn march_heat(problem: &Problem, before: &PatchFields, fields: &mut PatchFields,
         let rise = problem.wheel_rise(wheel.temperature());
         problem.exchange(fields, rise, &mut scratch.exchange);
         march.heat(&scratch.exchange, &mut fields.heat, &mut scratch.heat)?;
-        // The wheel takes the friction power at this temperature: the heat balance closes to round-off.
+        // The wheel takes its share of the friction power, and the surface temperature that sets μ changes with every temperature of
+        // the wheel that is tried: so do bound and shear, here and not only at the end, or the wheel would be warmed by another power
+        // than that of the fields. Shear over bound, by which the rail is heated, stays. The heat balance closes to round-off.
         if heating == WheelHeating::On {
             close_friction(problem, fields, &scratch.contact);
         }
