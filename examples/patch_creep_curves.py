@@ -39,8 +39,8 @@ TIMES = {
     ("wheelrail_step", ""): "wheelrail, a step from the point before",
     ("wheelrail", ""): "wheelrail, from nothing",
     ("fastsim", ""): "FASTSIM of this repository",
-    ("contact", "varying"): "CONTACT",
-    ("contact_fastsim", "varying"): "CONTACT's FASTSIM",
+    ("contact", "varying"): "CONTACT, 316 cells",
+    ("contact_fastsim", "varying"): "CONTACT's FASTSIM, 316 cells",
 }
 
 
