@@ -4,6 +4,7 @@ use libloading::Library;
 use std::cell::RefCell;
 use std::ffi::{CStr, CString, c_char, c_int, c_void};
 use std::path::PathBuf;
+use std::sync::LazyLock;
 use wheelrail::fmi2::types::{CallbackFunctions, LoggerCallback};
 use wheelrail::fmi2::variables::{Variable, variables};
 
@@ -320,9 +321,7 @@ impl<'a> Client<'a> {
     /// All outputs, as bits.
     #[track_caller]
     pub fn outputs(&self) -> Vec<u64> {
-        let outputs = variables()
-            .into_iter()
-            .filter(|row| (1000..2000).contains(&row.reference));
+        let outputs = table().iter().filter(|row| (1000..2000).contains(&row.reference));
         let references: Vec<u32> = outputs.map(|row| row.reference).collect();
         let mut values = vec![f64::NAN; references.len()];
         self.expect(OK, self.get_references(&references, &mut values));
@@ -371,7 +370,13 @@ pub fn reference(name: &str) -> u32 {
 }
 
 #[track_caller]
-pub fn find(name: &str) -> Variable {
-    let row = variables().into_iter().find(|row| row.name == name);
+pub fn find(name: &str) -> &'static Variable {
+    let row = table().iter().find(|row| row.name == name);
     row.unwrap_or_else(|| panic!("no variable {name}"))
+}
+
+/// The table of variables, made once: with its names it takes as long as many a call.
+fn table() -> &'static [Variable] {
+    static TABLE: LazyLock<Vec<Variable>> = LazyLock::new(variables);
+    &TABLE
 }
