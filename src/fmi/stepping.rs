@@ -95,12 +95,15 @@ mod tests {
     use super::*;
     use crate::fmi::failures::Blame;
     use crate::fmi::logging::Journal;
-    use crate::parameters::WheelHeating;
+    use crate::parameters::{ContactModel, WheelHeating};
     use crate::settings::Settings;
-    use crate::settings::limits::{LIMITS, Limit};
+    use crate::settings::limits::{LIMITS, Limit, PATCH_LIMITS};
     use crate::signals::Outputs;
 
-    fn initialize(component: &mut Component) {
+    fn initialize(component: &mut Component, contact_model: ContactModel) {
+        component.parameters.contact_model = contact_model;
+        component.parameters.patch_nodes = 14;
+        component.parameters.patch_strips = 7;
         component.parameters.contact_nodes = 25;
         component.parameters.depth_nodes = 17;
         component.parameters.wheel_heating = WheelHeating::On;
@@ -122,11 +125,14 @@ mod tests {
     #[test]
     fn a_step_that_fails_leaves_the_last_committed_state() {
         let mut component = Component::new("test", Journal::new(false, false));
-        let (mut at_once, mut after_a_part) = (0, 0);
+        let (mut at_once, mut after_a_part) = ([0; 2], [0; 2]);
         // A step solves the mechanics together with the heat, never alone, and by the active set here.
         let of_a_step = |(words, _): &&Limit| !words.starts_with("coupling") && !words.contains("Pschenichnyj");
-        for (words, set_limit) in LIMITS.iter().filter(of_a_step) {
-            initialize(&mut component);
+        let of_a_line = LIMITS.iter().filter(of_a_step);
+        let of_a_line = of_a_line.map(|limit| (ContactModel::Line, limit));
+        let of_a_patch = PATCH_LIMITS.iter().map(|limit| (ContactModel::Patch, limit));
+        for (contact_model, (words, set_limit)) in of_a_line.chain(of_a_patch) {
+            initialize(&mut component, contact_model);
             component.do_step(0.0, 1e-3).unwrap();
             let before = outputs(&mut component);
             let mut handle = std::ptr::null_mut();
@@ -143,19 +149,27 @@ mod tests {
                 component.set_state(handle).unwrap();
                 component.rates.creepage = 25.0;
                 let Err(failure) = component.do_step(1e-3, 2e-3) else {
-                    assert_eq!(outputs(&mut component), undisturbed);
+                    let reached = outputs(&mut component);
+                    match contact_model {
+                        ContactModel::Line => assert_eq!(reached, undisturbed),
+                        // The split of a patch goes on where the tractions within it fall short for once.
+                        ContactModel::Patch => {
+                            let share = reached.traction_force / undisturbed.traction_force;
+                            assert!((share - 1.0).abs() < 1e-5, "{words}, limit {allowed}: {share}");
+                        }
+                    }
                     break;
                 };
                 assert!(failure.to_string().contains(words), "{failure}");
                 component.fail(failure.blame());
                 match failure.blame() {
                     Blame::Call => {
-                        at_once += 1;
+                        at_once[contact_model as usize] += 1;
                         assert_eq!(component.mode(), Mode::Error);
                         assert_eq!((component.time(), outputs(&mut component)), (1e-3, before));
                     }
                     Blame::PartOfStep => {
-                        after_a_part += 1;
+                        after_a_part[contact_model as usize] += 1;
                         assert_eq!(component.mode(), Mode::StepFailed);
                         assert!(
                             component.time() > 1e-3 && component.time() < 3e-3,
@@ -170,8 +184,9 @@ mod tests {
             component.reset();
             component.built = None;
         }
-        assert!(at_once > 0 && after_a_part > 0, "{at_once} {after_a_part}");
-        initialize(&mut component);
+        let some = |counts: [usize; 2]| counts.iter().all(|count| *count > 0);
+        assert!(some(at_once) && some(after_a_part), "{at_once:?} {after_a_part:?}");
+        initialize(&mut component, ContactModel::Line);
         component.do_step(0.0, 1e-3).unwrap();
     }
 }
