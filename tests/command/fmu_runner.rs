@@ -5,7 +5,7 @@ use fmu_runner::{Fmu, FmuInstance, FmuLibrary, fmi2Type};
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 use std::process::Command;
-use wheelrail::parameters::Parameters;
+use wheelrail::parameters::{ContactModel, Parameters};
 use wheelrail::signals::{INPUTS, Inputs, OUTPUTS};
 use wheelrail::simulation::Simulation as Run;
 
@@ -42,8 +42,32 @@ fn outputs(instance: &FmuInstance<&FmuLibrary>) -> Vec<f64> {
     signals.iter().map(|signal| values[signal]).collect()
 }
 
+/// Integer parameters that make a coarse patch.
+const PATCH: [(&str, i32); 3] = [("contact_model", 2), ("patch_nodes", 14), ("patch_strips", 7)];
+
 #[test]
 fn the_importer_gets_the_results_of_the_native_simulation() {
+    let library = Fmu::unpack(archive())
+        .expect("unpacked and parsed")
+        .load(fmi2Type::fmi2CoSimulation)
+        .expect("loaded");
+    compare(&library, &[], Parameters::default(), Inputs::default());
+    let patch = Parameters {
+        contact_model: ContactModel::Patch,
+        patch_nodes: 14,
+        patch_strips: 7,
+        ..Parameters::default()
+    };
+    let sideways = Inputs {
+        lateral_creepage: -0.002,
+        spin_creepage: 0.3,
+        ..Inputs::default()
+    };
+    compare(&library, &PATCH, patch, sideways);
+}
+
+/// A run of the importer with the given Integer parameters against a native one with the same.
+fn compare(library: &FmuLibrary, integers: &[(&str, i32)], parameters: Parameters, inputs: Inputs) {
     let inputs = Inputs {
         wheel_speed: 22.0,
         normal_load: 50e3,
@@ -53,20 +77,21 @@ fn the_importer_gets_the_results_of_the_native_simulation() {
         ambient_temperature: 280.0,
         incoming_temperature: 285.0,
         incoming_wear_depth: 1e-7,
-        ..Inputs::default()
+        ..inputs
     };
     let parameters = Parameters {
         friction_cold: 0.4,
         heat_partition: 0.45,
-        ..Parameters::default()
+        ..parameters
     };
     let mut native = Run::new(&parameters, &inputs).expect("a model");
 
-    let library = Fmu::unpack(archive())
-        .expect("unpacked and parsed")
-        .load(fmi2Type::fmi2CoSimulation)
-        .expect("loaded");
-    let instance = FmuInstance::instantiate(&library, true).expect("an instance");
+    let instance = FmuInstance::instantiate(library, true).expect("an instance");
+    let chosen: HashMap<_, _> = integers
+        .iter()
+        .map(|(name, value)| (&library.variables()[*name], *value))
+        .collect();
+    instance.set_integers(&chosen).expect("set");
     assert_eq!(instance.get_types_platform(), "default");
     instance.setup_experiment(0.0, Some(1.0), None).expect("set up");
     set(&instance, &[("friction_cold", 0.4), ("heat_partition", 0.45)]);

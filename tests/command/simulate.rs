@@ -55,23 +55,62 @@ impl Place {
     }
 }
 
+/// Options that make a coarse patch.
+const PATCH: [&str; 6] = [
+    "--set",
+    "contact_model=2",
+    "--set",
+    "patch_nodes=14",
+    "--set",
+    "patch_strips=9",
+];
+
 #[test]
 fn a_scenario_becomes_a_table_of_inputs_and_outputs() {
-    let place = Place::new("good", GOOD);
-    let output = place.simulate(&[]);
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    let table = read_to_string(&place.output).unwrap();
-    let mut lines = table.lines();
-    let inputs = INPUTS.iter().map(|row| row.name);
-    let outputs = OUTPUTS.iter().map(|row| row.name);
-    let headings: Vec<&str> = ["time"].into_iter().chain(inputs).chain(outputs).collect();
-    assert_eq!(lines.next().unwrap().split(',').collect::<Vec<_>>(), headings);
-    let rows: Vec<Vec<f64>> = lines
-        .map(|line| line.split(',').map(|cell| cell.parse().unwrap()).collect())
-        .collect();
-    assert_eq!(rows.iter().map(|row| row[0]).collect::<Vec<_>>(), [0.0, 1e-3, 2e-3]);
-    let creepage = headings.iter().position(|name| *name == "creepage").unwrap();
-    assert_eq!(rows[1][creepage], 5e-4);
+    for (name, options) in [("good", &[][..]), ("good_patch", &PATCH)] {
+        let place = Place::new(name, GOOD);
+        let output = place.simulate(options);
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        let table = read_to_string(&place.output).unwrap();
+        let mut lines = table.lines();
+        let inputs = INPUTS.iter().map(|row| row.name);
+        let outputs = OUTPUTS.iter().map(|row| row.name);
+        let headings: Vec<&str> = ["time"].into_iter().chain(inputs).chain(outputs).collect();
+        assert_eq!(lines.next().unwrap().split(',').collect::<Vec<_>>(), headings);
+        let rows: Vec<Vec<f64>> = lines
+            .map(|line| line.split(',').map(|cell| cell.parse().unwrap()).collect())
+            .collect();
+        assert_eq!(rows.iter().map(|row| row[0]).collect::<Vec<_>>(), [0.0, 1e-3, 2e-3]);
+        let creepage = headings.iter().position(|name| *name == "creepage").unwrap();
+        assert_eq!(rows[1][creepage], 5e-4);
+    }
+}
+
+/// Lateral and spin motion moves a patch, and is refused by a line, at the line of the scenario where it is.
+#[test]
+fn a_line_takes_no_lateral_and_no_spin_motion() {
+    for (column, options) in [
+        ("lateral_creepage", &[][..]),
+        ("spin_creepage", &[]),
+        ("lateral_speed", &["--set", "slip_source=2"]),
+        ("spin_rate", &["--set", "slip_source=2"]),
+    ] {
+        let place = Place::new(column, &format!("time,{column}\n0,0\n0.001,0.002\n"));
+        let named = format!("{column} = 0.002");
+        place.refused(
+            options,
+            &["line 3", &named, "contact_model = 1 (line)", "contact_model = 2"],
+        );
+        let output = place.simulate(&[options, &PATCH].concat());
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        let table = read_to_string(&place.output).unwrap();
+        let heading = table.lines().next().unwrap();
+        let force = heading.split(',').position(|name| name == "lateral_force").unwrap();
+        let last = table.lines().last().unwrap().split(',').nth(force).unwrap();
+        assert_ne!(last.parse::<f64>().unwrap(), 0.0);
+    }
+    let place = Place::new("sideways_infinite", "time,spin_rate\n0,0\n1,inf\n");
+    place.refused(&PATCH, &["line 3", "spin_rate = inf", "allowed is -1000 to 1000 rad/s"]);
 }
 
 /// The fields of a run: headings, and rows of numbers.
@@ -109,8 +148,7 @@ fn the_fields_of_a_patch_sum_up_to_its_outputs() {
     let scenario =
         "time,normal_load,creepage,lateral_creepage,spin_creepage\n0,60e3,1e-3,1e-3,0.2\n0.001,60e3,1e-3,1e-3,0.2\n";
     let place = Place::new("fields_patch", scenario);
-    let grid = ["contact_model=2", "patch_nodes=14", "patch_strips=9"].map(|text| ["--set", text]);
-    let (_, rows) = fields(&place, grid.as_flattened());
+    let (_, rows) = fields(&place, &PATCH);
     assert_eq!(rows.len(), 14 * 9);
     let area = (rows[1][0] - rows[0][0]) * (rows[14][1] - rows[0][1]);
     let sum = |value: fn(&[f64]) -> f64| area * rows.iter().map(|row| value(row)).sum::<f64>();
@@ -260,6 +298,18 @@ fn parameters_that_cannot_be_are_refused() {
         &["wheel_radius = NaN", "allowed is", " to ", "m"],
     );
     place.refused(&["--set", "contact_nodes=0"], &["contact_nodes = 0", "allowed is"]);
+    place.refused(
+        &["--set", "patch_strips=2"],
+        &["patch_strips = 2", "allowed is 3 to 101"],
+    );
+    place.refused(
+        &["--set", "rail_transverse_curvature=NaN"],
+        &["rail_transverse_curvature = NaN", "allowed is -1000 to 1000 1/m"],
+    );
+    place.refused(
+        &[&PATCH[..], &["--set", "wheel_transverse_curvature=-5"]].concat(),
+        &["wheel_transverse_curvature = -5", "rail_transverse_curvature = 3.33"],
+    );
     place.refused(
         &["--set", "friction_hot=0.5"],
         &["friction_hot = 0.5", "friction_cold = 0.45", "must not exceed"],
