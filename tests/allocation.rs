@@ -9,9 +9,10 @@ use std::ffi::CString;
 use std::ptr::{null, null_mut};
 use wheelrail::fmi2::functions::{
     fmi2DoStep, fmi2EnterInitializationMode, fmi2ExitInitializationMode, fmi2FreeInstance, fmi2GetReal,
-    fmi2Instantiate, fmi2SetReal, fmi2SetRealInputDerivatives, fmi2SetupExperiment,
+    fmi2Instantiate, fmi2SetInteger, fmi2SetReal, fmi2SetRealInputDerivatives, fmi2SetupExperiment,
 };
 use wheelrail::fmi2::types::{CallbackFunctions, Status};
+use wheelrail::fmi2::variables::variables;
 use wheelrail::parameters::{ContactModel, NormalSolver, Parameters, SlipSource, Wheel, WheelHeating};
 use wheelrail::signals::Inputs;
 use wheelrail::wheel_rail::Model;
@@ -214,6 +215,21 @@ fn an_instance_holds_at_most_16_mib() {
 
 #[test]
 fn a_step_through_the_interface_allocates_nothing() {
+    through_the_interface(&[("slip_source", 2)], inputs);
+    let patch = [
+        ("slip_source", 2),
+        ("contact_model", 2),
+        ("patch_nodes", 14),
+        ("patch_strips", 7),
+    ];
+    through_the_interface(&patch, swaying);
+}
+
+fn through_the_interface(integers: &[(&str, i32)], inputs: fn(u32) -> Inputs) {
+    let reference = |name: &str| {
+        let row = variables().into_iter().find(|row| row.name == name);
+        row.unwrap().reference
+    };
     let guid = CString::new(wheelrail::fmi2::GUID).unwrap();
     let callbacks = CallbackFunctions {
         logger: None,
@@ -222,22 +238,24 @@ fn a_step_through_the_interface_allocates_nothing() {
         step_finished: None,
         component_environment: null_mut(),
     };
-    let (references, output) = ([0, 1, 3, 4], 1000);
+    let names = [
+        "wheel_speed",
+        "normal_load",
+        "vehicle_speed",
+        "friction_scale",
+        "lateral_speed",
+        "spin_rate",
+    ];
+    let (references, output) = (names.map(reference), reference("traction_force"));
+    let load = reference("normal_load");
     // SAFETY: valid pointers, a live instance, as many values as references.
     unsafe {
         let component = fmi2Instantiate(c"wheel".as_ptr(), 1, guid.as_ptr(), null(), &callbacks, 0, 0);
         assert!(!component.is_null());
-        let slip_source = wheelrail::fmi2::variables::variables()
-            .into_iter()
-            .find(|row| row.name == "slip_source")
-            .unwrap();
         let ok = |status: Status| assert_eq!(status, Status::OK);
-        ok(wheelrail::fmi2::functions::fmi2SetInteger(
-            component,
-            &slip_source.reference,
-            1,
-            &2,
-        ));
+        for (name, value) in integers {
+            ok(fmi2SetInteger(component, &reference(name), 1, value));
+        }
         ok(fmi2SetupExperiment(component, 0, 0.0, 0.0, 0, 0.0));
         ok(fmi2EnterInitializationMode(component));
         ok(fmi2ExitInitializationMode(component));
@@ -248,12 +266,14 @@ fn a_step_through_the_interface_allocates_nothing() {
                 given.normal_load,
                 given.vehicle_speed,
                 given.friction_scale,
+                given.lateral_speed,
+                given.spin_rate,
             ];
             let mut value = 0.0;
             let (count, statuses) = allocations(|| {
                 [
-                    fmi2SetReal(component, references.as_ptr(), 4, values.as_ptr()),
-                    fmi2SetRealInputDerivatives(component, &1, 1, &1, &10.0),
+                    fmi2SetReal(component, references.as_ptr(), values.len(), values.as_ptr()),
+                    fmi2SetRealInputDerivatives(component, &load, 1, &1, &10.0),
                     fmi2DoStep(component, f64::from(step) * 1e-3, 1e-3, 1),
                     fmi2GetReal(component, &output, 1, &mut value),
                 ]
