@@ -1,6 +1,8 @@
 //! Every function is there, and no argument makes it crash: null pointers, unknown value references, absurd sizes.
 
-use super::importer::{Api, Client, DISCARD, ERROR, FUNCTIONS, Journal, OK, callbacks, guid, reference};
+use super::importer::{
+    Api, Client, DISCARD, ERROR, FUNCTIONS, Journal, Line, OK, callbacks, guid, reference, with_each_contact_model,
+};
 use std::ffi::{CStr, CString, c_int};
 use std::ptr::{null, null_mut};
 use wheelrail::fmi2::types::CallbackFunctions;
@@ -220,7 +222,7 @@ fn a_null_instance_is_an_error_and_nothing_to_free() {
 /// Runs one call on a fresh instance in *stepComplete* and expects fmi2Error with a message that names the argument.
 #[track_caller]
 fn expect_error(api: &Api, reason: &str, call: impl FnOnce(&Client) -> c_int) {
-    let client = Client::running(api, &[]);
+    let client = Client::running(api, Line, &[]);
     client.expect(ERROR, call(&client));
     let message = client.last_message();
     assert!(message.contains(reason), "{message}");
@@ -352,7 +354,7 @@ fn null_pointers_are_errors() {
 #[test]
 fn no_elements_need_no_pointers() {
     let api = Api::load();
-    let client = Client::running(&api, &[]);
+    let client = Client::running(&api, Line, &[]);
     let c = client.component;
     // SAFETY: no element is read or written.
     unsafe {
@@ -456,7 +458,7 @@ fn absurd_sizes_and_misaligned_pointers_are_errors() {
 #[test]
 fn status_queries_answer_what_there_is_and_discard_the_rest() {
     let api = Api::load();
-    let client = Client::running(&api, &[]);
+    let client = Client::running(&api, Line, &[]);
     client.expect(OK, client.step(0.0, 0.01));
     let c = client.component;
     let (mut real, mut integer, mut string) = (0.0, 7, null());
@@ -484,47 +486,49 @@ fn status_queries_answer_what_there_is_and_discard_the_rest() {
 
 #[test]
 fn instances_are_independent() {
-    let api = Api::load();
-    let alone = Client::running(&api, &[("creepage", 0.01)]);
-    alone.expect(OK, alone.step(0.0, 0.01));
-    let (first, second) = (
-        Client::running(&api, &[("creepage", 0.01)]),
-        Client::running(&api, &[("creepage", -0.01)]),
-    );
-    second.expect(OK, second.step(0.0, 0.01));
-    first.expect(OK, first.step(0.0, 0.01));
-    assert_eq!(first.outputs(), alone.outputs());
-    assert_ne!(second.outputs(), alone.outputs());
-    // One instance's error is not another's.
-    first.expect(ERROR, first.step(-1.0, 0.01));
-    second.expect(OK, second.step(0.01, 0.01));
+    with_each_contact_model(|api, contact| {
+        let alone = Client::running(api, contact, &[("creepage", 0.01)]);
+        alone.expect(OK, alone.step(0.0, 0.01));
+        let (first, second) = (
+            Client::running(api, contact, &[("creepage", 0.01)]),
+            Client::running(api, contact, &[("creepage", -0.01)]),
+        );
+        second.expect(OK, second.step(0.0, 0.01));
+        first.expect(OK, first.step(0.0, 0.01));
+        assert_eq!(first.outputs(), alone.outputs());
+        assert_ne!(second.outputs(), alone.outputs());
+        // One instance's error is not another's.
+        first.expect(ERROR, first.step(-1.0, 0.01));
+        second.expect(OK, second.step(0.01, 0.01));
+    });
 }
 
 #[test]
 fn a_hundred_instances_in_two_threads_give_the_bits_of_one() {
-    let api = Api::load();
-    let creepage = |k: usize| 1e-3 * (k % 7) as f64;
-    let run = |k: usize| {
-        let client = Client::running(&api, &[("creepage", creepage(k))]);
-        client.expect(OK, client.step(0.0, 0.01));
-        client.outputs()
-    };
-    let alone: Vec<_> = (0..7).map(run).collect();
-    std::thread::scope(|scope| {
-        for half in 0..2 {
-            let (run, alone, api) = (&run, &alone, &api);
-            scope.spawn(move || {
-                let _ = run;
-                let clients: Vec<_> = (0..50)
-                    .map(|k| Client::running(api, &[("creepage", creepage(50 * half + k))]))
-                    .collect();
-                for client in &clients {
-                    client.expect(OK, client.step(0.0, 0.01));
-                }
-                for (k, client) in clients.iter().enumerate() {
-                    assert_eq!(client.outputs(), alone[(50 * half + k) % 7]);
-                }
-            });
-        }
+    with_each_contact_model(|api, contact| {
+        let creepage = |k: usize| 1e-3 * (k % 7) as f64;
+        let run = |k: usize| {
+            let client = Client::running(api, contact, &[("creepage", creepage(k))]);
+            client.expect(OK, client.step(0.0, 0.01));
+            client.outputs()
+        };
+        let alone: Vec<_> = (0..7).map(run).collect();
+        std::thread::scope(|scope| {
+            for half in 0..2 {
+                let (run, alone, api) = (&run, &alone, api);
+                scope.spawn(move || {
+                    let _ = run;
+                    let clients: Vec<_> = (0..50)
+                        .map(|k| Client::running(api, contact, &[("creepage", creepage(50 * half + k))]))
+                        .collect();
+                    for client in &clients {
+                        client.expect(OK, client.step(0.0, 0.01));
+                    }
+                    for (k, client) in clients.iter().enumerate() {
+                        assert_eq!(client.outputs(), alone[(50 * half + k) % 7]);
+                    }
+                });
+            }
+        });
     });
 }

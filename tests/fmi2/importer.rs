@@ -8,6 +8,8 @@ use std::sync::LazyLock;
 use wheelrail::fmi2::types::{CallbackFunctions, LoggerCallback};
 use wheelrail::fmi2::variables::{Variable, variables};
 
+pub use wheelrail::parameters::ContactModel::{self, Line, Patch};
+
 pub const OK: c_int = 0;
 pub const WARNING: c_int = 1;
 pub const DISCARD: c_int = 2;
@@ -156,11 +158,49 @@ pub fn callbacks(journal: &Journal) -> CallbackFunctions {
     }
 }
 
+/// Takes a test once with each contact model. The last one that a failure prints is where it failed.
+#[track_caller]
+pub fn with_each_contact_model(test: impl Fn(&Api, ContactModel)) {
+    let api = Api::load();
+    for contact in ContactModel::ALL.iter().copied() {
+        println!("{contact:?}");
+        test(&api, contact);
+    }
+}
+
+/// Parameters of a contact model with a grid so coarse that tests are quick.
+pub fn coarse(contact: ContactModel) -> &'static [(&'static str, c_int)] {
+    match contact {
+        Line => &[("contact_nodes", 25), ("depth_nodes", 17)],
+        Patch => &[
+            ("contact_model", 2),
+            ("patch_nodes", 14),
+            ("patch_strips", 7),
+            ("depth_nodes", 17),
+        ],
+    }
+}
+
+/// Lateral and spin motion, where a contact model takes it: creepages, and the speeds that they make at 10 m/s.
+pub fn sideways(contact: ContactModel) -> &'static [(&'static str, f64)] {
+    match contact {
+        Line => &[],
+        Patch => &[
+            ("lateral_creepage", 0.001),
+            ("spin_creepage", 0.3),
+            ("lateral_speed", 0.01),
+            ("spin_rate", 3.0),
+        ],
+    }
+}
+
 /// An instance with its journal; calls take slices and names.
 pub struct Client<'a> {
     pub api: &'a Api,
     pub component: Component,
     pub journal: Box<Journal>,
+    /// The contact model that [`Client::make_coarse`] chooses.
+    pub contact: ContactModel,
 }
 
 impl Drop for Client<'_> {
@@ -202,24 +242,47 @@ impl<'a> Client<'a> {
             api,
             component,
             journal,
+            contact: Line,
         }
     }
 
-    /// In *initializationMode*, with a coarse mesh, so that tests are quick.
-    pub fn initializing(api: &'a Api) -> Client<'a> {
-        let client = Client::new(api);
-        client.expect(OK, client.set_integers(&[("contact_nodes", 25), ("depth_nodes", 17)]));
+    /// In *instantiated*, with a coarse grid of a contact model.
+    pub fn coarse(api: &'a Api, contact: ContactModel) -> Client<'a> {
+        let mut client = Client::new(api);
+        client.contact = contact;
+        client.make_coarse();
+        client
+    }
+
+    /// In *initializationMode*, with a coarse grid of a contact model.
+    pub fn initializing(api: &'a Api, contact: ContactModel) -> Client<'a> {
+        let client = Client::coarse(api, contact);
         client.expect(OK, client.setup(0.0, None));
         client.expect(OK, client.enter());
         client
     }
 
-    /// In *stepComplete*, after the given changes of start values.
-    pub fn running(api: &'a Api, start: &[(&str, f64)]) -> Client<'a> {
-        let client = Client::initializing(api);
+    /// In *stepComplete*, moving sideways where the contact model takes it, after the given changes of start values.
+    pub fn running(api: &'a Api, contact: ContactModel, start: &[(&str, f64)]) -> Client<'a> {
+        let client = Client::initializing(api, contact);
+        client.expect(OK, client.set(sideways(contact)));
         client.expect(OK, client.set(start));
         client.expect(OK, client.exit());
         client
+    }
+
+    /// Chooses the contact model with a coarse grid, as after fmi2Reset.
+    #[track_caller]
+    pub fn make_coarse(&self) {
+        self.expect(OK, self.set_integers(coarse(self.contact)));
+    }
+
+    /// Begins to run from *instantiated* with the values as they are.
+    #[track_caller]
+    pub fn start(&self) {
+        self.expect(OK, self.setup(0.0, None));
+        self.expect(OK, self.enter());
+        self.expect(OK, self.exit());
     }
 
     /// Asserts a status, with the messages in the failure.

@@ -1,14 +1,12 @@
 //! Messages: where they go, what they look like, when there are none.
 
-use super::importer::{Api, Client, DISCARD, ERROR, Message, OK};
+use super::importer::{Api, Client, DISCARD, ERROR, Message, OK, with_each_contact_model};
 use std::ffi::{CStr, c_char, c_int};
 
 /// A short life with nothing wrong in it.
 fn good_life(client: &Client) {
-    client.expect(OK, client.set_integers(&[("contact_nodes", 25), ("depth_nodes", 17)]));
-    client.expect(OK, client.setup(0.0, None));
-    client.expect(OK, client.enter());
-    client.expect(OK, client.exit());
+    client.make_coarse();
+    client.start();
     client.expect(OK, client.step(0.0, 1e-3));
     client.expect(OK, client.terminate());
     client.expect(OK, client.reset());
@@ -58,12 +56,14 @@ fn the_reason_of_a_failed_call_is_told_until_it_is_switched_off() {
 
 #[test]
 fn with_logging_on_solver_and_events_are_told_with_ok() {
-    let api = Api::load();
-    let client = Client::with_logging(&api, true);
-    good_life(&client);
-    let messages = client.journal.take();
-    assert_eq!(categories(&messages), ["logEvents", "logSolver"]);
-    assert!(messages.iter().all(|message| message.status == OK));
+    with_each_contact_model(|api, contact| {
+        let mut client = Client::with_logging(api, true);
+        client.contact = contact;
+        good_life(&client);
+        let messages = client.journal.take();
+        assert_eq!(categories(&messages), ["logEvents", "logSolver"]);
+        assert!(messages.iter().all(|message| message.status == OK));
+    });
 }
 
 #[test]

@@ -1,10 +1,14 @@
-//! Probes of the interface, one misuse each, by name. Each runs in a process of its own, so that a crash or a hang is reported
-//! under the probe's name and hides no other. The standard's own reference units fail at some of them: they hang on a step
+//! Probes of the interface, one misuse each, by name, with each contact model. Each runs in a process of its own, so that a crash
+//! or a hang is reported under the probe's name and hides no other. The standard's own reference units fail at some of them: they hang on a step
 //! that is NaN or infinite, accept an initialisation without fmi2SetupExperiment, blank names, fixed parameters after the
 //! initialisation and noise as a state, and crash on null states.
 
-use super::importer::{Api, Client, DISCARD, ERROR, Handle, Journal, OK, WARNING, callbacks, guid, reference};
+use super::importer::{
+    Api, Client, ContactModel, DISCARD, ERROR, Handle, Journal, Line, OK, Patch, WARNING, callbacks, guid, reference,
+    sideways,
+};
 use std::ffi::{CStr, CString, c_char, c_int};
+use std::ops::Deref;
 use std::process::{Command, Stdio};
 use std::ptr::{dangling_mut, null, null_mut};
 use std::time::{Duration, Instant};
@@ -21,10 +25,8 @@ fn refuse(client: &Client, status: c_int) {
     client.expect(ERROR, status);
     assert!(client.last_message().starts_with("fmi2"));
     client.expect(OK, client.reset());
-    client.expect(OK, client.set_integers(&[("contact_nodes", 25), ("depth_nodes", 17)]));
-    client.expect(OK, client.setup(0.0, None));
-    client.expect(OK, client.enter());
-    client.expect(OK, client.exit());
+    client.make_coarse();
+    client.start();
     advance(client, 0.0);
 }
 
@@ -48,9 +50,23 @@ fn advance(client: &Client, time: f64) {
     );
 }
 
+/// What a probe is given: the library, and the contact model of its instances.
+struct Given {
+    api: Api,
+    contact: ContactModel,
+}
+
+impl Deref for Given {
+    type Target = Api;
+
+    fn deref(&self) -> &Api {
+        &self.api
+    }
+}
+
 /// *stepComplete*, with a wheel that slips.
-fn running(api: &Api) -> Client<'_> {
-    Client::running(api, &[("creepage", 0.004)])
+fn running(api: &Given) -> Client<'_> {
+    Client::running(api, api.contact, &[("creepage", 0.004)])
 }
 
 /// Arguments of fmi2Instantiate; what is not given is right.
@@ -177,11 +193,11 @@ fn without_instance(api: &Api) -> Vec<c_int> {
     }
 }
 
-type Probe = fn(&Api);
+type Probe = fn(&Given);
 
 macro_rules! probes {
     ($($name:literal: |$api:ident| $body:block)*) => {
-        const PROBES: &[(&str, Probe)] = &[$(($name, |$api: &Api| {
+        const PROBES: &[(&str, Probe)] = &[$(($name, |$api: &Given| {
             #[allow(unused_unsafe)]
             // SAFETY: pointers are null, or valid for the counts beside them but where a count cannot be; states are never
             // followed.
@@ -291,30 +307,30 @@ probes! {
 
     // fmi2SetupExperiment
     "a start time that is NaN is refused": |api| {
-        let client = Client::new(api);
+        let client = Client::coarse(api, api.contact);
         refuse(&client, client.setup(f64::NAN, None));
     }
     "a start time that is infinite is refused": |api| {
-        let client = Client::new(api);
+        let client = Client::coarse(api, api.contact);
         refuse(&client, client.setup(f64::NEG_INFINITY, None));
     }
     "a stop time that is NaN is refused": |api| {
-        let client = Client::new(api);
+        let client = Client::coarse(api, api.contact);
         refuse(&client, client.setup(0.0, Some(f64::NAN)));
     }
     "a stop time before the start time is refused": |api| {
-        let client = Client::new(api);
+        let client = Client::coarse(api, api.contact);
         refuse(&client, client.setup(1.0, Some(0.5)));
     }
     "a tolerance that is NaN does no harm": |api| {
-        let client = Client::new(api);
+        let client = Client::coarse(api, api.contact);
         client.expect(OK, (api.setup_experiment)(client.component, 1, f64::NAN, 0.0, 0, f64::NAN));
         client.expect(OK, client.enter());
         client.expect(OK, client.exit());
         advance(&client, 0.0);
     }
     "a start time other than 0 is where the steps begin": |api| {
-        let client = Client::new(api);
+        let client = Client::coarse(api, api.contact);
         client.expect(OK, client.setup(-1e3, Some(1e3)));
         client.expect(OK, client.enter());
         client.expect(OK, client.exit());
@@ -327,16 +343,16 @@ probes! {
 
     // fmi2EnterInitializationMode, fmi2ExitInitializationMode
     "no initialisation without fmi2SetupExperiment": |api| {
-        let client = Client::new(api);
+        let client = Client::coarse(api, api.contact);
         refuse(&client, client.enter());
     }
     "fmi2Reset forgets the experiment": |api| {
-        let client = Client::initializing(api);
+        let client = Client::initializing(api, api.contact);
         client.expect(OK, client.reset());
         refuse(&client, client.enter());
     }
     "the initialisation is not entered twice": |api| {
-        let client = Client::initializing(api);
+        let client = Client::initializing(api, api.contact);
         refuse(&client, client.enter());
     }
     "the initialisation is not entered after a step": |api| {
@@ -345,7 +361,7 @@ probes! {
         refuse(&client, client.enter());
     }
     "the initialisation does not end before it begins": |api| {
-        let client = Client::new(api);
+        let client = Client::coarse(api, api.contact);
         refuse(&client, client.exit());
     }
     "the initialisation does not end twice": |api| {
@@ -353,14 +369,14 @@ probes! {
         refuse(&client, client.exit());
     }
     "parameters that do not fit together end no initialisation": |api| {
-        let client = Client::initializing(api);
+        let client = Client::initializing(api, api.contact);
         client.expect(OK, client.set(&[("friction_hot", 0.9)]));
         refuse(&client, client.exit());
     }
 
     // fmi2GetXXX, fmi2SetXXX
     "nothing is read before the initialisation": |api| {
-        let client = Client::new(api);
+        let client = Client::coarse(api, api.contact);
         refuse(&client, client.get_references(&[reference("normal_load")], &mut [0.0]));
     }
     "an unknown Real is not read": |api| {
@@ -392,7 +408,7 @@ probes! {
         refuse(&client, (api.set_real)(client.component, &u32::MAX, 1, &0.0));
     }
     "an unknown Integer is not set": |api| {
-        let client = Client::initializing(api);
+        let client = Client::initializing(api, api.contact);
         refuse(&client, (api.set_integer)(client.component, &u32::MAX, 1, &0));
     }
     "an unknown Boolean is not set": |api| {
@@ -439,7 +455,7 @@ probes! {
         assert_eq!(client.get("normal_load"), 4e4);
     }
     "an output is not set": |api| {
-        let client = Client::initializing(api);
+        let client = Client::initializing(api, api.contact);
         refuse(&client, client.set(&[("traction_force", 0.0)]));
     }
     "a local variable is not set": |api| {
@@ -476,12 +492,44 @@ probes! {
         let client = running(api);
         discard(&client, client.set(&[("creepage", f64::MAX)]));
     }
+    "lateral or spin motion that is not finite or beyond its range is discarded": |api| {
+        for (name, _) in sideways(Patch) {
+            for value in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, f64::MAX, -1001.0] {
+                let client = running(api);
+                discard(&client, client.set(&[("creepage", 0.01), (name, value)]));
+                assert_eq!(client.get("creepage"), 0.004);
+            }
+        }
+    }
+    "lateral and spin motion is discarded by a line contact and taken by a patch": |api| {
+        for (name, value) in sideways(Patch) {
+            let client = running(api);
+            let status = client.set(&[(name, 2.0 * value)]);
+            match api.contact {
+                Line => {
+                    client.expect(DISCARD, status);
+                    assert!(client.last_message().contains(&format!("{name} = {}: must be 0", 2.0 * value)));
+                }
+                Patch => client.expect(OK, status),
+            }
+            advance(&client, 0.0);
+        }
+    }
+    "the contact model is not changed after the initialisation": |api| {
+        let client = running(api);
+        refuse(&client, client.set_integers(&[("contact_model", 1)]));
+    }
+    "a state of the other contact model is none": |api| {
+        let other = Client::running(api, if api.contact == Line { Patch } else { Line }, &[]);
+        let client = running(api);
+        refuse(&client, deserialize(&client, &other.serialize(other.save())));
+    }
     "a parameter that is NaN is discarded": |api| {
         let client = running(api);
         discard(&client, client.set(&[("friction_cold", f64::NAN)]));
     }
     "an Integer beyond its range is discarded": |api| {
-        let client = Client::initializing(api);
+        let client = Client::initializing(api, api.contact);
         client.expect(DISCARD, client.set_integers(&[("contact_nodes", c_int::MAX)]));
         client.expect(OK, client.exit());
         advance(&client, 0.0);
@@ -493,7 +541,8 @@ probes! {
     }
     "subnormal inputs lead to finite outputs": |api| {
         let client = running(api);
-        for name in ["creepage", "wheel_speed", "friction_scale", "normal_load"] {
+        let both = ["creepage", "wheel_speed", "friction_scale", "normal_load"];
+        for name in sideways(api.contact).iter().map(|(name, _)| *name).chain(both) {
             client.expect(OK, client.set(&[(name, 5e-324)]));
         }
         advance(&client, 0.0);
@@ -542,15 +591,15 @@ probes! {
         refuse(&client, client.step(0.0, 0.01));
     }
     "a step beyond the stop time is refused": |api| {
-        let client = Client::new(api);
+        let client = Client::coarse(api, api.contact);
         client.expect(OK, client.setup(0.0, Some(0.02)));
         client.expect(OK, client.enter());
         client.expect(OK, client.exit());
         refuse(&client, client.step(0.0, 0.03));
     }
-    "no step before the initialisation": |api| { let client = Client::new(api); refuse(&client, client.step(0.0, 0.01)); }
+    "no step before the initialisation": |api| { let client = Client::coarse(api, api.contact); refuse(&client, client.step(0.0, 0.01)); }
     "no step during the initialisation": |api| {
-        let client = Client::initializing(api);
+        let client = Client::initializing(api, api.contact);
         refuse(&client, client.step(0.0, 0.01));
     }
     "no step after fmi2Terminate": |api| {
@@ -670,7 +719,7 @@ probes! {
         refuse(&client, deserialize(&client, &bytes));
     }
     "a state of other fixed parameters is none": |api| {
-        let other = Client::running(api, &[("wheel_radius", 0.45)]);
+        let other = Client::running(api, api.contact, &[("wheel_radius", 0.45)]);
         let client = running(api);
         refuse(&client, deserialize(&client, &other.serialize(other.save())));
     }
@@ -695,7 +744,7 @@ probes! {
         refuse(&client, (api.directional_derivative)(client.component, &output, 1, &input, 1, null(), &mut 0.0));
     }
     "there is no derivative before the initialisation": |api| {
-        let client = Client::new(api);
+        let client = Client::coarse(api, api.contact);
         refuse(&client, derivative(&client, reference("traction_force"), reference("creepage"), 1.0));
     }
     "a derivative in no direction is 0": |api| {
@@ -728,6 +777,18 @@ probes! {
         client.expect(OK, client.restore(handle));
         advance(&client, 0.0);
     }
+    "an input derivative of lateral or spin motion that leads out of the range fails the step alone": |api| {
+        for (name, _) in sideways(Patch) {
+            let client = running(api);
+            let (handle, before) = (client.save(), client.outputs());
+            client.expect(OK, client.set_rates(&[(name, 1, -1e300)]));
+            client.expect(ERROR, client.step(0.0, 0.01));
+            assert!(client.last_message().contains(&format!("{name} = ")));
+            assert_eq!(client.outputs(), before);
+            client.expect(OK, client.restore(handle));
+            advance(&client, 0.0);
+        }
+    }
     "an output has no input derivative": |api| {
         let client = running(api);
         refuse(&client, client.set_rates(&[("traction_force", 1, 1.0)]));
@@ -745,7 +806,7 @@ probes! {
         refuse(&client, output_rate(&client, reference("creepage"), 1));
     }
     "there are no output derivatives during the initialisation": |api| {
-        let client = Client::initializing(api);
+        let client = Client::initializing(api, api.contact);
         refuse(&client, output_rate(&client, reference("traction_force"), 1));
     }
 
@@ -778,13 +839,13 @@ probes! {
         refuse(&client, (api.get_real_status)(client.component, 2, null_mut()));
     }
     "there is no status before the first step is possible": |api| {
-        let client = Client::initializing(api);
+        let client = Client::initializing(api, api.contact);
         refuse(&client, (api.get_real_status)(client.component, 2, &mut 0.0));
     }
 
     // fmi2Terminate, fmi2Reset
     "nothing is terminated before the initialisation": |api| {
-        let client = Client::new(api);
+        let client = Client::coarse(api, api.contact);
         refuse(&client, client.terminate());
     }
     "nothing is terminated twice": |api| {
@@ -822,16 +883,24 @@ fn failure(name: &str) -> Option<String> {
     }
     let output = child.wait_with_output().expect("the child's output");
     let message = String::from_utf8_lossy(&output.stderr);
+    let told = String::from_utf8_lossy(&output.stdout);
     // Were this test renamed, the child would run none and succeed.
-    let ran = String::from_utf8_lossy(&output.stdout).contains("1 passed");
-    (!output.status.success() || !ran).then(|| format!("{name}: {}: {message}", output.status))
+    let ran = told.contains("1 passed");
+    (!output.status.success() || !ran).then(|| format!("{name}: {}: {told}{message}", output.status))
 }
 
 #[test]
 fn every_probe_passes() {
     if let Ok(name) = std::env::var(CHILD) {
         let (_, probe) = PROBES.iter().find(|probe| probe.0 == name).expect("a probe");
-        return probe(&Api::load());
+        for contact in [Line, Patch] {
+            println!("{contact:?}");
+            probe(&Given {
+                api: Api::load(),
+                contact,
+            });
+        }
+        return;
     }
     let mut names: Vec<&str> = PROBES.iter().map(|probe| probe.0).collect();
     names.sort_unstable();

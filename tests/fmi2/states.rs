@@ -1,6 +1,6 @@
 //! The state machine: every function in every state, against the table of the standard (2.0.5, section 4.2.4).
 
-use super::importer::{Api, Client, ERROR, OK, reference};
+use super::importer::{Api, Client, ContactModel, ERROR, OK, reference, with_each_contact_model};
 use std::ffi::c_int;
 use std::ptr::{null, null_mut};
 
@@ -25,25 +25,24 @@ const STATES: [State; 6] = [
     State::Error,
 ];
 
-/// A fresh instance in a state.
-fn in_state(api: &Api, state: State) -> Client<'_> {
+/// A fresh instance of a contact model in a state.
+fn in_state(api: &Api, contact: ContactModel, state: State) -> Client<'_> {
     match state {
         Instantiated => {
-            let client = Client::new(api);
-            client.expect(OK, client.set_integers(&[("contact_nodes", 25), ("depth_nodes", 17)]));
+            let client = Client::coarse(api, contact);
             client.expect(OK, client.setup(0.0, None));
             client
         }
-        Initialization => Client::initializing(api),
-        StepComplete => Client::running(api, &[]),
-        StepFailed => step_failed(api),
+        Initialization => Client::initializing(api, contact),
+        StepComplete => Client::running(api, contact, &[]),
+        StepFailed => step_failed(api, contact),
         Terminated => {
-            let client = Client::running(api, &[]);
+            let client = Client::running(api, contact, &[]);
             client.expect(OK, client.terminate());
             client
         }
         State::Error => {
-            let client = Client::running(api, &[]);
+            let client = Client::running(api, contact, &[]);
             client.expect(ERROR, client.step(-1.0, 1.0));
             client
         }
@@ -52,8 +51,8 @@ fn in_state(api: &Api, state: State) -> Client<'_> {
 
 /// Steps that stop after a committed part are rare (steps.rs looks for them), so *stepFailed* comes from a
 /// serialised state that says so.
-fn step_failed(api: &Api) -> Client<'_> {
-    let client = Client::running(api, &[]);
+fn step_failed(api: &Api, contact: ContactModel) -> Client<'_> {
+    let client = Client::running(api, contact, &[]);
     let handle = client.save();
     let mut bytes = client.serialize(handle);
     // The payload begins with the number of the state in its enumeration.
@@ -211,47 +210,48 @@ fn discarded(status: c_int) -> c_int {
 
 #[test]
 fn every_function_in_every_state_is_as_the_standard_says() {
-    let api = Api::load();
-    let table = table();
-    // With fmi2GetTypesPlatform, fmi2GetVersion, fmi2Instantiate and fmi2FreeInstance these are all.
-    assert_eq!(table.len() + 4, super::importer::FUNCTIONS.len());
-    for (name, call, allowed) in &table {
-        for state in STATES {
-            let client = in_state(&api, state);
-            client.journal.borrow_mut().clear();
-            let expected = if allowed.contains(&state) { OK } else { ERROR };
-            assert_eq!(
-                call(&client),
-                expected,
-                "{name} in {state:?}: {:?}",
-                client.journal.borrow()
-            );
-            if expected == ERROR {
-                let message = client.last_message();
-                assert!(
-                    message.starts_with(&format!("{name}: not allowed in state")),
-                    "{message}"
+    with_each_contact_model(|api, contact| {
+        let table = table();
+        // With fmi2GetTypesPlatform, fmi2GetVersion, fmi2Instantiate and fmi2FreeInstance these are all.
+        assert_eq!(table.len() + 4, super::importer::FUNCTIONS.len());
+        for (name, call, allowed) in &table {
+            for state in STATES {
+                let client = in_state(api, contact, state);
+                client.journal.borrow_mut().clear();
+                let expected = if allowed.contains(&state) { OK } else { ERROR };
+                assert_eq!(
+                    call(&client),
+                    expected,
+                    "{name} in {state:?}: {:?}",
+                    client.journal.borrow()
                 );
+                if expected == ERROR {
+                    let message = client.last_message();
+                    assert!(
+                        message.starts_with(&format!("{name}: not allowed in state")),
+                        "{message}"
+                    );
+                }
             }
         }
-    }
+    });
 }
 
 #[test]
 fn a_refused_call_leads_to_the_error_state_and_reset_leads_out() {
-    let api = Api::load();
-    for state in STATES {
-        let client = in_state(&api, state);
-        // SAFETY: a live instance.
-        client.expect(ERROR, unsafe { (api.cancel_step)(client.component) });
-        client.expect(ERROR, client.step(0.0, 1e-3));
-        assert!(client.last_message().contains("not allowed in state error"));
-        client.expect(OK, client.reset());
-        client.expect(OK, client.setup(0.0, None));
-        client.expect(OK, client.enter());
-        client.expect(OK, client.exit());
-        client.expect(OK, client.step(0.0, 1e-3));
-    }
+    with_each_contact_model(|api, contact| {
+        for state in STATES {
+            let client = in_state(api, contact, state);
+            // SAFETY: a live instance.
+            client.expect(ERROR, unsafe { (api.cancel_step)(client.component) });
+            client.expect(ERROR, client.step(0.0, 1e-3));
+            assert!(client.last_message().contains("not allowed in state error"));
+            client.expect(OK, client.reset());
+            client.make_coarse();
+            client.start();
+            client.expect(OK, client.step(0.0, 1e-3));
+        }
+    });
 }
 
 #[test]
@@ -268,10 +268,11 @@ fn initialization_needs_an_experiment() {
 
 #[test]
 fn every_state_can_be_freed() {
-    let api = Api::load();
-    for state in STATES {
-        let client = in_state(&api, state);
-        client.save();
-        drop(client);
-    }
+    with_each_contact_model(|api, contact| {
+        for state in STATES {
+            let client = in_state(api, contact, state);
+            client.save();
+            drop(client);
+        }
+    });
 }

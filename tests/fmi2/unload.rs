@@ -1,7 +1,10 @@
 //! The library is loaded and unloaded many times in one process, with an instance in between.
 
-use super::importer::{Api, Client, DISCARD, ERROR, OK, is_mapped, reference};
+use super::importer::{
+    Api, Client, ContactModel, DISCARD, ERROR, Line, OK, Patch, coarse, is_mapped, reference, sideways,
+};
 use super::own_process::in_own_process;
+use std::ffi::c_int;
 use std::fs::read_to_string;
 use std::ptr::null;
 use std::sync::Arc;
@@ -16,16 +19,24 @@ fn threads() -> usize {
     std::fs::read_dir("/proc/self/task").expect("tasks").count()
 }
 
-/// Everything that an importer may do with an instance, in numbers of contact nodes that go different ways through the
-/// linear algebra.
-fn use_all(api: &Api, contact_nodes: i32) {
+/// A contact model with Integer parameters.
+type Grid = (ContactModel, &'static [(&'static str, c_int)]);
+
+/// In sizes that go different ways through the linear algebra.
+const LARGE: [Grid; 3] = [
+    (Line, &[("contact_nodes", 121)]),
+    (Line, &[("contact_nodes", 181)]),
+    (Patch, &[("contact_model", 2)]),
+];
+
+/// Everything that an importer may do with an instance.
+fn use_all(api: &Api, (contact, grid): Grid) {
     let client = Client::with_logging(api, true);
     let (c, n) = (client.component, null());
-    client.expect(OK, client.set_integers(&[("contact_nodes", contact_nodes)]));
-    client.expect(OK, client.setup(0.0, None));
-    client.expect(OK, client.enter());
-    client.expect(OK, client.exit());
+    client.expect(OK, client.set_integers(grid));
+    client.start();
     client.expect(OK, client.set(&[("creepage", 0.01)]));
+    client.expect(OK, client.set(sideways(contact)));
     client.expect(OK, client.set_rates(&[("normal_load", 1, 1e4)]));
     client.expect(OK, client.step(0.0, 0.01));
     let mut handle = client.save();
@@ -54,17 +65,18 @@ fn a_hundred_loads_leave_nothing_behind() {
 }
 
 fn load_a_hundred_times() {
-    let cycle = |contact_nodes: i32| {
+    let cycle = |grid: Grid| {
         let api = Api::load();
-        use_all(&api, contact_nodes);
+        use_all(&api, grid);
         assert!(is_mapped());
         drop(api);
         assert!(!is_mapped(), "the library is gone");
     };
-    [121, 181].into_iter().for_each(cycle);
-    (0..10).for_each(|_| cycle(25));
+    let small = [Line, Patch].map(|contact| (contact, coarse(contact)));
+    LARGE.into_iter().for_each(cycle);
+    (0..5).for_each(|_| small.into_iter().for_each(cycle));
     let (pages, tasks) = (resident_pages(), threads());
-    (0..100).for_each(|_| cycle(25));
+    (0..50).for_each(|_| small.into_iter().for_each(cycle));
     // 4 MiB of slack for the allocator; one leaked library or instance would be several hundred.
     assert!(
         resident_pages() < pages + 1024,
@@ -83,12 +95,13 @@ fn threads_outlive_the_library() {
 }
 
 fn outlive_the_library() {
-    for contact_nodes in [25, 121] {
+    let small = [Line, Patch].map(|contact| (contact, coarse(contact)));
+    for grid in small.into_iter().chain(LARGE) {
         let api = Arc::new(Api::load());
         let ((called, wait), (unloaded, go)) = (channel(), channel());
         let shared = Arc::clone(&api);
         let thread = std::thread::spawn(move || {
-            use_all(&shared, contact_nodes);
+            use_all(&shared, grid);
             drop(shared);
             called.send(()).expect("the test waits");
             go.recv().expect("the test goes on");
