@@ -1,9 +1,12 @@
 //! Random sequences of calls with arbitrary arguments (any bits as a double, any value reference, null pointers, absurd
 //! sizes, wild handles, noise as states): only statuses of the standard come back, and the instance can always be reset
-//! and run. `cargo test --test fmi2 sequences -- --nocapture` prints what was tried.
+//! and run, with each contact model. `cargo test --test fmi2 sequences -- --nocapture` prints what was tried.
 
 use super::calls::{Call, Odd, any_call};
-use super::importer::{Api, Client, DISCARD, ERROR, FUNCTIONS, Handle, Journal, OK, WARNING, callbacks, guid};
+use super::importer::{
+    Api, Client, ContactModel, DISCARD, ERROR, FUNCTIONS, Handle, Journal, Line, OK, Patch, WARNING, callbacks, guid,
+    sideways, with_each_contact_model,
+};
 use proptest::collection::vec;
 use proptest::prelude::*;
 use proptest::test_runner::TestRunner;
@@ -14,7 +17,11 @@ use std::ptr::{null, null_mut};
 use std::time::Instant;
 use wheelrail::fmi2::variables::variables;
 
-const SEQUENCES: u32 = 3000;
+/// Of each contact model.
+const SEQUENCES: u32 = 2000;
+
+/// Makes meshes still coarser: most calls are no steps.
+const COARSER: &[(&str, c_int)] = &[("contact_nodes", 17), ("depth_nodes", 11)];
 
 /// What was tried.
 #[derive(Debug, Default)]
@@ -36,6 +43,9 @@ struct Tally {
     states_restored: u64,
     states_refused: u64,
     steps_done: u64,
+    /// Times that lateral and spin motion was taken, and refused.
+    sideways_taken: u64,
+    sideways_refused: u64,
     /// Errors out of which the state saved at the beginning has led.
     recovered: u64,
 }
@@ -68,6 +78,10 @@ impl Tally {
             Call::RoundTrip(_, flip) => self.states_refused += u64::from(flip.is_some() && done == 2),
             Call::Noise(_) => self.states_refused += 1,
             Call::Step(..) | Call::GoodStep(_) => self.steps_done += done,
+            Call::Sideways(_) => {
+                self.sideways_taken += done;
+                self.sideways_refused += statuses.iter().filter(|status| **status == DISCARD).count() as u64;
+            }
             Call::Odd(odd) => {
                 self.calls_with_null += u64::from(odd.nulls != 0);
                 self.absurd_counts += u64::from(odd.count > 2);
@@ -116,6 +130,11 @@ impl Master<'_> {
                         references.len(),
                         values.as_ptr(),
                     )]
+                }
+                Call::Sideways(values) => {
+                    let motion = sideways(Patch).iter().zip(values);
+                    let motion: Vec<_> = motion.map(|((name, usual), factor)| (*name, usual * factor)).collect();
+                    vec![self.client.set(&motion)]
                 }
                 Call::GetIntegers(references) => {
                     let mut values = vec![0; references.len()];
@@ -367,15 +386,17 @@ impl Master<'_> {
 }
 
 /// Sequences begin somewhere in the life of an instance: most random ones would not get far.
-fn master(api: &Api, begin: u8) -> Master<'_> {
-    let client = Client::new(api);
-    client.expect(OK, client.set_integers(&[("contact_nodes", 17), ("depth_nodes", 11)]));
+fn master(api: &Api, contact: ContactModel, slip_source: c_int, begin: u8) -> Master<'_> {
+    let client = Client::coarse(api, contact);
+    client.expect(OK, client.set_integers(COARSER));
+    client.expect(OK, client.set_integers(&[("slip_source", slip_source)]));
     if begin > 0 {
         client.expect(OK, client.setup(0.0, None));
         client.expect(OK, client.enter());
     }
     if begin > 1 {
         client.expect(OK, client.set(&[("creepage", 0.003)]));
+        client.expect(OK, client.set(sideways(contact)));
         client.expect(OK, client.exit());
     }
     let anchor = client.save();
@@ -399,64 +420,72 @@ fn check(master: &Master, call: &Call, statuses: &[c_int]) -> Result<(), TestCas
 
 #[test]
 fn only_statuses_of_the_standard_come_back() {
-    let api = Api::load();
-    let known: Vec<u32> = variables().iter().map(|row| row.reference).collect();
-    let tally = RefCell::new(Tally::default());
-    let start = Instant::now();
-    let configuration = ProptestConfig {
-        cases: SEQUENCES,
-        failure_persistence: None,
-        ..ProptestConfig::default()
-    };
-    let sequence = |(begin, recover, calls): (u8, bool, Vec<Call>)| {
-        let mut master = master(&api, begin);
-        for call in &calls {
-            let statuses = master.make(call);
-            check(&master, call, &statuses)?;
-            tally.borrow_mut().add(call, &statuses, &known);
-            // As a master does that rolls back: most calls of a random sequence would be refused in *error*.
-            if recover && statuses.contains(&ERROR) {
-                master.client.expect(OK, master.client.restore(master.anchor));
-                tally.borrow_mut().recovered += 1;
+    with_each_contact_model(|api, contact| {
+        let known: Vec<u32> = variables().iter().map(|row| row.reference).collect();
+        let tally = RefCell::new(Tally::default());
+        let start = Instant::now();
+        let configuration = ProptestConfig {
+            cases: SEQUENCES,
+            failure_persistence: None,
+            ..ProptestConfig::default()
+        };
+        let sequence = |(slip_source, begin, recover, calls): (c_int, u8, bool, Vec<Call>)| {
+            let mut master = master(api, contact, slip_source, begin);
+            for call in &calls {
+                let statuses = master.make(call);
+                check(&master, call, &statuses)?;
+                tally.borrow_mut().add(call, &statuses, &known);
+                // As a master does that rolls back: most calls of a random sequence would be refused in *error*.
+                if recover && statuses.contains(&ERROR) {
+                    master.client.expect(OK, master.client.restore(master.anchor));
+                    tally.borrow_mut().recovered += 1;
+                }
             }
+            let client = &master.client;
+            client.expect(OK, client.reset());
+            client.make_coarse();
+            client.expect(OK, client.set_integers(COARSER));
+            client.start();
+            client.expect(OK, client.step(0.0, 0.01));
+            for bits in client.outputs() {
+                prop_assert!(f64::from_bits(bits).is_finite());
+            }
+            tally.borrow_mut().sequences += 1;
+            Ok(())
+        };
+        let result = TestRunner::new(configuration).run(
+            &(1..3, 0..4_u8, prop::bool::weighted(0.8), vec(any_call(), 1..40)),
+            sequence,
+        );
+        if let Err(failure) = result {
+            panic!("{failure}");
         }
-        let client = &master.client;
-        client.expect(OK, client.reset());
-        client.expect(OK, client.set_integers(&[("contact_nodes", 17), ("depth_nodes", 11)]));
-        client.expect(OK, client.setup(0.0, None));
-        client.expect(OK, client.enter());
-        client.expect(OK, client.exit());
-        client.expect(OK, client.step(0.0, 0.01));
-        for bits in client.outputs() {
-            prop_assert!(f64::from_bits(bits).is_finite());
+        let tally = tally.into_inner();
+        println!("{:.0} s: {tally:#?}", start.elapsed().as_secs_f64());
+        // Nothing of what this test is for was left out by chance.
+        assert_eq!(tally.sequences, u64::from(SEQUENCES));
+        for count in [
+            tally.not_a_number,
+            tally.infinite,
+            tally.subnormal,
+            tally.huge,
+            tally.unknown_references,
+            tally.calls_with_null,
+            tally.absurd_counts,
+            tally.states_restored,
+            tally.states_refused,
+            tally.steps_done,
+        ] {
+            assert!(count >= 200, "{tally:#?}");
         }
-        tally.borrow_mut().sequences += 1;
-        Ok(())
-    };
-    let result =
-        TestRunner::new(configuration).run(&(0..4_u8, prop::bool::weighted(0.8), vec(any_call(), 1..40)), sequence);
-    if let Err(failure) = result {
-        panic!("{failure}");
-    }
-    let tally = tally.into_inner();
-    println!("{:.0} s: {tally:#?}", start.elapsed().as_secs_f64());
-    // Nothing of what this test is for was left out by chance.
-    assert_eq!(tally.sequences, u64::from(SEQUENCES));
-    for count in [
-        tally.not_a_number,
-        tally.infinite,
-        tally.subnormal,
-        tally.huge,
-        tally.unknown_references,
-        tally.calls_with_null,
-        tally.absurd_counts,
-        tally.states_restored,
-        tally.states_refused,
-        tally.steps_done,
-    ] {
-        assert!(count >= 200, "{tally:#?}");
-    }
-    for status in [OK, DISCARD, ERROR] {
-        assert!(tally.statuses[status as usize] >= 200, "{tally:#?}");
-    }
+        // Taken by the contact model that it is of, refused by the other one.
+        let sideways = match contact {
+            Line => tally.sideways_refused,
+            Patch => tally.sideways_taken,
+        };
+        assert!(sideways >= 200, "{tally:#?}");
+        for status in [OK, DISCARD, ERROR] {
+            assert!(tally.statuses[status as usize] >= 200, "{tally:#?}");
+        }
+    });
 }
