@@ -1,8 +1,8 @@
-//! Braking and re-acceleration at steps of 1 ms under random load, creepage and friction: every step completes, all outputs
-//! stay finite and within physical bounds, and the memory stays flat. A minute by default, an hour with
-//! `WHEELRAIL_SOAK_MINUTES=60 cargo test --release --test fmi2 -- --nocapture soak`.
+//! Braking and re-acceleration at steps of 1 ms under random load, creepages and friction: every step completes, all outputs
+//! stay finite and within physical bounds, and the memory stays flat. A minute of a line and a third of that of a coarse patch by
+//! default, an hour and a third with `WHEELRAIL_SOAK_MINUTES=60 cargo test --release --test fmi2 -- --nocapture soak`.
 
-use super::importer::{Api, Client, Handle, OK, reference};
+use super::importer::{Api, Client, ContactModel, Handle, Line, OK, Patch, reference};
 use super::own_process::in_own_process;
 use std::env::var;
 use std::fs::read_to_string;
@@ -63,6 +63,8 @@ struct Scenario {
     load: Ramp,
     friction_scale: Ramp,
     ambient: Ramp,
+    /// Lateral and spin creepage, the latter in 1/m: of a patch.
+    sideways: Option<[Ramp; 2]>,
     /// Steps left until the next choice of the speed.
     manoeuvre: u64,
     /// Steps left with the wheel off the rail, and the load afterwards.
@@ -77,10 +79,12 @@ struct Given {
     normal_load: f64,
     friction_scale: f64,
     ambient_temperature: f64,
+    lateral_speed: f64,
+    spin_rate: f64,
 }
 
 impl Scenario {
-    fn new(seed: u64) -> Scenario {
+    fn new(seed: u64, contact: ContactModel) -> Scenario {
         Scenario {
             random: Random::new(seed, 0),
             speed: Ramp::at(20.0),
@@ -88,6 +92,7 @@ impl Scenario {
             load: Ramp::at(60e3),
             friction_scale: Ramp::at(1.0),
             ambient: Ramp::at(293.15),
+            sideways: (contact == Patch).then_some([Ramp::at(0.0); 2]),
             manoeuvre: 0,
             lifted: None,
         }
@@ -161,13 +166,34 @@ impl Scenario {
             }
         };
         let vehicle_speed = self.speed.advance();
+        let [lateral, spin] = self.move_sideways();
+        // A wheel that stands may slip sideways, and turn on the spot.
+        let speed = vehicle_speed.abs().max(1.0);
         Given {
             vehicle_speed,
             wheel_speed: vehicle_speed * (1.0 + self.creepage.advance()) / Parameters::default().wheel_radius,
             normal_load: self.load.advance(),
             friction_scale: self.friction_scale.advance(),
             ambient_temperature: self.ambient.advance(),
+            lateral_speed: lateral * speed,
+            spin_rate: spin * speed,
         }
+    }
+
+    /// Lateral and spin creepage.
+    fn move_sideways(&mut self) -> [f64; 2] {
+        let Some(ramps) = &mut self.sideways else {
+            return [0.0; 2];
+        };
+        for (ramp, largest) in ramps.iter_mut().zip([0.01, 1.0]) {
+            if self.random.chance(5e-3) {
+                // Mostly small, and none at times.
+                let share = self.random.between(-1.0, 1.0).powi(3);
+                let target = if self.random.chance(0.2) { 0.0 } else { largest * share };
+                ramp.to(target, self.random.between(STEP, 0.3));
+            }
+        }
+        ramps.each_mut().map(Ramp::advance)
     }
 }
 
@@ -197,14 +223,15 @@ struct Tally {
     slowest: Duration,
 }
 
-fn simulate(steps: u64) {
+fn simulate(contact: ContactModel, steps: u64) {
     let api = Api::load();
     let running = || {
-        let client = Client::new(&api);
+        let client = match contact {
+            Line => Client::new(&api),
+            Patch => Client::coarse(&api, contact),
+        };
         client.expect(OK, client.set_integers(&[("slip_source", 2)]));
-        client.expect(OK, client.setup(0.0, None));
-        client.expect(OK, client.enter());
-        client.expect(OK, client.exit());
+        client.start();
         client
     };
     let (client, other) = (running(), running());
@@ -215,6 +242,8 @@ fn simulate(steps: u64) {
         "friction_scale",
         "ambient_temperature",
         "incoming_temperature",
+        "lateral_speed",
+        "spin_rate",
     ]
     .map(reference);
     let outputs: Vec<u32> = OUTPUTS.iter().map(|row| reference(row.name)).collect();
@@ -227,9 +256,12 @@ fn simulate(steps: u64) {
         "friction_power",
         "wear_rate",
         "wear_depth",
+        "contact_breadth",
+        "contact_area",
     ]
     .map(column);
-    let [traction, temperature, stick] = ["traction_force", "peak_temperature", "stick_fraction"].map(column);
+    let [traction, lateral, temperature, stick] =
+        ["traction_force", "lateral_force", "peak_temperature", "stick_fraction"].map(column);
     let profile = |name: &'static str| (1..=61).map(move |point| reference(&format!("profile.{name}[{point}]")));
     let profiles: Vec<u32> = profile("pressure")
         .chain(profile("wear_depth"))
@@ -237,7 +269,7 @@ fn simulate(steps: u64) {
         .collect();
     let mut locals = vec![0.0; profiles.len()];
 
-    let mut scenario = Scenario::new(20_240_607);
+    let mut scenario = Scenario::new(20_240_607, contact);
     let mut values = vec![0.0; outputs.len()];
     let mut last = values.clone();
     let mut tally = Tally::default();
@@ -254,6 +286,8 @@ fn simulate(steps: u64) {
             given.ambient_temperature,
             // The rail comes in at ambient.
             given.ambient_temperature,
+            given.lateral_speed,
+            given.spin_rate,
         ];
         // SAFETY: as many values as references, and a variable.
         unsafe {
@@ -296,7 +330,12 @@ fn simulate(steps: u64) {
             assert!(value.is_finite(), "step {step}: {} = {value} at {given:?}", row.name);
         }
         if status == OK {
-            check(step, &given, values[traction], values[temperature]);
+            check(
+                step,
+                &given,
+                values[traction].hypot(values[lateral]),
+                values[temperature],
+            );
         }
         for row in totals {
             let (now, before) = (values[row], last[row]);
@@ -342,7 +381,7 @@ fn simulate(steps: u64) {
     let (resident, peak) = memory();
     let wall = start.elapsed().as_secs_f64();
     println!(
-        "{steps} steps in {wall:.0} s, {:.3} ms each; {tally:?}",
+        "{contact:?}: {steps} steps in {wall:.0} s, {:.3} ms each; {tally:?}",
         1e3 * wall / steps as f64
     );
     println!("memory: {after_warm_up} KiB after a tenth, {resident} KiB at the end, {peak} KiB at most");
@@ -355,12 +394,12 @@ fn simulate(steps: u64) {
 }
 
 /// Coulomb's bound, and no rail colder than its surroundings.
-fn check(step: u64, given: &Given, traction: f64, temperature: f64) {
+fn check(step: u64, given: &Given, friction: f64, temperature: f64) {
     let bound = Parameters::default().friction_cold * given.friction_scale * given.normal_load;
     // The friction law holds to the tolerance of the mechanics.
     assert!(
-        traction.abs() <= bound * (1.0 + 1e-6),
-        "step {step}: |{traction}| N > {bound} N at {given:?}"
+        friction <= bound * (1.0 + 1e-6),
+        "step {step}: {friction} N > {bound} N at {given:?}"
     );
     assert!(
         temperature >= given.ambient_temperature,
@@ -392,10 +431,22 @@ fn report(client: &Client, handle: Handle, step: u64) {
     }
 }
 
+/// So many steps for each minute that the environment asks for; one by default.
+fn simulate_minutes(contact: ContactModel, steps: u64) {
+    let minutes = var("WHEELRAIL_SOAK_MINUTES").map_or(1, |text| text.parse().expect("whole minutes"));
+    simulate(contact, steps * minutes);
+}
+
 #[test]
 fn braking_and_accelerating_goes_on_and_on() {
     in_own_process("soak::braking_and_accelerating_goes_on_and_on", || {
-        let minutes = var("WHEELRAIL_SOAK_MINUTES").map_or(1, |text| text.parse().expect("whole minutes"));
-        simulate(60_000 * minutes);
+        simulate_minutes(Line, 60_000);
+    });
+}
+
+#[test]
+fn braking_and_accelerating_goes_on_and_on_with_a_patch() {
+    in_own_process("soak::braking_and_accelerating_goes_on_and_on_with_a_patch", || {
+        simulate_minutes(Patch, 20_000);
     });
 }
