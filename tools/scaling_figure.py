@@ -65,13 +65,20 @@ def draw_patch() -> None:
     cells.set_ylabel("processor time [ms]")
 
     error.loglog(step, patch["error"], "o", label="patch")
-    for name, x, y in zip(zip(patch["patch_nodes"], patch["patch_strips"], strict=True), step, patch["error"], strict=True):
-        text = " × ".join(f"{count:.0f}" for count in name)
-        error.annotate(text, (x, y), xytext=(5, 3), textcoords="offset points", fontsize=8)
+    for cells_along, strips, x, y in zip(
+        patch["patch_nodes"], patch["patch_strips"], step, patch["error"], strict=True
+    ):
+        error.annotate(
+            f"{cells_along:.0f} × {strips:.0f}", (x, y), xytext=(5, 3), textcoords="offset points", fontsize=8
+        )
     error.errorbar(call, contact["error"], xerr=spread, label="CONTACT, n = 20, 30, 40", **style)
     error.set_xlabel("processor time [ms]")
     error.set_ylabel("largest error of $F_x$, $F_y$ over $\\mu N$")
+    cells.set_xticks([150, 300, 600, 1200], ["150", "300", "600", "1200"])
+    ticks = [0.0015, 0.002, 0.003, 0.005, 0.01, 0.02]
+    error.set_yticks(ticks, [f"{tick:g}" for tick in ticks])
     for axes in (cells, error):
+        axes.minorticks_off()
         axes.legend(frameon=False, fontsize=8)
     write(figure, "scaling_patch.png")
 
