@@ -69,7 +69,11 @@ def draw_patch() -> None:
         patch["patch_nodes"], patch["patch_strips"], step, patch["error"], strict=True
     ):
         error.annotate(
-            f"{cells_along:.0f} × {strips:.0f}", (x, y), xytext=(5, 3), textcoords="offset points", fontsize=8
+            f"{cells_along:.0f} × {strips:.0f}",
+            (x, y),
+            xytext=(5, 3 if strips > 11 else -10),
+            textcoords="offset points",
+            fontsize=8,
         )
     error.errorbar(call, contact["error"], xerr=spread, label="CONTACT, n = 20, 30, 40", **style)
     error.set_xlabel("processor time [ms]")
