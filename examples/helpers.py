@@ -212,6 +212,20 @@ def write_csv(name, columns):
     print(f"  wrote {path.relative_to(REPOSITORY)}")
 
 
+def markdown_table(head, rows):
+    """A table in Markdown."""
+    return "\n".join([f"| {' | '.join(row)} |" for row in (head, ["---"] * len(head), *rows)])
+
+
+def write_tables(name, tables):
+    """The tables of a page of docs/couplings/, for `make couplings-docs`."""
+    RESULTS.mkdir(exist_ok=True)
+    blocks = [f"<!-- {title} -->\n{text}\n<!-- end of {title} -->\n" for title, text in tables.items()]
+    (RESULTS / name).write_text("\n".join(blocks))
+    print("\n".join(blocks))
+    print(f"  wrote results/{name}")
+
+
 def save(figure, name):
     """Put a picture into the results."""
     RESULTS.mkdir(exist_ok=True)

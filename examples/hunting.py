@@ -8,7 +8,7 @@ hunting_pictures.py the pictures. Here: the tables, and everything in turn. docs
 """
 
 import numpy as np
-from helpers import RESULTS, WHEEL_RADIUS, write_csv
+from helpers import WHEEL_RADIUS, markdown_table, write_csv, write_tables
 from hunting_pictures import animate, draw
 from hunting_runs import (
     CYCLE_END,
@@ -25,11 +25,6 @@ from hunting_runs import (
 from running_wheelset import FLANGE_STIFFNESS, HALF_GAUGE, LOAD, SIDES, Suspension
 
 
-def table(head, rows):
-    """A table in Markdown."""
-    return "\n".join([f"| {' | '.join(row)} |" for row in (head, ["---"] * len(head), *rows)])
-
-
 def tables(found):
     """The tables of the page."""
     axes, (c11, c22, c23, c33), _ = found.theory
@@ -42,9 +37,9 @@ def tables(found):
             ("the component", its_axes, its),
         )
     ]
-    made = {"coefficients": table(head, lines)}
+    made = {"coefficients": markdown_table(head, lines)}
     kalker = found.critical["Kalker's coefficients"]
-    made["critical"] = table(
+    made["critical"] = markdown_table(
         ["critical speed by", "", "against Kalker's"],
         [[name, f"{speed:.1f} m/s", f"{100 * (speed / kalker - 1):+.1f} %"] for name, speed in found.critical.items()],
     )
@@ -53,7 +48,7 @@ def tables(found):
         values = [*(eigenvalue(found, name, speed) for name in found.linear), measured]
         shown = [f"{value.real:.2f} 1/s, {value.imag / (2.0 * np.pi):.2f} Hz" for value in values]
         lines.append([f"{speed:g} m/s", *shown])
-    made["growth"] = table(["speed", *(f"linear, {name}" for name in found.linear), "small swings"], lines)
+    made["growth"] = markdown_table(["speed", *(f"linear, {name}" for name in found.linear), "small swings"], lines)
     made["wavelength"] = wavelength_table(found)
     made["cycle"] = cycle_table(found)
     (lateral, moment), limit = found.contact
@@ -62,7 +57,7 @@ def tables(found):
         for creepage, *values in zip(REFERENCE[0], lateral, limit, moment, REFERENCE[3], strict=True)
     ]
     head = ["lateral creepage", "F_y/μN", "CONTACT's limit", "M_z/μNc", "CONTACT, n = 80"]
-    return made | {"contact": table(head, lines)}
+    return made | {"contact": markdown_table(head, lines)}
 
 
 def wavelength_table(found):
@@ -71,7 +66,7 @@ def wavelength_table(found):
     for name, value in found.free_modes.items():
         period = 2.0 * np.pi / value.imag
         lines.append([name, f"{FREE_SPEED * period:.3f} m", f"{100.0 * np.expm1(value.real * period):.2f} %"])
-    return table(["", "wavelength", "growth of the swing in a wave"], lines)
+    return markdown_table(["", "wavelength", "growth of the swing in a wave"], lines)
 
 
 def cycle_table(found):
@@ -98,22 +93,13 @@ def cycle_table(found):
         "the component's friction against the creep": f"{100 * (spent['friction'] / spent['creep_work'] - 1):+.2f} %",
         "left out: shift of load between the wheels": f"{100 * shift / LOAD:.1f} % of the load",
     }
-    return table([f"limit cycle at {CYCLE_SPEED:g} m/s", ""], [list(row) for row in rows.items()])
-
-
-def write_tables(made):
-    """The tables of the page, for `make couplings-docs`."""
-    RESULTS.mkdir(exist_ok=True)
-    blocks = [f"<!-- {name} -->\n{text}\n<!-- end of {name} -->\n" for name, text in made.items()]
-    (RESULTS / "hunting.md").write_text("\n".join(blocks))
-    print("\n".join(blocks))
-    print("  wrote results/hunting.md")
+    return markdown_table([f"limit cycle at {CYCLE_SPEED:g} m/s", ""], [list(row) for row in rows.items()])
 
 
 def main():
     """Measure, draw, write, report."""
     found = measure()
-    write_tables(tables(found))
+    write_tables("hunting.md", tables(found))
     thinned = found.ramp[::5]
     write_csv("hunting.csv", {name: thinned[name] for name in thinned.dtype.names})
     write_csv("hunting_curve.csv", found.curve)

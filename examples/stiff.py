@@ -17,7 +17,20 @@ from types import SimpleNamespace
 
 import matplotlib.pyplot as plt
 import numpy as np
-from helpers import BLACK, BLUE, FMU, ORANGE, RED, RESULTS, WHEEL_RADIUS, Instance, save, show, write_csv
+from helpers import (
+    BLACK,
+    BLUE,
+    FMU,
+    ORANGE,
+    RED,
+    WHEEL_RADIUS,
+    Instance,
+    markdown_table,
+    save,
+    show,
+    write_csv,
+    write_tables,
+)
 
 WHEEL_INERTIA = 60.0  # kg.m2, half a wheelset
 VEHICLE_MASS = 6000.0  # kg, on one wheel
@@ -343,16 +356,11 @@ def draw_stops(stops):
     save(figure, "stiff_stop.png")
 
 
-def table(head, rows):
-    """A table in Markdown."""
-    return "\n".join([f"| {' | '.join(row)} |" for row in (head, ["---"] * len(head), *rows)])
-
-
 def limits_table(rows):
     """Largest stable steps."""
     head = ["speed", "damper alone, 2 J / c", "damper and spring in series", "measured"]
     digits = "{:.3g} ms".format
-    return table(head, [[f"{speed:g} m/s", *(digits(1e3 * value) for value in row)] for speed, *row in rows])
+    return markdown_table(head, [[f"{speed:g} m/s", *(digits(1e3 * value) for value in row)] for speed, *row in rows])
 
 
 def errors_table(rows):
@@ -364,7 +372,7 @@ def errors_table(rows):
         repetitions = found.get(("iterating", step), (0, 0, 0))[2]
         lines.append([f"{1e3 * step:g} ms", *("" if value is None else f"{100 * value:.2g} %" for value in cells)])
         lines[-1].append(f"{repetitions:.1f}" if repetitions else "")
-    return table(["step", *MASTERS, "repetitions a step"], lines)
+    return markdown_table(["step", *MASTERS, "repetitions a step"], lines)
 
 
 def costs_table(rows):
@@ -374,7 +382,7 @@ def costs_table(rows):
         [f"{1e3 * step:g} ms", *(f"{found[master, step][1] / ROLLING.end:.2f} s" for master in MASTERS)]
         for step in (500e-6, 1e-3)
     ]
-    return table(["step", *MASTERS], lines)
+    return markdown_table(["step", *MASTERS], lines)
 
 
 def stops_table(stops, stiffness):
@@ -386,7 +394,7 @@ def stops_table(stops, stiffness):
         lines.append([f"{master}, {1e3 * step:g} ms", f"{1e6 * way:.2g} µm", f"{speed:.1e} m/s"])
         lines[-1] += [f"{books[name]:.2f} J" for name in parts]
     head = ["master", "way while held", "largest speed", "brake", "drive", "gradient", "change of kinetic energy"]
-    return table([*head, "friction", "in the spring", "missing"], lines)
+    return markdown_table([*head, "friction", "in the spring", "missing"], lines)
 
 
 def spinning_table():
@@ -397,16 +405,7 @@ def spinning_table():
             result = run(master, step, SPINNING)
             lines.append([f"{master}, {1e3 * step:g} ms", f"{100 * error(result, reference):.2g} %"])
             lines[-1].append(f"{result['vehicle_speed'][-1] - reference['vehicle_speed'][-1]:.1e} m/s")
-    return table(["master", "largest error of the force", "error of the speed at the end"], lines)
-
-
-def write_tables(tables):
-    """The tables of the page, for `make couplings-docs`."""
-    RESULTS.mkdir(exist_ok=True)
-    blocks = [f"<!-- {name} -->\n{text}\n<!-- end of {name} -->\n" for name, text in tables.items()]
-    (RESULTS / "stiff.md").write_text("\n".join(blocks))
-    print("\n".join(blocks))
-    print("  wrote results/stiff.md")
+    return markdown_table(["master", "largest error of the force", "error of the speed at the end"], lines)
 
 
 def main():
@@ -419,7 +418,7 @@ def main():
     draw_stops(stops)
     print(f"  spring of the contact: {stiffness / WHEEL_RADIUS**2:.3g} N/m")
     tables = {"limits": limits_table(steps), "errors": errors_table(rows), "costs": costs_table(rows)}
-    write_tables(tables | {"stops": stops_table(stops, stiffness), "spinning": spinning_table()})
+    write_tables("stiff.md", tables | {"stops": stops_table(stops, stiffness), "spinning": spinning_table()})
     names = {"explicit": 0, "linearly implicit": 1, "iterating": 2}
     columns = list(zip(*((names[master], *rest) for master, *rest in rows), strict=True))
     head = [f"master ({', '.join(f'{number} {name}' for name, number in names.items())})", "step [s]", "error [1]"]
