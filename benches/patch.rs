@@ -4,102 +4,71 @@
 //!
 //! Times are those that the thread has computed, as in `summary`.
 
-#![allow(unsafe_code)]
-
 mod braking;
+mod timing;
 
 use braking::Braking;
+use timing::{Steps, median_of_three, target};
 use wheelrail::verification::contact_points::RUN_TIMES;
 use wheelrail::verification::patch_creep;
-use wheelrail::{Inputs, Model, Parameters};
+use wheelrail::{Model, Parameters};
 
 /// Steps measured: from full braking on.
 const STEPS: usize = 3_000;
 const ROUNDS: usize = 3;
 
-/// Time this thread has computed, `s`.
-fn thread_time() -> f64 {
-    let mut time = libc::timespec { tv_sec: 0, tv_nsec: 0 };
-    // SAFETY: the kernel writes one timespec.
-    unsafe { libc::clock_gettime(libc::CLOCK_THREAD_CPUTIME_ID, &mut time) };
-    time.tv_sec as f64 + 1e-9 * time.tv_nsec as f64
-}
-
-/// What the steps of one grid took.
-struct Steps {
-    cells_in_contact: f64,
-    /// Ascending, `µs`.
-    times: Vec<f64>,
-    iterations: f64,
-}
-
-impl Steps {
-    fn measure(parameters: &Parameters, manoeuvre: Vec<Inputs>, count: usize) -> Steps {
-        let mut run = Braking::through(parameters, manoeuvre);
-        let (mut times, mut cells, mut iterations) = (Vec::with_capacity(count), 0, 0);
-        for _ in 0..count {
-            let start = thread_time();
-            run.step();
-            times.push(1e6 * (thread_time() - start));
-            cells += run.nodes_in_contact();
-            iterations += run.simulation.state.convergence.iterations;
-        }
-        times.sort_by(f64::total_cmp);
-        Steps {
-            cells_in_contact: cells as f64 / count as f64,
-            times,
-            iterations: iterations as f64 / count as f64,
-        }
-    }
-
-    fn quantile(&self, share: f64) -> f64 {
-        self.times[((self.times.len() - 1) as f64 * share) as usize]
-    }
-}
-
-/// From nothing to the first output, `ms`: the median of three.
+/// From nothing to the first output, `ms`.
 fn cold_start(parameters: &Parameters) -> f64 {
     let inputs = braking::swaying_manoeuvre()[0];
-    let mut times = [(); 3].map(|()| {
-        let start = thread_time();
+    median_of_three(|| {
         let model = Model::new(parameters.clone()).expect("a model");
         let mut workspace = model.workspace();
         model.initial_state(&mut workspace, &inputs).expect("a state");
-        1e3 * (thread_time() - start)
-    });
-    times.sort_by(f64::total_cmp);
-    times[1]
+    })
+}
+
+/// The rounds of one grid.
+struct Grid {
+    cells: usize,
+    strips: usize,
+    /// The round with the least median.
+    steps: Steps,
+    /// `ms`.
+    cold_start: f64,
+}
+
+impl Grid {
+    fn first_round((cells, strips): (usize, usize)) -> Grid {
+        let parameters = braking::patch_parameters(cells, strips);
+        let run = Braking::through(&parameters, braking::swaying_manoeuvre());
+        let count = if cells * strips > 1000 { STEPS / 6 } else { STEPS };
+        Grid {
+            cells,
+            strips,
+            steps: Steps::measure(run, count),
+            cold_start: cold_start(&parameters),
+        }
+    }
+
+    fn next_round(&mut self) {
+        let next = Grid::first_round((self.cells, self.strips));
+        self.cold_start = self.cold_start.min(next.cold_start);
+        if next.steps.quantile(0.5) < self.steps.quantile(0.5) {
+            self.steps = next.steps;
+        }
+    }
 }
 
 fn main() {
-    let grids = [(17, 21), (34, 11), (24, 15), (34, 21), (34, 42), (68, 21), (68, 42)];
-    let (mut patches, mut lines): (Vec<Option<Steps>>, Option<Steps>) = (grids.iter().map(|_| None).collect(), None);
-    for _ in 0..ROUNDS {
-        let keep = |best: &mut Option<Steps>, next: Steps| {
-            if best.as_ref().is_none_or(|best| next.quantile(0.5) < best.quantile(0.5)) {
-                *best = Some(next);
-            }
-        };
-        keep(
-            &mut lines,
-            Steps::measure(
-                &braking::parameters(Parameters::default().contact_nodes),
-                braking::manoeuvre(),
-                STEPS,
-            ),
-        );
-        for (best, (cells, strips)) in patches.iter_mut().zip(grids) {
-            let count = if cells * strips > 1000 { STEPS / 6 } else { STEPS };
-            let next = Steps::measure(
-                &braking::patch_parameters(cells, strips),
-                braking::swaying_manoeuvre(),
-                count,
-            );
-            keep(best, next);
-        }
+    let default = Parameters::default();
+    let line = || Steps::measure(Braking::new(default.contact_nodes), STEPS).quantile(0.5);
+    let mut line_median = line();
+    // The default, twice as many across, along and both ways; and coarser ones.
+    let mut grids = [(34, 21), (34, 42), (68, 21), (68, 42), (24, 15), (34, 11), (17, 21)].map(Grid::first_round);
+    for _ in 1..ROUNDS {
+        line_median = line_median.min(line());
+        grids.iter_mut().for_each(Grid::next_round);
     }
-    let line = lines.expect("a round").quantile(0.5);
-    let patches: Vec<Steps> = patches.into_iter().map(|steps| steps.expect("a round")).collect();
     println!(
         "one step of 1 ms, braking manoeuvre with lateral creepage and spin, all effects on; fastest of {ROUNDS} rounds"
     );
@@ -109,17 +78,17 @@ fn main() {
     let mut table = String::from(
         "patch_nodes,patch_strips,cells_in_contact,median_us,quantile_99_us,quantile_999_us,cold_start_ms,error\n",
     );
-    for (steps, (cells, strips)) in patches.iter().zip(grids) {
+    for grid in &grids {
+        let (cells, strips, cold, steps) = (grid.cells, grid.strips, grid.cold_start, &grid.steps);
         let [median, most, nearly_all] = [0.5, 0.99, 0.999].map(|share| steps.quantile(share));
-        let cold = cold_start(&braking::patch_parameters(cells, strips));
         let error = patch_creep::largest_deviation(cells, strips).expect("creep curves");
         println!(
             "{cells:>7} x {strips:<4}  {:>10.1}  {median:>11.1}  {most:>9.1}  {nearly_all:>11.1}  {:>10.2}  {cold:>15.1}  {error:>19.4}",
-            steps.cells_in_contact, steps.iterations,
+            steps.in_contact, steps.iterations,
         );
         table += &format!(
             "{cells},{strips},{},{median},{most},{nearly_all},{cold},{error}\n",
-            steps.cells_in_contact
+            steps.in_contact
         );
     }
     let results = std::path::Path::new("results");
@@ -132,51 +101,34 @@ fn main() {
         contact += &format!("{n},{cells},{},{},{}\n", 1e3 * least, 1e3 * largest, error * 40.0 / n);
     }
     std::fs::write(results.join("scaling_contact.csv"), contact).expect("room for a table");
-    let of = |grid: (usize, usize)| {
-        grids
-            .iter()
-            .position(|other| *other == grid)
-            .map_or(&patches[0], |place| &patches[place])
-    };
-    let target = |what: &str, value: f64, bound: f64, unit: &str| {
-        let verdict = if value <= bound { "met" } else { "NOT met" };
-        println!("{what:<58} {value:>8.2} {unit:<3} target <= {bound:.4} {unit:<3} {verdict}");
-    };
     println!();
-    let default = of((34, 21));
-    target("step at default settings, median", default.quantile(0.5), 1000.0, "us");
+    let [own, across, along, ..] = &grids;
+    let median = own.steps.quantile(0.5);
+    let growth = |finer: &Grid| (finer.steps.quantile(0.5) / median).log2();
+    // Linear times logarithm, to three digits down.
+    let linear_log = (1e3 * (2.0 * 42_f64.ln() / 21_f64.ln()).log2()).floor() / 1e3;
+    target("step at default settings, median", median, 1000.0, true, "us");
     target(
         "step at default settings, 99.9 %",
-        default.quantile(0.999),
+        own.steps.quantile(0.999),
         6000.0,
+        true,
         "us",
     );
-    target(
-        "ratio to the line engine's step",
-        default.quantile(0.5) / line,
-        28.0,
-        "",
-    );
-    let growth = |from: (usize, usize), to: (usize, usize), more: f64| {
-        (of(to).quantile(0.5) / of(from).quantile(0.5)).ln() / more.ln()
-    };
+    target("ratio to the line engine's step", median / line_median, 28.0, true, "");
     target(
         "growth with the strips, 21 to 42, exponent",
-        growth((34, 21), (34, 42), 2.0),
-        // Linear times logarithm.
-        (2.0 * 42_f64.ln() / 21_f64.ln()).log2(),
+        growth(across),
+        linear_log,
+        true,
         "",
     );
     target(
         "growth with the cells along, 34 to 68, exponent",
-        growth((34, 21), (68, 21), 2.0),
+        growth(along),
         2.0,
+        true,
         "",
     );
-    target(
-        "cold start at default settings",
-        cold_start(&braking::patch_parameters(34, 21)),
-        100.0,
-        "ms",
-    );
+    target("cold start at default settings", own.cold_start, 100.0, true, "ms");
 }

@@ -9,10 +9,12 @@
 
 mod braking;
 mod interface;
+mod timing;
 
 use braking::Braking;
 use interface::common::{Api, OK};
 use std::time::Instant;
+use timing::{Steps, median_of_three, target};
 use wheelrail::Model;
 
 /// Steps measured at most: on the meshes of up to 100 nodes, and on finer ones.
@@ -24,58 +26,12 @@ const ROUNDS: usize = 4;
 /// Rounds of [`two_threads`], a tenth of a second each.
 const SHORT_ROUNDS: usize = 50;
 
-/// Time this thread has computed, `s`.
-fn thread_time() -> f64 {
-    let mut time = libc::timespec { tv_sec: 0, tv_nsec: 0 };
-    // SAFETY: the kernel writes one timespec.
-    unsafe { libc::clock_gettime(libc::CLOCK_THREAD_CPUTIME_ID, &mut time) };
-    time.tv_sec as f64 + 1e-9 * time.tv_nsec as f64
-}
-
-/// What the steps of one mesh took.
-struct Steps {
-    nodes_in_contact: f64,
-    /// Ascending, `µs`.
-    times: Vec<f64>,
-    iterations: f64,
-}
-
-impl Steps {
-    fn measure(contact_nodes: usize) -> Steps {
-        let mut run = Braking::new(contact_nodes);
-        let count = run
-            .remaining()
-            .min(if contact_nodes > 100 { FINE_STEPS } else { STEPS });
-        let (mut times, mut nodes, mut iterations) = (Vec::with_capacity(count), 0, 0);
-        for _ in 0..count {
-            let start = thread_time();
-            run.step();
-            times.push(1e6 * (thread_time() - start));
-            nodes += run.nodes_in_contact();
-            iterations += run.simulation.state.convergence.iterations;
-        }
-        times.sort_by(f64::total_cmp);
-        Steps {
-            nodes_in_contact: nodes as f64 / count as f64,
-            times,
-            iterations: iterations as f64 / count as f64,
-        }
-    }
-
-    fn quantile(&self, share: f64) -> f64 {
-        self.times[((self.times.len() - 1) as f64 * share) as usize]
-    }
-}
-
-/// Time that a function takes, `ms`: the median of three calls.
-fn median_of_three(mut timed: impl FnMut()) -> f64 {
-    let mut times = [(); 3].map(|()| {
-        let start = thread_time();
-        timed();
-        1e3 * (thread_time() - start)
-    });
-    times.sort_by(f64::total_cmp);
-    times[1]
+/// The steps of one mesh.
+fn steps(contact_nodes: usize) -> Steps {
+    let run = Braking::new(contact_nodes);
+    let most = if contact_nodes > 100 { FINE_STEPS } else { STEPS };
+    let count = run.remaining().min(most);
+    Steps::measure(run, count)
 }
 
 /// From nothing to the first output, `ms`.
@@ -111,7 +67,7 @@ struct Mesh {
 
 impl Mesh {
     fn first_round(contact_nodes: usize) -> Mesh {
-        let steps = Steps::measure(contact_nodes);
+        let steps = steps(contact_nodes);
         Mesh {
             contact_nodes,
             slowest: steps.quantile(0.5),
@@ -199,7 +155,7 @@ fn main() {
     let mut table =
         String::from("contact_nodes,nodes_in_contact,median_us,quantile_99_us,quantile_999_us,cold_start_ms\n");
     for mesh in &meshes {
-        let (contact_nodes, nodes, cold) = (mesh.contact_nodes, mesh.steps.nodes_in_contact, mesh.cold_start);
+        let (contact_nodes, nodes, cold) = (mesh.contact_nodes, mesh.steps.in_contact, mesh.cold_start);
         let [median, most, nearly_all] = [0.5, 0.99, 0.999].map(|share| mesh.steps.quantile(share));
         println!(
             "{contact_nodes:>13}  {nodes:>10.1}  {median:>11.1}  {:>15.1}  {most:>9.1}  {nearly_all:>11.1}  {:>10.2}  {cold:>15.1}",
@@ -213,11 +169,6 @@ fn main() {
     std::fs::write(results.join("scaling.csv"), table).expect("room for a table");
     let [coarsest, default, .., fine, finest] = &meshes;
     let growth = |quantity: fn(&Mesh) -> f64| (quantity(finest) / quantity(coarsest)).ln();
-    let target = |what: &str, value: f64, bound: f64, most: bool, unit: &str| {
-        let met = if most { value <= bound } else { value >= bound };
-        let (relation, verdict) = (if most { "<=" } else { ">=" }, if met { "met" } else { "NOT met" });
-        println!("{what:<58} {value:>8.2} {unit:<3} target {relation} {bound} {unit:<3} {verdict}");
-    };
     println!();
     let map_size = Braking::new(61).simulation.model.thermal_map_size();
     let (moments, effects, gains) = map_size.expect("the line engine has a thermal map");
@@ -246,7 +197,7 @@ fn main() {
     );
     target(
         "growth with the nodes in contact, 25 to 200, exponent",
-        growth(|mesh| mesh.steps.quantile(0.5)) / growth(|mesh| mesh.steps.nodes_in_contact),
+        growth(|mesh| mesh.steps.quantile(0.5)) / growth(|mesh| mesh.steps.in_contact),
         2.0,
         true,
         "",
