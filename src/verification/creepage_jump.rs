@@ -1,7 +1,7 @@
 //! The creepage of a rolling wheel jumps: in steps of any length T/(μN) goes the way that it goes in short steps, because the
 //! step of ∂u₁/∂t is fitted to the exponential by which rolling forgets a change. Constant μ.
 
-use super::row::Row;
+use super::row::{Row, larger};
 use super::set_up::mechanics_alone;
 use crate::error::Result;
 use crate::parameters::{Parameters, SlipSource, Wheel};
@@ -53,9 +53,7 @@ fn error(wheel: Wheel, jump: f64, reference: &[f64], half_lengths: usize) -> Res
     Ok(values
         .iter()
         .zip(at_the_same)
-        .fold(0.0, |worst: f64, (value, reference)| {
-            worst.max((value - reference).abs())
-        }))
+        .fold(0.0, |worst, (value, reference)| larger(worst, (value - reference).abs())))
 }
 
 /// Steps from one half-length up to thirty.
@@ -74,7 +72,7 @@ pub fn rows() -> Result<Vec<Row>> {
     for (half_lengths, tolerance) in [(1, 0.02), (2, 0.025), (6, 0.035), (10, 0.01), (30, 0.002)] {
         let mut worst: f64 = 0.0;
         for (wheel, jump, reference) in &references {
-            worst = worst.max(error(*wheel, *jump, reference, half_lengths)?);
+            worst = larger(worst, error(*wheel, *jump, reference, half_lengths)?);
         }
         rows.push(Row::absolute(
             format!("largest error of T/(mu N) after jumps of the creepage, steps of {half_lengths} half-lengths"),

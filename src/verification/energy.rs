@@ -7,7 +7,7 @@
 //! And that of rail, wheel and debris together: with C dT_w/dt + h A θ_w in place of the conduction, the sum is all of the
 //! friction power, not ᾱ of it.
 
-use super::row::Row;
+use super::row::{Row, larger};
 use crate::contact::line::fields::Fields;
 use crate::contact::rim;
 use crate::error::Result;
@@ -209,15 +209,10 @@ fn largest_defect(
         let inputs = inputs(step);
         run.step(&inputs, duration)?;
         let balance = balance(&run, &before, step.0, duration)?;
-        // Not f64::max, which would lose a NaN.
         let divided = run.state.duration != duration;
-        let worse = |own: f64, worst: f64| match own <= worst {
-            true if !divided => worst,
-            _ if divided => f64::NAN,
-            _ => own,
-        };
-        defect = worse(balance.defect(), defect);
-        total_defect = worse(balance.total_defect(), total_defect);
+        let worse = |worst: f64, own: f64| larger(worst, if divided { f64::NAN } else { own });
+        defect = worse(defect, balance.defect());
+        total_defect = worse(total_defect, balance.total_defect());
         shares = shares.largest(balance);
     }
     Ok((defect, total_defect, shares))

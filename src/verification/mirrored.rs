@@ -1,7 +1,7 @@
 //! Mirrored motion (V, ω → −V, −ω) gives mirrored fields, T → −T: to round-off, because the mesh is its own mirror
 //! image, diagonals included.
 
-use super::row::Row;
+use super::row::{Row, largest_difference};
 use crate::error::Result;
 use crate::parameters::{Parameters, SlipSource, Wheel, WheelHeating};
 use crate::signals::Inputs;
@@ -43,18 +43,11 @@ fn pair(pair: &str, parameters: &Parameters) -> Result<Vec<Row>> {
     let (nodes, mut mirrored) = (forward.contact_nodes(), backward.contact_nodes());
     mirrored.reverse();
     let row = |name: &str, pairs: &mut dyn Iterator<Item = (f64, f64)>| {
-        let (mut difference, mut largest) = (0.0_f64, 0.0_f64);
-        for (a, b) in pairs {
-            largest = largest.max(a.abs());
-            // Not f64::max, which would lose a NaN.
-            let own = (a - b).abs();
-            difference = if own <= difference { difference } else { own };
-        }
         Row::absolute(
             format!("{name}, difference to the mirror image, {pair}"),
             "1",
             0.0,
-            difference / largest,
+            largest_difference(pairs),
             TOLERANCE,
             SOURCE,
         )

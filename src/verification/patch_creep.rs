@@ -5,7 +5,7 @@
 use super::contact_points::{LATERAL, LONGITUDINAL, MOMENT};
 use super::patch_cases::{self, Rolling};
 use super::patch_limits::LIMITS;
-use super::row::Row;
+use super::row::{Row, larger};
 use crate::error::Result;
 use crate::parameters::Parameters;
 
@@ -37,9 +37,7 @@ struct Deviations([f64; 3]);
 impl Deviations {
     fn take(&mut self, computed: [f64; 3], expected: [Option<f64>; 3]) {
         for ((largest, computed), expected) in self.0.iter_mut().zip(computed).zip(expected) {
-            let own = expected.map_or(0.0, |expected| (computed - expected).abs());
-            // Not f64::max, which would lose a NaN.
-            *largest = if own <= *largest { *largest } else { own };
+            *largest = larger(*largest, expected.map_or(0.0, |expected| (computed - expected).abs()));
         }
     }
 
@@ -102,7 +100,7 @@ pub fn largest_deviation(patch_nodes: usize, patch_strips: usize) -> Result<f64>
     for (creepages, [along, across, _]) in points() {
         deviations.take(rolling.shares(creepages)?, [along, across, None]);
     }
-    Ok(deviations.0.into_iter().fold(0.0, f64::max))
+    Ok(deviations.0.into_iter().fold(0.0, larger))
 }
 
 /// CONTACT's own, at n = 40.

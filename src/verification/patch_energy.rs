@@ -8,7 +8,7 @@
 //! each mode weighted at both ends of a cell as the march does. B is that of the end of the step: a contact that grows takes in rail
 //! beside it. For wear, d/dt ∫ S + |V| B w (outflow less inflow) = k ∫ |s| p dA.
 
-use super::row::Row;
+use super::row::{Row, larger};
 use crate::contact::patch::fields::PatchFields;
 use crate::contact::patch::rail::PatchRail;
 use crate::contact::rim;
@@ -172,8 +172,7 @@ fn largest(
         let divided = run.state.duration != duration;
         for (worst, own) in defects.iter_mut().zip(balance.defects()) {
             let own = if divided { f64::NAN } else { own.abs() };
-            // Not f64::max, which would lose a NaN.
-            *worst = if own <= *worst { *worst } else { own };
+            *worst = larger(*worst, own);
         }
         for (largest, own) in shares.iter_mut().zip(balance.shares()) {
             *largest = own.max(*largest);

@@ -6,7 +6,7 @@
 
 use super::contact_points::LOAD;
 use super::patch_cases;
-use super::row::Row;
+use super::row::{Row, larger};
 use crate::error::Result;
 use crate::parameters::Parameters;
 use crate::signals::Inputs;
@@ -63,9 +63,7 @@ fn largest_errors(parameters: Parameters) -> Result<[f64; 5]> {
             outputs.contact_area / (PI * hertz.along * hertz.across),
         ];
         for (largest, ratio) in largest.iter_mut().zip(ratios) {
-            let own = (ratio - 1.0).abs();
-            // Not f64::max, which would lose a NaN.
-            *largest = if own <= *largest { *largest } else { own };
+            *largest = larger(*largest, (ratio - 1.0).abs());
         }
     }
     Ok(largest)

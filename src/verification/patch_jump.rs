@@ -5,7 +5,7 @@
 
 use super::contact_points::{ELLIPSES, FRICTION, LOAD, SHEAR_MODULUS};
 use super::patch_cases::{self, SPEED};
-use super::row::Row;
+use super::row::{Row, larger};
 use crate::error::Result;
 use crate::parameters::Parameters;
 use crate::simulation::Simulation;
@@ -92,9 +92,7 @@ pub fn rows() -> Result<Vec<Row>> {
                 let way = WAY / intervals;
                 let values = jump.transient(way as f64, steps, intervals)?;
                 for (value, reference) in values.iter().zip(reference.iter().skip(way - 1).step_by(way)) {
-                    let error = (value - reference).abs();
-                    // Not f64::max, which would lose a NaN.
-                    *worst = if error <= *worst { *worst } else { error };
+                    *worst = larger(*worst, (value - reference).abs());
                 }
             }
         }

@@ -4,7 +4,7 @@
 //! Grid, influence functions and marches are their own mirror images bit for bit; Fourier transforms and sums over the cells take the
 //! same numbers in another order.
 
-use super::row::Row;
+use super::row::{Row, largest_difference};
 use crate::error::Result;
 use crate::parameters::{ContactModel, Parameters, SlipSource, Wheel, WheelHeating};
 use crate::signals::{Inputs, Outputs};
@@ -81,18 +81,11 @@ fn compared(name: &str, original: &Simulation, mirror: Mirror) -> Result<Vec<Row
         images[strip * cells + cell]
     };
     let row = |quantity: &str, pairs: &mut dyn Iterator<Item = (f64, f64)>| {
-        let (mut difference, mut largest) = (0.0_f64, 0.0_f64);
-        for (a, b) in pairs {
-            largest = largest.max(a.abs());
-            // Not f64::max, which would lose a NaN.
-            let own = (a - b).abs();
-            difference = if own <= difference { difference } else { own };
-        }
         Row::absolute(
             format!("{quantity}, difference to the image {name}"),
             "1",
             0.0,
-            difference / largest,
+            largest_difference(pairs),
             TOLERANCE,
             SOURCE,
         )

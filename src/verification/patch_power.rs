@@ -8,7 +8,7 @@
 //! because the tractions do no work on the elastic bodies: exactly for continuous fields, to the size of the cells for discrete ones.
 
 use super::patch_cases::{self, Rolling, SPEED};
-use super::row::Row;
+use super::row::{Row, larger};
 use crate::error::Result;
 use std::f64::consts::PI;
 
@@ -106,9 +106,7 @@ fn largest_defect(ellipse: usize, refinement: usize) -> Result<f64> {
             * (outputs.traction_force * longitudinal
                 - outputs.lateral_force * lateral
                 - outputs.spin_moment * spin / axis);
-        let own = (outputs.friction_power / supplied - 1.0).abs();
-        // Not f64::max, which would lose a NaN.
-        largest = if own <= largest { largest } else { own };
+        largest = larger(largest, (outputs.friction_power / supplied - 1.0).abs());
     }
     Ok(largest)
 }

@@ -91,3 +91,18 @@ impl Row {
         Row::new(quantity, unit, [bound, computed, deviation, 0.0], source)
     }
 }
+
+/// The larger of two deviations. NaN is larger than any number, so that a check whose model gives none fails.
+pub fn larger(largest: f64, deviation: f64) -> f64 {
+    if deviation <= largest { largest } else { deviation }
+}
+
+/// The largest difference within pairs, relative to the largest first value.
+pub fn largest_difference(pairs: &mut dyn Iterator<Item = (f64, f64)>) -> f64 {
+    let (mut difference, mut size) = (0.0_f64, 0.0_f64);
+    for (a, b) in pairs {
+        size = size.max(a.abs());
+        difference = larger(difference, (a - b).abs());
+    }
+    difference / size
+}
