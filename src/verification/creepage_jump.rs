@@ -50,10 +50,9 @@ fn transient(wheel: Wheel, jump: f64, half_lengths: usize, steps: usize) -> Resu
 fn error(wheel: Wheel, jump: f64, reference: &[f64], half_lengths: usize) -> Result<f64> {
     let values = transient(wheel, jump, half_lengths, 1)?;
     let at_the_same = reference.iter().skip(half_lengths - 1).step_by(half_lengths);
-    Ok(values
-        .iter()
-        .zip(at_the_same)
-        .fold(0.0, |worst, (value, reference)| larger(worst, (value - reference).abs())))
+    Ok(values.iter().zip(at_the_same).fold(0.0, |worst, (value, reference)| {
+        larger(worst, (value - reference).abs())
+    }))
 }
 
 /// Steps from one half-length up to thirty.
