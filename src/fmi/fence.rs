@@ -1,5 +1,7 @@
-//! No panic crosses the C boundary, and none writes to standard error.
+//! No panic crosses the C boundary, and none writes to standard error. Nor does arithmetic: a call computes in an environment
+//! of its own.
 
+use super::arithmetic::HostEnvironment;
 use std::cell::Cell;
 use std::panic::{AssertUnwindSafe, PanicHookInfo, catch_unwind, set_hook, take_hook};
 use std::sync::{Once, OnceLock};
@@ -40,7 +42,9 @@ pub struct Panic {
 /// [`Panic`]. What the body worked on may be half-done then: the caller must not use it.
 pub fn fenced<T>(body: impl FnOnce() -> T) -> Result<T, Panic> {
     let outer = INSIDE.replace(true);
-    let result = catch_unwind(AssertUnwindSafe(body));
+    let environment = HostEnvironment::put_aside();
+    let result = catch_unwind(AssertUnwindSafe(|| apart(body)));
+    drop(environment);
     INSIDE.set(outer);
     result.map_err(|payload| {
         let message = payload
@@ -50,4 +54,10 @@ pub fn fenced<T>(body: impl FnOnce() -> T) -> Result<T, Panic> {
             .unwrap_or_default();
         Panic { message }
     })
+}
+
+/// Not inlined: the compiler, which knows nothing of floating-point environments, could move arithmetic out of its own.
+#[inline(never)]
+fn apart<T>(body: impl FnOnce() -> T) -> T {
+    body()
 }

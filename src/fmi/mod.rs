@@ -4,8 +4,9 @@
 //! instance); [`component`] (what an instance holds, its way through the states), `values`, `stepping`, `derivatives`
 //! and `saving` (the rest of what it does); [`snapshot`], [`serialized`] and [`saved_states`] (saved states);
 //! [`failures`] (what can go wrong, and who is to blame) and [`logging`] (messages); `pointers` and `fence` (the boundary to
-//! C: arguments, panics).
+//! C: arguments, panics), `arithmetic` (the floating-point environment).
 
+pub(crate) mod arithmetic;
 pub mod component;
 mod derivatives;
 pub mod failures;
