@@ -103,6 +103,8 @@ pub mod error;
 pub mod fmi;
 #[cfg(feature = "fmi")]
 pub mod fmi2;
+#[cfg(feature = "fmi")]
+pub mod fmi3;
 mod friction;
 mod heat;
 mod mechanics;

@@ -124,3 +124,19 @@ pub struct ContactNode {
     /// Wear depth, `m`.
     pub wear_depth: f64,
 }
+
+impl ContactNode {
+    /// A place that nothing has touched.
+    pub const UNTOUCHED: ContactNode = ContactNode {
+        position: 0.0,
+        lateral_position: 0.0,
+        pressure: 0.0,
+        shear: 0.0,
+        lateral_shear: 0.0,
+        slip: 0.0,
+        lateral_slip: 0.0,
+        saturation: 0.0,
+        temperature: 0.0,
+        wear_depth: 0.0,
+    };
+}

@@ -12,7 +12,7 @@ use crate::error;
 use crate::parameters::Parameters;
 use crate::settings::Settings;
 use crate::signals::Inputs;
-use crate::wheel_rail::{Model, Profiles, State, Workspace};
+use crate::wheel_rail::{ContactNode, Model, Profiles, State, Workspace};
 
 /// What follows from the parameters, and the scratch that goes with it.
 pub(super) struct Built {
@@ -29,10 +29,16 @@ impl Built {
     }
 }
 
+/// What is only looked at: computed from a state when it is asked for.
+#[derive(Default)]
+pub(super) struct Plots {
+    profiles: Option<Profiles>,
+    /// The cells of a patch.
+    nodes: Option<Vec<ContactNode>>,
+}
+
 /// An instance of the component.
 pub struct Component {
-    /// Marks the build in serialised states.
-    pub(super) description: &'static str,
     /// Limits and tolerances of the solvers: the default ones, but in tests.
     pub(super) settings: Settings,
     pub(super) mode: Mode,
@@ -47,18 +53,17 @@ pub struct Component {
     pub(super) built: Option<Built>,
     /// Rail and contact at the communication point. In *initializationMode* computed when it is asked for.
     pub(super) state: Option<State>,
-    /// Computed from `state` when it is asked for.
-    pub(super) profiles: Option<Profiles>,
+    /// Computed from `state` when they are asked for.
+    pub(super) plots: Plots,
     pub(super) saved: SavedStates,
     /// Messages that wait for the end of a call.
     pub journal: Journal,
 }
 
 impl Component {
-    /// A new instance, in *instantiated*. `description` marks the build in serialised states.
-    pub fn new(description: &'static str, journal: Journal) -> Component {
+    /// A new instance, in *instantiated*.
+    pub fn new(journal: Journal) -> Component {
         Component {
-            description,
             settings: Settings::default(),
             mode: Mode::Instantiated,
             experiment: None,
@@ -68,7 +73,7 @@ impl Component {
             time: 0.0,
             built: None,
             state: None,
-            profiles: None,
+            plots: Plots::default(),
             saved: SavedStates::default(),
             journal,
         }
@@ -94,7 +99,7 @@ impl Component {
                 self.mode = Mode::Error;
                 // A panic may have left them half-done. The state is only replaced as a whole.
                 self.built = None;
-                self.profiles = None;
+                self.plots = Plots::default();
             }
         }
     }
@@ -129,6 +134,16 @@ impl Component {
     /// Whether the times of the experiment are set.
     pub fn has_experiment(&self) -> bool {
         self.experiment.is_some()
+    }
+
+    /// Begins to change the lengths of arrays, which only FMI 3.0 has a state for.
+    pub fn enter_configuration(&mut self) {
+        self.mode = Mode::Configuration;
+    }
+
+    /// Back to *instantiated*.
+    pub fn exit_configuration(&mut self) {
+        self.mode = Mode::Instantiated;
     }
 
     /// Begins the initialisation.
@@ -166,7 +181,7 @@ impl Component {
         self.rates = Inputs::ZERO;
         self.time = 0.0;
         self.state = None;
-        self.profiles = None;
+        self.plots = Plots::default();
         self.inform(Category::Events, |_| "reset to the start values".to_owned());
     }
 
@@ -211,17 +226,27 @@ impl Component {
 
     /// The profiles at the communication point.
     pub(super) fn profiles(&mut self) -> Result<&Profiles, Failure> {
-        if self.profiles.is_none() {
+        if self.plots.profiles.is_none() {
             let (built, state) = self.solved()?;
             let profiles = built.model.profiles(state);
-            self.profiles = Some(profiles);
+            self.plots.profiles = Some(profiles);
         }
-        self.profiles.as_ref().ok_or(Failure::NothingComputed)
+        self.plots.profiles.as_ref().ok_or(Failure::NothingComputed)
+    }
+
+    /// The fields at the nodes of the contact at the communication point.
+    pub(super) fn nodes(&mut self) -> Result<&[ContactNode], Failure> {
+        if self.plots.nodes.is_none() {
+            let (built, state) = self.solved()?;
+            let nodes = built.model.contact_nodes(state);
+            self.plots.nodes = Some(nodes);
+        }
+        self.plots.nodes.as_deref().ok_or(Failure::NothingComputed)
     }
 
     /// After a change of what the solution of the initialisation follows from.
     pub(super) fn forget_solution(&mut self) {
         self.state = None;
-        self.profiles = None;
+        self.plots = Plots::default();
     }
 }

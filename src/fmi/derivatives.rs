@@ -2,8 +2,10 @@
 
 use super::component::{Built, Component};
 use super::failures::Failure;
-use crate::signals::{Inputs, OUTPUTS, Outputs};
-use std::collections::BTreeMap;
+use super::variables::ValueReference;
+use crate::signals::{INPUTS, Inputs, OUTPUTS, Outputs};
+use std::collections::{BTreeMap, BTreeSet};
+use std::mem::MaybeUninit;
 
 impl Component {
     /// The rates at which the inputs change in the next step, per second.
@@ -25,24 +27,132 @@ impl Component {
         Ok(built.model.output_rates(state))
     }
 
-    /// The derivatives of all outputs in a direction of the inputs: row of [`crate::signals::INPUTS`] and change of that
-    /// input, a finite number.
+    /// The rates of change of outputs at the communication point, per second; 0 for orders above 1, as the standards have it.
     ///
     /// # Errors
-    /// [`Failure::NothingComputed`], or [`Failure::Model`] where the linearised equations have no solution.
-    pub fn directional_derivative(&mut self, direction: &BTreeMap<usize, f64>) -> Result<Outputs, Failure> {
-        let (Built { model, workspace }, state) = self.solved()?;
-        let sensitivities = model
-            .output_sensitivities(workspace, state, direction.keys().copied())
-            .map_err(Failure::Model)?;
-        let mut derivative = Outputs::default();
-        for signal in OUTPUTS {
-            let terms = sensitivities.iter().zip(direction.values());
-            let sum = terms.fold(0.0, |sum, (sensitivity, change)| {
-                sum + (signal.get)(sensitivity) * change
-            });
-            (signal.set)(&mut derivative, sum);
+    /// What `output` refuses, [`Failure::Order`], [`Failure::NothingComputed`].
+    pub fn output_derivatives(
+        &mut self,
+        output: fn(ValueReference) -> Result<usize, Failure>,
+        references: &[ValueReference],
+        orders: &[i32],
+        values: &mut [MaybeUninit<f64>],
+    ) -> Result<(), Failure> {
+        for (reference, order) in references.iter().zip(orders) {
+            let name = OUTPUTS[output(*reference)?].name;
+            if *order < 1 {
+                return Err(Failure::Order { name, order: *order });
+            }
         }
-        Ok(derivative)
+        let rates = self.output_rates()?;
+        for ((reference, order), place) in references.iter().zip(orders).zip(values) {
+            let rate = (OUTPUTS[output(*reference)?].get)(&rates);
+            place.write(if *order == 1 { rate } else { 0.0 });
+        }
+        Ok(())
+    }
+
+    /// The derivatives of all outputs with respect to the inputs of the given rows.
+    fn sensitivities(&mut self, inputs: impl IntoIterator<Item = usize>) -> Result<Vec<Outputs>, Failure> {
+        let (Built { model, workspace }, state) = self.solved()?;
+        let sensitivities = model.output_sensitivities(workspace, state, inputs);
+        sensitivities.map_err(Failure::Model)
+    }
+
+    /// The derivatives of outputs in a direction of the inputs: v = J s, J the derivatives of the unknowns with respect to the
+    /// knowns.
+    ///
+    /// # Errors
+    /// What `rows` refuses; [`Failure::Seed`], [`Failure::NothingComputed`], or [`Failure::Model`] where the linearised
+    /// equations have no solution.
+    pub fn directional_derivative(
+        &mut self,
+        jacobian: &Jacobian,
+        seed: &[f64],
+        derivatives: &mut [MaybeUninit<f64>],
+    ) -> Result<(), Failure> {
+        let Jacobian { unknowns, knowns, rows } = jacobian;
+        for unknown in *unknowns {
+            (rows.output)(*unknown)?;
+        }
+        // Each input once, however often it is named.
+        let mut direction = BTreeMap::new();
+        for (known, value) in knowns.iter().zip(seed) {
+            let row = (rows.input)(*known)?;
+            finite(rows.seed, INPUTS[row].name, *value)?;
+            *direction.entry(row).or_insert(0.0) += value;
+        }
+        let sensitivities = self.sensitivities(direction.keys().copied())?;
+        for (unknown, place) in unknowns.iter().zip(derivatives) {
+            let output = &OUTPUTS[(rows.output)(*unknown)?];
+            let terms = sensitivities.iter().zip(direction.values());
+            place.write(
+                terms
+                    .map(|(sensitivity, change)| (output.get)(sensitivity) * change)
+                    .sum(),
+            );
+        }
+        Ok(())
+    }
+
+    /// The derivatives of a weighted sum of outputs with respect to inputs: v = Jᵀ s, J the derivatives of the unknowns with
+    /// respect to the knowns. There are fewer inputs than outputs, so that J itself, by one factorisation, costs little more
+    /// than a transposed solution would.
+    ///
+    /// # Errors
+    /// As [`Component::directional_derivative`].
+    pub fn adjoint_derivative(
+        &mut self,
+        jacobian: &Jacobian,
+        seed: &[f64],
+        derivatives: &mut [MaybeUninit<f64>],
+    ) -> Result<(), Failure> {
+        let Jacobian { unknowns, knowns, rows } = jacobian;
+        for (unknown, value) in unknowns.iter().zip(seed) {
+            finite(rows.seed, OUTPUTS[(rows.output)(*unknown)?].name, *value)?;
+        }
+        // Each input once, however often it is named.
+        let inputs = knowns.iter().map(|known| (rows.input)(*known));
+        let inputs = inputs.collect::<Result<BTreeSet<_>, _>>()?;
+        let sensitivities = self.sensitivities(inputs.iter().copied())?;
+        let sensitivities: BTreeMap<_, _> = inputs.into_iter().zip(sensitivities).collect();
+        for (known, place) in knowns.iter().zip(derivatives) {
+            let mut sum = 0.0;
+            if let Some(sensitivity) = sensitivities.get(&(rows.input)(*known)?) {
+                for (unknown, weight) in unknowns.iter().zip(seed) {
+                    sum += (OUTPUTS[(rows.output)(*unknown)?].get)(sensitivity) * weight;
+                }
+            }
+            place.write(sum);
+        }
+        Ok(())
+    }
+}
+
+/// Which derivatives a call asks for: those of the unknowns with respect to the knowns.
+pub struct Jacobian<'a> {
+    /// Value references of outputs.
+    pub unknowns: &'a [ValueReference],
+    /// Value references of inputs.
+    pub knowns: &'a [ValueReference],
+    /// How a version of FMI names them.
+    pub rows: Rows,
+}
+
+/// How a version of FMI names outputs and inputs.
+pub struct Rows {
+    /// The row of [`OUTPUTS`].
+    pub output: fn(ValueReference) -> Result<usize, Failure>,
+    /// The row of [`INPUTS`].
+    pub input: fn(ValueReference) -> Result<usize, Failure>,
+    /// The argument that holds the direction or the weights.
+    pub seed: &'static str,
+}
+
+fn finite(argument: &'static str, name: &'static str, value: f64) -> Result<(), Failure> {
+    if value.is_finite() {
+        Ok(())
+    } else {
+        Err(Failure::Seed { argument, name, value })
     }
 }

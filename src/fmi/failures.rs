@@ -1,6 +1,5 @@
 //! What can go wrong in a call, and who is to blame: that decides the status which each version of FMI returns.
 
-use super::modes::Mode;
 use super::serialized::Corruption;
 use crate::error::Error;
 
@@ -24,6 +23,38 @@ pub enum Blame {
 /// and what is allowed; the name of the function is put before it where it is logged.
 #[derive(Debug, thiserror::Error)]
 pub enum Failure {
+    /// A call that the standard's table of states does not allow.
+    #[error("not allowed in state {state}; allowed in {allowed}")]
+    NotAllowed {
+        /// The instance's state.
+        state: &'static str,
+        /// The states in which the call is allowed.
+        allowed: String,
+    },
+    /// Derivative order 0 or below.
+    #[error("order {order} of the time derivative of {name}: allowed is 1 and above")]
+    Order {
+        /// The variable.
+        name: &'static str,
+        /// The order.
+        order: i32,
+    },
+    /// A direction, or a seed of a derivative, that is not finite.
+    #[error("{argument} of {name} = {value}: allowed is any finite value")]
+    Seed {
+        /// The argument.
+        argument: &'static str,
+        /// The variable.
+        name: &'static str,
+        /// The refused value.
+        value: f64,
+    },
+    /// A defect of this library.
+    #[error("internal error: {message}; only a saved state, a reset or a new instance leads on")]
+    Panic {
+        /// What the panic said.
+        message: String,
+    },
     /// A value that cannot be; nothing was set.
     #[error("{0}")]
     Value(Error),
@@ -79,14 +110,14 @@ pub enum Failure {
         expected: &'static str,
     },
     /// A variable that cannot be set now.
-    #[error("{name} (value reference {reference}) cannot be set in state {mode}; {settable}")]
+    #[error("{name} (value reference {reference}) cannot be set {when}; {settable}")]
     NotSettable {
         /// The variable.
         name: String,
         /// Its value reference.
         reference: u32,
-        /// The instance's state.
-        mode: Mode,
+        /// At what time in the life of the instance.
+        when: &'static str,
         /// What can be set.
         settable: &'static str,
     },
@@ -162,6 +193,7 @@ impl Failure {
         match self {
             Failure::Value(_) => Blame::Value,
             Failure::Interrupted { .. } => Blame::PartOfStep,
+            Failure::Panic { .. } => Blame::Library,
             _ => Blame::Call,
         }
     }

@@ -1,7 +1,7 @@
 //! Messages to the importer: what is told, and when.
 
 use super::failures::{Blame, Failure};
-use std::ffi::CStr;
+use std::ffi::{CStr, CString};
 
 /// The declared log categories.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -70,6 +70,12 @@ pub struct Message {
     pub category: Category,
     /// The text.
     pub text: String,
+}
+
+/// A message as the standards want it: `#` starts a variable's name and is written twice, nothing ends it but a zero.
+pub fn escaped(text: &str) -> CString {
+    let text = text.replace('#', "##").replace('\0', " ");
+    CString::new(text.trim_end()).unwrap_or_default()
 }
 
 /// The messages of a call, which wait for its end: the importer's logger may call back into the instance. And the categories

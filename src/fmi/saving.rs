@@ -1,6 +1,6 @@
 //! Saving and restoring an instance.
 
-use super::component::Component;
+use super::component::{Component, Plots};
 use super::failures::Failure;
 use super::logging::Category;
 use super::saved_states::Handle;
@@ -47,7 +47,7 @@ impl Component {
         self.rates = snapshot.rates;
         self.time = snapshot.time;
         self.state = snapshot.state;
-        self.profiles = None;
+        self.plots = Plots::default();
         self.inform(Category::Events, |component| {
             format!("restored the state of t = {} s", component.time)
         });
@@ -67,7 +67,7 @@ impl Component {
     /// # Errors
     /// [`Failure::NullPointer`] or [`Failure::UnknownState`].
     pub fn serialized(&self, handle: Handle) -> Result<Vec<u8>, Failure> {
-        Ok(serialized::serialize(self.description, self.saved.find(handle)?)?)
+        Ok(serialized::serialize(self.saved.find(handle)?)?)
     }
 
     /// Makes a saved state of its serialised form. The bytes are checked first: checksum, sizes, and that every value is one
@@ -76,7 +76,7 @@ impl Component {
     /// # Errors
     /// [`Failure::Corrupt`], [`Failure::UnknownState`], and what the parameters of this instance do not make a model for.
     pub fn deserialize(&mut self, bytes: &[u8], handle: &mut Handle) -> Result<(), Failure> {
-        let snapshot = serialized::deserialize(self.description, bytes, &self.parameters)?;
+        let snapshot = serialized::deserialize(bytes, &self.parameters)?;
         for row in REAL_PARAMETERS {
             for (element, value) in (row.get)(&snapshot.parameters).iter().enumerate() {
                 row.check(element, *value).map_err(|_| Corruption::Content)?;

@@ -4,7 +4,7 @@
 //! |---|---|
 //! | 8 | magic `WHLRAIL` and a zero byte |
 //! | 4 | version of this form |
-//! | 8 | hash of the description and of the fixed parameters: state and instance must agree in both |
+//! | 8 | hash of the version, of the names of all quantities and of the fixed parameters: state and instance must agree in them |
 //! | 8 | length of the payload |
 //! | … | payload: [`Snapshot`] as postcard |
 //! | 4 | CRC-32 of everything before |
@@ -12,10 +12,11 @@
 //! Meshes and tables are not part of it: they follow from the parameters.
 
 use super::snapshot::Snapshot;
-use crate::parameters::Parameters;
+use crate::parameters::{INTEGER_PARAMETERS, Parameters, REAL_PARAMETERS};
+use crate::signals::{INPUTS, OUTPUTS};
 
 const MAGIC: [u8; 8] = *b"WHLRAIL\0";
-const VERSION: u32 = 5;
+const VERSION: u32 = 6;
 const HEADER: usize = 8 + 4 + 8 + 8;
 const CHECKSUM: usize = 4;
 
@@ -39,8 +40,8 @@ pub enum Corruption {
         /// Version found.
         given: u32,
     },
-    /// Another build's, or made with other fixed parameters.
-    #[error("it was made by another build, or with other fixed parameters than this instance's")]
+    /// Another version's, or made with other fixed parameters.
+    #[error("it was made by another version, or with other fixed parameters than this instance's")]
     Parameters,
     /// Damaged.
     #[error("its checksum is wrong")]
@@ -50,10 +51,16 @@ pub enum Corruption {
     Content,
 }
 
-/// Hash of the description's mark and of the fixed parameters.
-fn parameter_hash(description: &str, parameters: &Parameters) -> u64 {
-    let bytes = postcard::to_allocvec(&parameters.fixed_part()).unwrap_or_default();
-    fnv(description.bytes().chain(bytes))
+/// Hash of what a reader must agree in. It is the same for every version of FMI, so that they read each other's states.
+fn agreement_hash(parameters: &Parameters) -> u64 {
+    let version = std::iter::once(env!("CARGO_PKG_VERSION"));
+    let inputs = INPUTS.iter().map(|signal| signal.name);
+    let outputs = OUTPUTS.iter().map(|signal| signal.name);
+    let reals = REAL_PARAMETERS.iter().map(|row| row.name);
+    let integers = INTEGER_PARAMETERS.iter().map(|row| row.name);
+    let names = version.chain(inputs).chain(outputs).chain(reals).chain(integers);
+    let fixed = postcard::to_allocvec(&parameters.fixed_part()).unwrap_or_default();
+    fnv(names.flat_map(|name| name.bytes().chain([0])).chain(fixed))
 }
 
 /// FNV-1a, 64 bits (Fowler, Noll and Vo).
@@ -63,27 +70,27 @@ fn fnv(bytes: impl Iterator<Item = u8>) -> u64 {
     })
 }
 
-/// The serialised form of a snapshot. `description` marks the build: two that differ in it do not read each other's states.
+/// The serialised form of a snapshot.
 ///
 /// # Errors
 /// [`Corruption::Content`], which no snapshot of an instance leads to.
-pub fn serialize(description: &str, snapshot: &Snapshot) -> Result<Vec<u8>, Corruption> {
+pub fn serialize(snapshot: &Snapshot) -> Result<Vec<u8>, Corruption> {
     let payload = postcard::to_allocvec(snapshot).map_err(|_| Corruption::Content)?;
     let mut bytes = Vec::with_capacity(HEADER + payload.len() + CHECKSUM);
     bytes.extend(MAGIC);
     bytes.extend(VERSION.to_le_bytes());
-    bytes.extend(parameter_hash(description, &snapshot.parameters).to_le_bytes());
+    bytes.extend(agreement_hash(&snapshot.parameters).to_le_bytes());
     bytes.extend((payload.len() as u64).to_le_bytes());
     bytes.extend(payload);
     bytes.extend(crc32fast::hash(&bytes).to_le_bytes());
     Ok(bytes)
 }
 
-/// Reads the serialised form, for an instance with the given parameters, of a build with the given mark.
+/// Reads the serialised form, for an instance with the given parameters.
 ///
 /// # Errors
 /// [`Corruption`] for anything that [`serialize`] did not make under the same fixed parameters.
-pub fn deserialize(description: &str, bytes: &[u8], parameters: &Parameters) -> Result<Snapshot, Corruption> {
+pub fn deserialize(bytes: &[u8], parameters: &Parameters) -> Result<Snapshot, Corruption> {
     let shortest = HEADER + CHECKSUM;
     let too_short = Corruption::Length {
         given: bytes.len(),
@@ -112,7 +119,7 @@ pub fn deserialize(description: &str, bytes: &[u8], parameters: &Parameters) -> 
     if u32::from_le_bytes(*checksum) != crc32fast::hash(&bytes[..bytes.len() - CHECKSUM]) {
         return Err(Corruption::Checksum);
     }
-    if u64::from_le_bytes(*hash) != parameter_hash(description, parameters) {
+    if u64::from_le_bytes(*hash) != agreement_hash(parameters) {
         return Err(Corruption::Parameters);
     }
     let (snapshot, rest) = postcard::take_from_bytes::<Snapshot>(payload).map_err(|_| Corruption::Content)?;

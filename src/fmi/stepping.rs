@@ -1,6 +1,6 @@
 //! The step.
 
-use super::component::{Built, Component};
+use super::component::{Built, Component, Plots};
 use super::failures::Failure;
 use super::logging::Category;
 use super::modes::Mode;
@@ -43,7 +43,7 @@ impl Component {
             return Err(Failure::NothingComputed);
         };
         let outcome = model.step(workspace, state, &self.inputs, &self.rates, size);
-        self.profiles = None;
+        self.plots = Plots::default();
         match outcome {
             Ok(()) => {
                 self.time = end;
@@ -67,6 +67,13 @@ impl Component {
                 time: self.time,
                 error: interrupted.error,
             }),
+        }
+    }
+
+    /// Goes on from where a step stopped half-way, as from any communication point.
+    pub fn accept_part_of_step(&mut self) {
+        if self.mode == Mode::StepFailed {
+            self.mode = Mode::StepComplete;
         }
     }
 
@@ -124,7 +131,7 @@ mod tests {
     /// the last committed state stands, and a saved state or a reset leads on.
     #[test]
     fn a_step_that_fails_leaves_the_last_committed_state() {
-        let mut component = Component::new("test", Journal::new(false, false));
+        let mut component = Component::new(Journal::new(false, false));
         let (mut at_once, mut after_a_part) = ([0; 2], [0; 2]);
         // A step solves the mechanics together with the heat, never alone, and by the active set here.
         let of_a_step = |(words, _): &&Limit| !words.starts_with("coupling") && !words.contains("Pschenichnyj");

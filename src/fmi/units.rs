@@ -61,6 +61,7 @@ const ONE: Powers = Powers {
 // Name, powers of the base units, display units with their factors; degrees Celsius have an offset.
 units! {
     "1" [];
+    "s" [s 1];
     "m" [m 1] "mm" = 1e3, "µm" = 1e6, "km" = 1e-3;
     "1/m" [m -1];
     "m2" [m 2] "mm2" = 1e6;
@@ -87,7 +88,7 @@ units! {
 #[cfg(test)]
 mod tests {
     use super::{Powers, UNITS};
-    use crate::fmi::variables::{Kind, RealKind, variables};
+    use crate::fmi::variables::{Kind, RealKind, time, variables};
 
     /// The powers of a name such as `J/(kg.K)`, from those of its parts.
     fn powers(name: &str) -> Powers {
@@ -131,7 +132,7 @@ mod tests {
     #[test]
     fn every_variable_has_a_unit_that_is_listed_and_every_unit_is_used() {
         let mut used = Vec::new();
-        for variable in variables() {
+        for variable in variables().into_iter().chain([time()]) {
             if let Kind::Real(RealKind { unit, display_unit, .. }) = variable.kind {
                 let unit = UNITS.iter().find(|row| row.name == unit).expect(variable.name);
                 let names: Vec<_> = unit.display_units.iter().map(|row| row.name).collect();

@@ -3,9 +3,10 @@
 use super::component::Component;
 use super::failures::Failure;
 use super::modes::Mode;
-use super::variables::{Integer, IntegerVariable, PROFILES, Real, RealVariable};
-use crate::parameters::{INTEGER_PARAMETERS, REAL_PARAMETERS};
+use super::variables::{FIELDS, Integer, IntegerVariable, Lengths, PROFILES, Real, RealVariable};
+use crate::parameters::{ContactModel, INTEGER_PARAMETERS, REAL_PARAMETERS};
 use crate::signals::{INPUTS, InputSignal, OUTPUTS};
+use crate::wheel_rail::ContactNode;
 
 impl Component {
     /// The value of a real variable. In *initializationMode* the contact is solved where an output asks for it.
@@ -21,11 +22,28 @@ impl Component {
                 let values = (PROFILES[row].values)(self.profiles()?);
                 *values.get(variable.element).ok_or(Failure::NothingComputed)?
             }
+            RealVariable::Field(row) => self.field(row, variable.element)?,
             RealVariable::Residual => {
                 let (built, state) = self.solved()?;
                 built.model.convergence(state).residual
             }
+            RealVariable::Time => self.time,
         })
+    }
+
+    /// An element of a field of a patch. Of a line contact, which has no cells, it is 0, or the ambient temperature.
+    fn field(&mut self, row: usize, element: usize) -> Result<f64, Failure> {
+        const NOWHERE: ContactNode = ContactNode::UNTOUCHED;
+        let ambient = self.inputs.ambient_temperature;
+        let cell = self.lengths().cell(row, element);
+        let is_patch = self.parameters.contact_model == ContactModel::Patch;
+        let node = if is_patch { self.nodes()?.get(cell) } else { None };
+        Ok((FIELDS[row].value)(node.unwrap_or(&NOWHERE), ambient))
+    }
+
+    /// How long arrays are.
+    pub fn lengths(&self) -> Lengths {
+        Lengths::of(&self.parameters)
     }
 
     /// The value of an integer variable.
@@ -124,14 +142,15 @@ impl Component {
     }
 
     fn not_settable(&self, name: String, reference: u32) -> Failure {
+        let (when, settable) = match self.mode {
+            Mode::StepComplete => ("after the initialization", "inputs and tunable parameters can be"),
+            _ => ("at any time", "inputs and parameters can be"),
+        };
         Failure::NotSettable {
             name,
             reference,
-            mode: self.mode,
-            settable: match self.mode {
-                Mode::StepComplete => "inputs and tunable parameters can be",
-                _ => "inputs and parameters can be",
-            },
+            when,
+            settable,
         }
     }
 }

@@ -1,9 +1,9 @@
 //! The one table of variables: inputs, outputs, parameters and locals, in the order of a model description. An array is one
 //! variable; FMI 2.0, which has no arrays, lists its elements ([`crate::fmi2::variables`]).
 
-use crate::parameters::{INTEGER_PARAMETERS, REAL_PARAMETERS};
+use crate::parameters::{INTEGER_PARAMETERS, IntegerKind, Parameters, REAL_PARAMETERS};
 use crate::signals::{INPUTS, OUTPUTS};
-use crate::wheel_rail::{DEPTH_POINTS, PROFILE_POINTS, Profiles, STRIP_POINTS};
+use crate::wheel_rail::{ContactNode, DEPTH_POINTS, PROFILE_POINTS, Profiles, STRIP_POINTS};
 
 /// Number of a variable, or of an element of an array, in the calls of an importer. Each version of FMI gives its own.
 pub type ValueReference = u32;
@@ -57,6 +57,86 @@ pub const PROFILES: [ProfileColumn; 13] = [
         description: "Power dissipated by friction in the strip per width", values: |p| &p.strips.friction_power },
 ];
 
+/// A field over the cells of a patch, or the places of the cells. Only where arrays have the lengths that parameters give
+/// them: FMI 2.0 would need a variable for each cell.
+pub struct FieldColumn {
+    /// Name.
+    pub name: &'static str,
+    /// Unit.
+    pub unit: &'static str,
+    /// Unit in which a person would read the values.
+    pub display_unit: Option<&'static str>,
+    /// Typical magnitude.
+    pub nominal: f64,
+    /// One sentence.
+    pub description: &'static str,
+    /// Whether it has an element for each strip, and for each cell along a strip.
+    pub over: [bool; 2],
+    /// Reads the value of a cell; the ambient temperature is in `K`.
+    pub value: fn(&ContactNode, f64) -> f64,
+}
+
+/// The fields of a patch.
+#[rustfmt::skip]
+pub const FIELDS: [FieldColumn; 9] = [
+    FieldColumn { name: "patch.x", unit: "m", display_unit: Some("mm"), nominal: 1e-2, over: [false, true],
+        description: "Position of the cells of a strip along the rail, ahead of the axle", value: |node, _| node.position },
+    FieldColumn { name: "patch.y", unit: "m", display_unit: Some("mm"), nominal: 1e-2, over: [true, false],
+        description: "Position of the strips across the rail, to the left", value: |node, _| node.lateral_position },
+    FieldColumn { name: "patch.pressure", unit: "Pa", display_unit: Some("MPa"), nominal: 1e9, over: [true, true],
+        description: "Contact pressure in the cells of the patch", value: |node, _| node.pressure },
+    FieldColumn { name: "patch.shear_x", unit: "Pa", display_unit: Some("MPa"), nominal: 1e8, over: [true, true],
+        description: "Shear traction on the rail in the cells of the patch, along the rail", value: |node, _| node.shear },
+    FieldColumn { name: "patch.shear_y", unit: "Pa", display_unit: Some("MPa"), nominal: 1e8, over: [true, true],
+        description: "Shear traction on the rail in the cells of the patch, to the left", value: |node, _| node.lateral_shear },
+    FieldColumn { name: "patch.slip_x", unit: "m/s", display_unit: None, nominal: 1e-1, over: [true, true],
+        description: "Slip velocity of the rail relative to the wheel in the cells of the patch, along the rail", value: |node, _| node.slip },
+    FieldColumn { name: "patch.slip_y", unit: "m/s", display_unit: None, nominal: 1e-1, over: [true, true],
+        description: "Slip velocity of the rail relative to the wheel in the cells of the patch, to the left", value: |node, _| node.lateral_slip },
+    FieldColumn { name: "patch.temperature", unit: "K", display_unit: Some("degC"), nominal: 300.0, over: [true, true],
+        description: "Absolute temperature of the rail surface in the cells of the patch", value: |node, ambient| ambient + node.temperature },
+    FieldColumn { name: "patch.wear_depth", unit: "m", display_unit: Some("µm"), nominal: 1e-7, over: [true, true],
+        description: "Depth of wear of the rail surface in the cells of the patch", value: |node, _| node.wear_depth },
+];
+
+/// How long arrays are. Those of a patch's fields follow from parameters.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Lengths {
+    strips: usize,
+    cells: usize,
+}
+
+impl Lengths {
+    /// As the parameters say.
+    pub fn of(parameters: &Parameters) -> Lengths {
+        Lengths {
+            strips: parameters.patch_strips,
+            cells: parameters.patch_nodes,
+        }
+    }
+
+    /// The number of elements of a variable; 1 where it is no array.
+    pub fn elements(self, variable: RealVariable) -> usize {
+        match variable {
+            RealVariable::Parameter(row) => REAL_PARAMETERS[row].elements.len(),
+            RealVariable::Profile(row) => PROFILES[row].points,
+            RealVariable::Field(row) => {
+                let [strips, cells] = FIELDS[row].over;
+                (if strips { self.strips } else { 1 }) * (if cells { self.cells } else { 1 })
+            }
+            _ => 1,
+        }
+    }
+
+    /// The cell whose value an element of a row of [`FIELDS`] is, counted strip by strip.
+    pub fn cell(self, row: usize, element: usize) -> usize {
+        match FIELDS[row].over {
+            [true, false] => element * self.cells,
+            _ => element,
+        }
+    }
+}
+
 /// Who sets a variable.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Causality {
@@ -68,6 +148,8 @@ pub enum Causality {
     Output,
     /// Computed, to be looked at.
     Local,
+    /// Time. FMI 2.0 has no variable for it here.
+    Independent,
 }
 
 /// When a variable changes.
@@ -83,13 +165,24 @@ pub enum Variability {
     Continuous,
 }
 
+/// How many elements a variable has.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Shape {
+    /// One; it is no array.
+    Number,
+    /// As many as are given.
+    Array(usize),
+    /// Those of a row of [`FIELDS`]: over strips, cells along a strip, or both, as many of them as parameters say.
+    Field([bool; 2]),
+}
+
 /// What belongs to a real number, or to an array of them.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RealKind {
     /// Which one.
     pub variable: RealVariable,
-    /// Number of elements of an array.
-    pub dimension: Option<usize>,
+    /// How many elements it has.
+    pub shape: Shape,
     /// Unit.
     pub unit: &'static str,
     /// Unit in which a person would read the value.
@@ -104,6 +197,14 @@ pub struct RealKind {
     pub start: &'static [f64],
 }
 
+impl RealKind {
+    /// Typical magnitude of an element: that of its start value where none is given.
+    pub fn typical_magnitude(&self, element: usize) -> Option<f64> {
+        let start = self.start.get(element).map(|start| start.abs());
+        self.nominal.or(start.filter(|nominal| *nominal > 0.0))
+    }
+}
+
 /// Type of a variable and what belongs to it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Kind {
@@ -113,6 +214,8 @@ pub enum Kind {
     Integer {
         /// Which one.
         variable: IntegerVariable,
+        /// What it counts or chooses.
+        kind: IntegerKind,
         /// Smallest value.
         minimum: Option<i32>,
         /// Largest value.
@@ -148,8 +251,12 @@ pub enum RealVariable {
     Parameter(usize),
     /// Row of [`PROFILES`].
     Profile(usize),
+    /// Row of [`FIELDS`].
+    Field(usize),
     /// `solver.residual`.
     Residual,
+    /// The communication point.
+    Time,
 }
 
 /// What an integer variable stands for.
@@ -189,7 +296,9 @@ impl Real {
             RealVariable::Output(row) => OUTPUTS[row].name.to_owned(),
             RealVariable::Parameter(row) => REAL_PARAMETERS[row].elements[self.element].to_owned(),
             RealVariable::Profile(row) => format!("{}[{}]", PROFILES[row].name, self.element + 1),
+            RealVariable::Field(row) => FIELDS[row].name.to_owned(),
             RealVariable::Residual => RESIDUAL.to_owned(),
+            RealVariable::Time => TIME.to_owned(),
         }
     }
 }
@@ -206,6 +315,7 @@ impl Integer {
 
 const RESIDUAL: &str = "solver.residual";
 const ITERATIONS: &str = "solver.iterations";
+const TIME: &str = "time";
 
 /// The table.
 pub fn variables() -> Vec<Variable> {
@@ -216,7 +326,7 @@ pub fn variables() -> Vec<Variable> {
         variability: Variability::Continuous,
         kind: Kind::Real(RealKind {
             variable: RealVariable::Input(row),
-            dimension: None,
+            shape: Shape::Number,
             unit: signal.unit,
             display_unit: signal.display_unit,
             minimum: Some(signal.minimum),
@@ -232,7 +342,7 @@ pub fn variables() -> Vec<Variable> {
         variability: Variability::Continuous,
         kind: Kind::Real(RealKind {
             variable: RealVariable::Output(row),
-            dimension: None,
+            shape: Shape::Number,
             unit: signal.unit,
             display_unit: signal.display_unit,
             minimum: signal.minimum,
@@ -248,6 +358,7 @@ pub fn variables() -> Vec<Variable> {
         variability: Variability::Fixed,
         kind: Kind::Integer {
             variable: IntegerVariable::Parameter(row),
+            kind: entry.kind,
             minimum: Some(entry.minimum),
             maximum: Some(entry.maximum),
             start: Some(entry.start),
@@ -264,7 +375,11 @@ pub fn variables() -> Vec<Variable> {
         },
         kind: Kind::Real(RealKind {
             variable: RealVariable::Parameter(row),
-            dimension: entry.is_array.then_some(entry.elements.len()),
+            shape: if entry.is_array {
+                Shape::Array(entry.elements.len())
+            } else {
+                Shape::Number
+            },
             unit: entry.unit,
             display_unit: entry.display_unit,
             minimum: Some(entry.minimum),
@@ -280,7 +395,7 @@ pub fn variables() -> Vec<Variable> {
         variability: Variability::Continuous,
         kind: Kind::Real(RealKind {
             variable: RealVariable::Profile(row),
-            dimension: Some(column.points),
+            shape: Shape::Array(column.points),
             unit: column.unit,
             display_unit: column.display_unit,
             minimum: None,
@@ -298,6 +413,46 @@ pub fn variables() -> Vec<Variable> {
         .collect()
 }
 
+/// The fields of a patch, for versions of FMI that have arrays with lengths of their own.
+pub fn fields() -> impl Iterator<Item = Variable> {
+    FIELDS.iter().enumerate().map(|(row, column)| Variable {
+        name: column.name,
+        description: column.description,
+        causality: Causality::Local,
+        variability: Variability::Continuous,
+        kind: Kind::Real(RealKind {
+            variable: RealVariable::Field(row),
+            shape: Shape::Field(column.over),
+            unit: column.unit,
+            display_unit: column.display_unit,
+            minimum: None,
+            maximum: None,
+            nominal: Some(column.nominal),
+            start: &[],
+        }),
+    })
+}
+
+/// Time, for versions of FMI that have a variable for it.
+pub fn time() -> Variable {
+    Variable {
+        name: TIME,
+        description: "Time",
+        causality: Causality::Independent,
+        variability: Variability::Continuous,
+        kind: Kind::Real(RealKind {
+            variable: RealVariable::Time,
+            shape: Shape::Number,
+            unit: "s",
+            display_unit: None,
+            minimum: None,
+            maximum: None,
+            nominal: None,
+            start: &[],
+        }),
+    }
+}
+
 /// How the last step converged.
 fn solver() -> [Variable; 2] {
     [
@@ -308,7 +463,7 @@ fn solver() -> [Variable; 2] {
             variability: Variability::Continuous,
             kind: Kind::Real(RealKind {
                 variable: RealVariable::Residual,
-                dimension: None,
+                shape: Shape::Number,
                 unit: "1",
                 display_unit: None,
                 minimum: Some(0.0),
@@ -324,6 +479,7 @@ fn solver() -> [Variable; 2] {
             variability: Variability::Discrete,
             kind: Kind::Integer {
                 variable: IntegerVariable::Iterations,
+                kind: IntegerKind::Count,
                 minimum: Some(0),
                 maximum: None,
                 start: None,

@@ -2,16 +2,13 @@
 //!
 //! [`model_description`] is checked in as `modelDescription/modelDescription.xml`; the library reads its GUID from there.
 
-use super::guid::hashed;
 use super::schema::{
-    BaseUnit, CoSimulation, DefaultExperiment, DisplayUnit, Integer, LogCategories, LogCategory, ModelDescription,
-    ModelStructure, ModelVariables, Real, ScalarVariable, Unit, UnitDefinitions, Unknown, Unknowns,
+    CoSimulation, Integer, ModelDescription, ModelStructure, ModelVariables, Real, ScalarVariable, Unknown, Unknowns,
 };
 use super::variables::{Causality, Kind, Variability, Variable, variables};
-use crate::fmi::logging::Category;
-use crate::fmi::units::UNITS;
-use quick_xml::se::{SeError, Serializer};
-use serde::Serialize;
+use crate::fmi::schema::{self, document, number};
+use crate::fmi::token::hashed;
+use quick_xml::se::SeError;
 
 /// The complete text of `modelDescription.xml`.
 ///
@@ -19,22 +16,8 @@ use serde::Serialize;
 /// What the XML serializer reports.
 pub fn model_description() -> Result<String, SeError> {
     let mut description = anonymous();
-    description.guid = hashed(&xml(&description)?);
-    xml(&description)
-}
-
-fn xml(description: &ModelDescription) -> Result<String, SeError> {
-    let mut body = String::new();
-    let mut serializer = Serializer::with_root(&mut body, Some("fmiModelDescription"))?;
-    serializer.indent(' ', 2);
-    description.serialize(serializer)?;
-    Ok(format!("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n{body}\n"))
-}
-
-/// The shortest decimal number that reads back as the same value.
-fn number(value: f64) -> String {
-    let text = format!("{value:?}");
-    text.strip_suffix(".0").map_or(text.clone(), str::to_owned)
+    description.guid = hashed(&document("fmiModelDescription", &description)?);
+    document("fmiModelDescription", &description)
 }
 
 /// The description without its GUID.
@@ -42,15 +25,18 @@ fn anonymous() -> ModelDescription {
     let table = variables();
     ModelDescription {
         fmi_version: "2.0",
-        model_name: "WheelRailContact",
+        model_name: schema::MODEL_NAME,
         guid: String::new(),
-        description: "Thermoelastic wheel-rail rolling contact with temperature-dependent friction, frictional heat and Archard wear",
+        description: schema::DESCRIPTION,
+        author: schema::AUTHOR,
         version: env!("CARGO_PKG_VERSION"),
+        copyright: schema::COPYRIGHT,
         license: env!("CARGO_PKG_LICENSE"),
-        generation_tool: concat!("wheelrail ", env!("CARGO_PKG_VERSION")),
+        generation_tool: schema::GENERATION_TOOL,
+        generation_date_and_time: schema::GENERATION_DATE_AND_TIME,
         variable_naming_convention: "structured",
         co_simulation: CoSimulation {
-            model_identifier: "wheelrail",
+            model_identifier: schema::MODEL_IDENTIFIER,
             needs_execution_tool: false,
             can_handle_variable_communication_step_size: true,
             can_interpolate_inputs: true,
@@ -62,59 +48,14 @@ fn anonymous() -> ModelDescription {
             can_serialize_fmu_state: true,
             provides_directional_derivative: true,
         },
-        unit_definitions: unit_definitions(),
-        log_categories: LogCategories {
-            categories: Category::ALL
-                .iter()
-                .map(|category| LogCategory {
-                    name: category.name().to_string_lossy().into_owned(),
-                    description: description_of(*category),
-                })
-                .collect(),
-        },
-        default_experiment: DefaultExperiment {
-            start_time: number(0.0),
-            stop_time: number(1.0),
-            step_size: number(1e-3),
-        },
+        unit_definitions: schema::unit_definitions(),
+        log_categories: schema::log_categories(),
+        default_experiment: schema::default_experiment(),
         model_structure: model_structure(&table),
         model_variables: ModelVariables {
             variables: table.into_iter().map(scalar_variable).collect(),
         },
     }
-}
-
-/// What the messages of a category tell.
-fn description_of(category: Category) -> &'static str {
-    match category {
-        Category::StatusError => "Why a call returned fmi2Error",
-        Category::StatusWarning => "Why a call returned fmi2Warning or fmi2Discard",
-        Category::Solver => "Iterations and residual of each step",
-        Category::Events => "Initialization, restored states, termination and reset",
-    }
-}
-
-fn unit_definitions() -> UnitDefinitions {
-    let units = UNITS.iter().map(|unit| Unit {
-        name: unit.name,
-        base_unit: BaseUnit {
-            kg: unit.powers.kg,
-            m: unit.powers.m,
-            s: unit.powers.s,
-            k: unit.powers.k,
-            rad: unit.powers.rad,
-        },
-        display_units: unit
-            .display_units
-            .iter()
-            .map(|display| DisplayUnit {
-                name: display.name,
-                factor: number(display.factor),
-                offset: (display.offset != 0.0).then(|| number(display.offset)),
-            })
-            .collect(),
-    });
-    UnitDefinitions { units: units.collect() }
 }
 
 /// A variable as an element.
@@ -160,6 +101,7 @@ fn scalar_variable(variable: Variable) -> ScalarVariable {
             Causality::Input => "input",
             Causality::Output => "output",
             Causality::Local => "local",
+            Causality::Independent => "independent",
         },
         variability: match variable.variability {
             Variability::Fixed => "fixed",
@@ -169,8 +111,8 @@ fn scalar_variable(variable: Variable) -> ScalarVariable {
         },
         initial: match variable.causality {
             Causality::Parameter => Some("exact"),
-            // The standard allows none for inputs.
-            Causality::Input => None,
+            // The standard allows none for these.
+            Causality::Input | Causality::Independent => None,
             Causality::Output | Causality::Local => Some("calculated"),
         },
         real,

@@ -1,14 +1,14 @@
 //! What a fmi2Component points to: the component and the importer's logger.
 
+use super::GUID;
 use super::failures::Failure;
-use super::guid::GUID;
 use super::logger::Logger;
 use super::states::Function;
 use super::types::{CO_SIMULATION, CallbackFunctions, LAST_SUCCESSFUL_TIME, Real, Status, StatusKind};
+use crate::fmi::call::{self, Logger as _};
 use crate::fmi::component::Component;
 use crate::fmi::failures::Blame;
-use crate::fmi::fence;
-use crate::fmi::logging::{Category, Journal, Message};
+use crate::fmi::logging::{Category, Journal};
 use std::ffi::CStr;
 
 /// An instance.
@@ -47,6 +47,25 @@ enum Refusal {
     Guid(String),
 }
 
+impl call::Instance for Instance {
+    type Function = Function;
+    type Failure = Failure;
+    type Logger = Logger;
+    type Status = Status;
+
+    fn component(&mut self) -> &mut Component {
+        &mut self.component
+    }
+
+    fn logger(&self) -> &Logger {
+        &self.logger
+    }
+
+    fn status(blame: Option<Blame>) -> Status {
+        Status::of(blame)
+    }
+}
+
 impl Instance {
     /// fmi2Instantiate; `None` after a logged refusal.
     pub fn new(arguments: &Instantiation<'_>) -> Option<Instance> {
@@ -59,35 +78,9 @@ impl Instance {
         }
         logger.send(&journal.take());
         checked.is_ok().then(|| Instance {
-            component: Component::new(GUID, journal),
+            component: Component::new(journal),
             logger,
         })
-    }
-
-    /// One call: state check, panic fence, and what a failure does to the instance. The messages wait to be taken.
-    pub fn call(&mut self, function: Function, body: impl FnOnce(&mut Instance) -> Result<(), Failure>) -> Status {
-        let result = fence::fenced(|| {
-            let mode = self.component.mode();
-            if !function.is_allowed(mode) {
-                let allowed = function.allowed_modes();
-                return Err(Failure::NotAllowed { mode, allowed });
-            }
-            body(self)
-        });
-        // The fence's own failure is one like the others.
-        let Err(failure) = result.unwrap_or_else(|panic| Err(panic.into())) else {
-            return Status::OK;
-        };
-        let blame = failure.blame();
-        let journal = &mut self.component.journal;
-        journal.failure(blame, || format!("{}: {failure}", function.name()));
-        self.component.fail(blame);
-        Status::of(Some(blame))
-    }
-
-    /// The messages of a call and the logger to send them to, which may call into this instance.
-    pub fn take_messages(&mut self) -> (Vec<Message>, Logger) {
-        (self.component.journal.take(), self.logger.clone())
     }
 
     /// fmi2EnterInitializationMode.

@@ -3,8 +3,9 @@
 #![allow(unsafe_code)]
 
 use super::types::{CallbackFunctions, ComponentEnvironment, LoggerCallback, Status};
-use crate::fmi::logging::Message;
-use std::ffi::{CStr, CString};
+use crate::fmi::call;
+use crate::fmi::logging::{Message, escaped};
+use std::ffi::CStr;
 use std::rc::Rc;
 
 /// The importer's logger, with what it is to be given. Cheap to clone.
@@ -29,18 +30,15 @@ impl Logger {
     pub fn is_there(&self) -> bool {
         self.callback.is_some()
     }
+}
 
-    /// Hands messages to the importer.
-    pub fn send(&self, messages: &[Message]) {
+impl call::Logger for Logger {
+    fn send(&self, messages: &[Message]) {
         let Some(callback) = self.callback else {
             return;
         };
         for message in messages {
-            // `#` starts a variable's name in a message of the standard.
-            let text = message.text.replace('#', "##").replace('\0', " ");
-            let Ok(text) = CString::new(text.trim_end()) else {
-                continue;
-            };
+            let text = escaped(&message.text);
             // SAFETY: the importer's logger is called as fmi2CallbackLogger is declared; all strings end with zero and live
             // to the end of the call. The text is an argument of "%s", never a format.
             unsafe {

@@ -3,14 +3,14 @@
 //! Read in this order: [`types`] (the C types), [`variables`] (the table with arrays as their elements), `references` (their
 //! value references), [`states`] (which call is allowed when), [`failures`] (the status that follows from who is to blame),
 //! `logger` (the importer's callback), [`instance`] and `values` (what a call does), and last [`functions`] (the exported
-//! functions: pointers, panic fence, status). [`description`] is `modelDescription.xml`, `schema` its elements, `guid` its
-//! GUID.
+//! functions: pointers, panic fence, status). [`description`] is `modelDescription.xml`, `schema` its elements.
+
+use crate::fmi::token::attribute;
 
 #[cfg(feature = "cli")]
 pub mod description;
 pub mod failures;
 pub mod functions;
-mod guid;
 pub mod instance;
 mod logger;
 mod references;
@@ -21,4 +21,10 @@ pub mod types;
 mod values;
 pub mod variables;
 
-pub use guid::{GUID, guid_of};
+/// The GUID of the checked-in model description.
+pub const GUID: &str = guid_of(include_str!("../../modelDescription/modelDescription.xml"));
+
+/// The GUID of a model description.
+pub const fn guid_of(xml: &str) -> &str {
+    attribute("guid", xml)
+}

@@ -27,6 +27,8 @@ fn profile_row(block: u32) -> usize {
     if block < SOLVER_BLOCK { row } else { row - 1 }
 }
 
+/// Of variables that this version does not have.
+const UNLISTED: ValueReference = ValueReference::MAX;
 const RESIDUAL: ValueReference = SOLVER_BLOCK * BLOCK;
 const ITERATIONS: ValueReference = SOLVER_BLOCK * BLOCK + 1;
 
@@ -67,6 +69,7 @@ pub fn of_real(variable: RealVariable, element: usize) -> ValueReference {
         }
         RealVariable::Profile(row) => profile_block(row) * BLOCK + element as u32,
         RealVariable::Residual => RESIDUAL,
+        RealVariable::Field(_) | RealVariable::Time => UNLISTED,
     }
 }
 

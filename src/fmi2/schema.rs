@@ -2,6 +2,7 @@
 
 #![allow(missing_docs)]
 
+use crate::fmi::schema::{DefaultExperiment, LogCategories, UnitDefinitions};
 use serde::Serialize;
 
 #[derive(Serialize)]
@@ -14,12 +15,18 @@ pub struct ModelDescription {
     pub guid: String,
     #[serde(rename = "@description")]
     pub description: &'static str,
+    #[serde(rename = "@author")]
+    pub author: &'static str,
     #[serde(rename = "@version")]
     pub version: &'static str,
+    #[serde(rename = "@copyright")]
+    pub copyright: &'static str,
     #[serde(rename = "@license")]
     pub license: &'static str,
     #[serde(rename = "@generationTool")]
     pub generation_tool: &'static str,
+    #[serde(rename = "@generationDateAndTime")]
+    pub generation_date_and_time: &'static str,
     #[serde(rename = "@variableNamingConvention")]
     pub variable_naming_convention: &'static str,
     #[serde(rename = "CoSimulation")]
@@ -61,30 +68,6 @@ pub struct CoSimulation {
     pub can_serialize_fmu_state: bool,
     #[serde(rename = "@providesDirectionalDerivative")]
     pub provides_directional_derivative: bool,
-}
-
-#[derive(Serialize)]
-pub struct LogCategories {
-    #[serde(rename = "Category")]
-    pub categories: Vec<LogCategory>,
-}
-
-#[derive(Serialize)]
-pub struct LogCategory {
-    #[serde(rename = "@name")]
-    pub name: String,
-    #[serde(rename = "@description")]
-    pub description: &'static str,
-}
-
-#[derive(Serialize)]
-pub struct DefaultExperiment {
-    #[serde(rename = "@startTime")]
-    pub start_time: String,
-    #[serde(rename = "@stopTime")]
-    pub stop_time: String,
-    #[serde(rename = "@stepSize")]
-    pub step_size: String,
 }
 
 #[derive(Serialize)]
@@ -159,48 +142,4 @@ pub struct Unknown {
     pub index: usize,
     #[serde(rename = "@dependencies")]
     pub dependencies: String,
-}
-
-#[derive(Serialize)]
-pub struct UnitDefinitions {
-    #[serde(rename = "Unit")]
-    pub units: Vec<Unit>,
-}
-
-#[derive(Serialize)]
-pub struct Unit {
-    #[serde(rename = "@name")]
-    pub name: &'static str,
-    #[serde(rename = "BaseUnit")]
-    pub base_unit: BaseUnit,
-    #[serde(rename = "DisplayUnit")]
-    pub display_units: Vec<DisplayUnit>,
-}
-
-#[derive(Serialize)]
-pub struct BaseUnit {
-    #[serde(rename = "@kg", skip_serializing_if = "is_zero")]
-    pub kg: i32,
-    #[serde(rename = "@m", skip_serializing_if = "is_zero")]
-    pub m: i32,
-    #[serde(rename = "@s", skip_serializing_if = "is_zero")]
-    pub s: i32,
-    #[serde(rename = "@K", skip_serializing_if = "is_zero")]
-    pub k: i32,
-    #[serde(rename = "@rad", skip_serializing_if = "is_zero")]
-    pub rad: i32,
-}
-
-fn is_zero(power: &i32) -> bool {
-    *power == 0
-}
-
-#[derive(Serialize)]
-pub struct DisplayUnit {
-    #[serde(rename = "@name")]
-    pub name: &'static str,
-    #[serde(rename = "@factor")]
-    pub factor: String,
-    #[serde(rename = "@offset", skip_serializing_if = "Option::is_none")]
-    pub offset: Option<String>,
 }

@@ -1,33 +1,36 @@
 //! Which call the standard allows in which state, as one table: functions × states.
 
 use crate::fmi::modes::Mode;
+use crate::fmi::states::functions;
 
-macro_rules! allowed {
-    (x) => {
-        true
-    };
-    (-) => {
-        false
-    };
+/// The states as the standard names them, in the order of the columns (section 4.2.4).
+const STATES: [&str; 6] = [
+    "instantiated",
+    "initializationMode",
+    "stepComplete",
+    "stepFailed",
+    "terminated",
+    "error",
+];
+
+/// The column of a state. One that only FMI 3.0 has may come from a saved state of it.
+fn column(mode: Mode) -> usize {
+    match mode {
+        Mode::Instantiated | Mode::Configuration => 0,
+        Mode::Initialization => 1,
+        Mode::StepComplete => 2,
+        Mode::StepFailed => 3,
+        Mode::Terminated => 4,
+        Mode::Error => 5,
+    }
 }
 
-macro_rules! table {
-    ($($function:ident $name:literal [$($allowed:tt)*])*) => {
-        /// The functions that work on an instance and are bound to states. fmi2FreeInstance is allowed in all of them.
-        #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-        pub enum Function {
-            $(
-                #[doc = $name]
-                $function,
-            )*
-        }
+/// Where a function is never allowed.
+const NEVER: &str = "stepInProgress, which is never reached: steps are not asynchronous";
 
-        const TABLE: &[(&str, [bool; Mode::ALL.len()])] = &[$(($name, [$(allowed!($allowed)),*]),)*];
-    };
-}
-
-// Columns: instantiated, initializationMode, stepComplete, stepFailed, terminated, error (section 4.2.4).
-table! {
+// The functions that work on an instance and are bound to states. fmi2FreeInstance is allowed in all of them.
+// Columns: instantiated, initializationMode, stepComplete, stepFailed, terminated, error.
+functions! {
     SetDebugLogging          "fmi2SetDebugLogging"          [x x x x x x]
     SetupExperiment          "fmi2SetupExperiment"          [x - - - - -]
     EnterInitializationMode  "fmi2EnterInitializationMode"  [x - - - - -]
@@ -60,41 +63,13 @@ table! {
     GetStringStatus          "fmi2GetStringStatus"          [- - x x x -]
 }
 
-impl Function {
-    /// The exported name.
-    pub fn name(self) -> &'static str {
-        TABLE[self as usize].0
-    }
-
-    /// Whether the standard allows the call in a state.
-    pub fn is_allowed(self, mode: Mode) -> bool {
-        TABLE[self as usize].1[mode as usize]
-    }
-
-    /// The states in which the call is allowed, for messages.
-    pub fn allowed_modes(self) -> String {
-        let names: Vec<String> = Mode::ALL
-            .into_iter()
-            .filter(|mode| self.is_allowed(*mode))
-            .map(|mode| mode.to_string())
-            .collect();
-        if names.is_empty() {
-            "stepInProgress, which is never reached: steps are not asynchronous".to_owned()
-        } else {
-            names.join(", ")
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::fmi::call::Function as _;
 
     #[test]
-    fn the_columns_stand_in_the_order_of_the_states() {
-        for (column, mode) in Mode::ALL.into_iter().enumerate() {
-            assert_eq!(mode as usize, column);
-        }
+    fn the_columns_are_those_of_the_states() {
         assert!(Function::DoStep.is_allowed(Mode::StepComplete) && !Function::DoStep.is_allowed(Mode::StepFailed));
         assert_eq!(Function::Terminate.allowed_modes(), "stepComplete, stepFailed");
     }

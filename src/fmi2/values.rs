@@ -4,8 +4,9 @@ use super::failures::Failure;
 use super::instance::Instance;
 use super::references;
 use super::types::{Integer, Real, ValueReference};
-use crate::signals::{INPUTS, OUTPUTS};
-use std::collections::BTreeMap;
+use crate::fmi::derivatives::{Jacobian, Rows};
+use crate::fmi::failures;
+use crate::signals::INPUTS;
 use std::mem::MaybeUninit;
 
 impl Instance {
@@ -62,7 +63,7 @@ impl Instance {
             let (row, order, value) = (&INPUTS[references::input(*reference)?], *order, *value);
             let name = row.name;
             match order {
-                ..=0 => return Err(Failure::Order { name, order }),
+                ..=0 => return Err(failures::Failure::Order { name, order }.into()),
                 _ if !value.is_finite() => return Err(Failure::Rate { name, value }),
                 1 => (row.set)(&mut rates, value),
                 _ => unused = Some(Failure::HigherOrder { name, order }),
@@ -72,25 +73,15 @@ impl Instance {
         unused.map_or(Ok(()), Err)
     }
 
-    /// fmi2GetRealOutputDerivatives; 0 for orders above 1, as the standard has it.
+    /// fmi2GetRealOutputDerivatives.
     pub fn get_output_derivatives(
         &mut self,
         references: &[ValueReference],
         orders: &[Integer],
         values: &mut [MaybeUninit<Real>],
     ) -> Result<(), Failure> {
-        for (reference, order) in references.iter().zip(orders) {
-            let name = OUTPUTS[references::output(*reference)?].name;
-            if *order < 1 {
-                return Err(Failure::Order { name, order: *order });
-            }
-        }
-        let rates = self.component.output_rates()?;
-        for ((reference, order), place) in references.iter().zip(orders).zip(values) {
-            let rate = (OUTPUTS[references::output(*reference)?].get)(&rates);
-            place.write(if *order == 1 { rate } else { 0.0 });
-        }
-        Ok(())
+        let component = &mut self.component;
+        Ok(component.output_derivatives(references::output, references, orders, values)?)
     }
 
     /// fmi2GetDirectionalDerivative: of outputs, in a direction of the inputs.
@@ -101,23 +92,14 @@ impl Instance {
         direction: &[Real],
         derivatives: &mut [MaybeUninit<Real>],
     ) -> Result<(), Failure> {
-        for unknown in unknowns {
-            references::output(*unknown)?;
-        }
-        // Each input once, however often it is named.
-        let mut directions = BTreeMap::new();
-        for (known, value) in knowns.iter().zip(direction) {
-            let row = references::input(*known)?;
-            if !value.is_finite() {
-                let name = INPUTS[row].name;
-                return Err(Failure::Direction { name, value: *value });
-            }
-            *directions.entry(row).or_insert(0.0) += value;
-        }
-        let derivative = self.component.directional_derivative(&directions)?;
-        for (unknown, place) in unknowns.iter().zip(derivatives) {
-            place.write((OUTPUTS[references::output(*unknown)?].get)(&derivative));
-        }
-        Ok(())
+        let rows = Rows {
+            output: references::output,
+            input: references::input,
+            seed: "dvKnown",
+        };
+        let jacobian = Jacobian { unknowns, knowns, rows };
+        Ok(self
+            .component
+            .directional_derivative(&jacobian, direction, derivatives)?)
     }
 }

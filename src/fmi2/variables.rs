@@ -2,6 +2,7 @@
 
 use super::references;
 use crate::fmi::variables as shared;
+use crate::parameters::IntegerKind;
 use crate::signals::{OUTPUTS, OutputKind};
 
 pub use shared::{Causality, Variability};
@@ -63,18 +64,25 @@ pub fn variables() -> Vec<Variable> {
 fn elements(variable: &shared::Variable) -> Vec<Variable> {
     match variable.kind {
         shared::Kind::Real(kind) => {
-            let elements = 0..kind.dimension.unwrap_or(1);
-            elements.map(|element| real(variable, &kind, element)).collect()
+            let elements = match kind.shape {
+                shared::Shape::Array(elements) => elements,
+                _ => 1,
+            };
+            (0..elements).map(|element| real(variable, &kind, element)).collect()
         }
         shared::Kind::Integer {
             variable: row,
+            kind,
             minimum,
             maximum,
             start,
         } => vec![Variable {
             name: variable.name.to_owned(),
             reference: references::of_integer(row),
-            description: variable.description.to_owned(),
+            description: match kind {
+                IntegerKind::Switch => format!("{}: 1 off, 2 on", variable.description),
+                _ => variable.description.to_owned(),
+            },
             causality: variable.causality,
             variability: variable.variability,
             is_total: false,
@@ -97,8 +105,8 @@ fn real(variable: &shared::Variable, kind: &shared::RealKind, element: usize) ->
     };
     let start = kind.start.get(element).copied();
     // The description of a parameter's array is on any one of its elements.
-    let description = match (variable.causality, kind.dimension) {
-        (Causality::Local, Some(_)) => format!("{} at point {}", variable.description, element + 1),
+    let description = match (variable.causality, kind.shape) {
+        (Causality::Local, shared::Shape::Array(_)) => format!("{} at point {}", variable.description, element + 1),
         _ => variable.description.to_owned(),
     };
     Variable {
@@ -113,7 +121,7 @@ fn real(variable: &shared::Variable, kind: &shared::RealKind, element: usize) ->
             display_unit: kind.display_unit,
             minimum: kind.minimum,
             maximum: kind.maximum,
-            nominal: kind.nominal.or(start.map(f64::abs).filter(|nominal| *nominal > 0.0)),
+            nominal: kind.typical_magnitude(element),
             start,
         },
     }

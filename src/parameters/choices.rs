@@ -1,10 +1,11 @@
-//! The choices among the parameters. In FMI 2.0 each is an Integer, numbered from 1 in the order of its values here.
+//! The choices among the parameters. In FMI 2.0 each is an Integer, numbered from 1 in the order of its values here; in FMI 3.0
+//! an Enumeration of their names.
 
 use serde::{Deserialize, Serialize};
 
 /// Declares a choice with the list of its values.
 macro_rules! choices {
-    ($($(#[$about:meta])* $name:ident { $($(#[$meaning:meta])* $value:ident,)+ })+) => {$(
+    ($($(#[$about:meta])* $name:ident { $($(#[$meaning:meta])* $value:ident $value_name:literal,)+ })+) => {$(
         $(#[$about])*
         #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
         pub enum $name {
@@ -14,6 +15,8 @@ macro_rules! choices {
         impl $name {
             /// All values, in the order of their numbers.
             pub const ALL: &'static [$name] = &[$($name::$value),+];
+            /// Their names, in the same order.
+            pub const NAMES: &'static [&'static str] = &[$($value_name),+];
         }
     )+};
 }
@@ -22,69 +25,69 @@ choices! {
     /// How the contact is resolved.
     ContactModel {
         /// Along the rail, uniform over `contact_width`: the paper's.
-        Line,
+        Line "line",
         /// Along the rail and across it: lateral force and spin moment.
-        Patch,
+        Patch "patch",
     }
 
     /// What is prescribed in the normal direction.
     Control {
         /// The normal load is given, the penetration follows (the component's normal use).
-        Load,
+        Load "load",
         /// The penetration is given, the load follows (the paper's case).
-        Penetration,
+        Penetration "penetration",
     }
 
     /// Which pair of inputs defines the motion.
     SlipSource {
         /// Wheel speed and creepage: V = ω r₀ / (1 + ξ).
-        Creepage,
+        Creepage "creepage",
         /// Wheel speed and vehicle speed.
-        VehicleSpeed,
+        VehicleSpeed "vehicle_speed",
     }
 
     /// Method for the normal contact problem (37).
     NormalSolver {
         /// Primal–dual active set (semismooth Newton).
-        ActiveSet,
+        ActiveSet "active_set",
         /// The paper's Pschenichnyj linearisation method.
-        Pschenichnyj,
+        Pschenichnyj "pschenichnyj",
     }
 
     /// Which triangulation is used.
     MeshKind {
         /// `contact_nodes` evenly spaced nodes under the wheel, graded outside.
-        Graded,
+        Graded "graded",
         /// The paper's 12 × 8 cells: 192 triangles, 13 surface nodes.
-        Paper,
+        Paper "paper",
     }
 
     /// The friction law μ(θ).
     FrictionLaw {
         /// μ₀ at every temperature.
-        Constant,
+        Constant "constant",
         /// Linear between (θ₀, μ₀) and (θ_F, μ_F), constant outside: (12)–(13).
-        PiecewiseLinear,
+        PiecewiseLinear "piecewise_linear",
         /// Follows the flow stress of rail steel.
-        FlowStress,
+        FlowStress "flow_stress",
         /// Linear between the points of a table, constant outside.
-        Table,
+        Table "table",
     }
 
     /// What the wheel is made of.
     Wheel {
         /// Rigid: the paper's. On an elastic rail it pulls at creepage 0.
-        Rigid,
+        Rigid "rigid",
         /// Elastic, the default: its compliance adds to the rail's (`body::pair`). Of the rail's material it rolls freely at
         /// creepage 0.
-        Elastic,
+        Elastic "elastic",
     }
 
     /// Whether the contact warms the wheel.
     WheelHeating {
         /// The wheel stays at the ambient temperature: the paper's.
-        Off,
+        Off "off",
         /// The contact warms the wheel's rim.
-        On,
+        On "on",
     }
 }

@@ -21,4 +21,6 @@ mod validation;
 pub use choices::{ContactModel, Control, FrictionLaw, MeshKind, NormalSolver, SlipSource, Wheel, WheelHeating};
 pub use hertz::HertzEllipse;
 pub use range::check_range;
-pub use table::{INTEGER_PARAMETERS, IntegerParameter, Parameters, REAL_PARAMETERS, RealParameter, TABLE_POINTS};
+pub use table::{
+    INTEGER_PARAMETERS, IntegerKind, IntegerParameter, Parameters, REAL_PARAMETERS, RealParameter, TABLE_POINTS,
+};

@@ -69,6 +69,7 @@ macro_rules! count {
             start: $start,
             minimum: $minimum,
             maximum: $maximum,
+            kind: IntegerKind::Count,
             description: $description,
             get: |parameters| parameters.$field as i32,
             // `check` has refused negative counts.
@@ -91,6 +92,7 @@ macro_rules! choice {
             start: $type::$start as i32 + 1,
             minimum: 1,
             maximum: $type::ALL.len() as i32,
+            kind: IntegerKind::Choice($type::NAMES),
             description: $description,
             get: |parameters| parameters.$field as i32 + 1,
             set: |parameters, value| {
@@ -99,6 +101,36 @@ macro_rules! choice {
                 }
             },
         })
+    };
+}
+
+/// A number of things that is also the length of arrays: start value, range.
+macro_rules! length {
+    (row $($rest:tt)*) => {
+        of_kind!(IntegerKind::Length, count!(row $($rest)*))
+    };
+    ($($rest:tt)*) => {
+        count!($($rest)*)
+    };
+}
+
+/// A choice between off (1) and on (2): type, start value.
+macro_rules! switch {
+    (row $($rest:tt)*) => {
+        of_kind!(IntegerKind::Switch, choice!(row $($rest)*))
+    };
+    ($($rest:tt)*) => {
+        choice!($($rest)*)
+    };
+}
+
+/// A row of integers with another kind.
+macro_rules! of_kind {
+    ($kind:expr, $row:expr) => {
+        match $row {
+            Row::Integer(row) => Row::Integer(IntegerParameter { kind: $kind, ..row }),
+            other => other,
+        }
     };
 }
 

@@ -46,8 +46,21 @@ pub struct RealParameter {
     pub get_mut: fn(&mut Parameters) -> &mut [f64],
 }
 
-/// One row of the table of integer parameters: counts and choices. A choice is an Integer with the meaning of each value
-/// in its description: some importers pass over Enumerations.
+/// What an integer parameter counts or chooses. FMI 2.0 has an Integer for each, with the meaning of the values of a choice in
+/// its description: some of its importers pass over Enumerations. FMI 3.0 has a type for each.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum IntegerKind {
+    /// A number of things.
+    Count,
+    /// A number of things that is also the length of arrays.
+    Length,
+    /// A choice, by the names of its values.
+    Choice(&'static [&'static str]),
+    /// A choice between off (1) and on (2).
+    Switch,
+}
+
+/// One row of the table of integer parameters: counts and choices.
 #[derive(Clone, Copy)]
 pub struct IntegerParameter {
     /// Name, the same in FMI, on the command line and in messages.
@@ -58,6 +71,8 @@ pub struct IntegerParameter {
     pub minimum: i32,
     /// Largest allowed value.
     pub maximum: i32,
+    /// What it counts or chooses.
+    pub kind: IntegerKind,
     /// One sentence, with the meaning of each value of a choice.
     pub description: &'static str,
     /// Reads the value.
@@ -85,7 +100,15 @@ impl IntegerParameter {
     /// # Errors
     /// [`Error::OutOfRange`].
     pub fn check(&self, value: i32) -> Result<()> {
-        let [value, minimum, maximum] = [value, self.minimum, self.maximum].map(f64::from);
+        self.check_any(f64::from(value))
+    }
+
+    /// As [`IntegerParameter::check`], of a value that may have more digits.
+    ///
+    /// # Errors
+    /// [`Error::OutOfRange`].
+    pub fn check_any(&self, value: f64) -> Result<()> {
+        let [minimum, maximum] = [self.minimum, self.maximum].map(f64::from);
         check_range(self.name, value, minimum, maximum, "")
     }
 }
@@ -174,8 +197,8 @@ parameters! {
     wheel_shear_modulus: f64 = real { "Pa" shown in "GPa", 8.2e10, 1e5, 1e13 }
     /// Density of the wheel
     wheel_density: f64 = real { "kg/m3", 7.8e3, 1.0, 1e5 }
-    /// Temperature of the wheel: 1 off (ambient, the paper's cold wheel), 2 on (the contact warms the rim)
-    wheel_heating: WheelHeating = choice { WheelHeating::Off }
+    /// Whether the contact warms the rim of the wheel, which otherwise has the ambient temperature (the paper's cold wheel)
+    wheel_heating: WheelHeating = switch { WheelHeating::Off }
     /// Specific heat capacity of the wheel
     wheel_heat_capacity: f64 = real { "J/(kg.K)", 460.0, 1.0, 1e5 }
     /// Depth of the ring of the wheel that the contact warms, used where wheel_heating is on
@@ -197,9 +220,9 @@ parameters! {
     /// Curvature of the wheel's tread across the rail, used where contact_model is patch; negative is hollow, 0 is a cone
     wheel_transverse_curvature: f64 = real { "1/m", 0.0, -1e3, 1e3 }
     /// Number of cells along the contact window, used where contact_model is patch
-    patch_nodes: usize = count { 34, 8, 201 }
+    patch_nodes: usize = length { 34, 8, 201 }
     /// Number of strips across the contact window, used where contact_model is patch
-    patch_strips: usize = count { 21, 3, 101 }
+    patch_strips: usize = length { 21, 3, 101 }
 }
 
 /// The start values of the friction table: the default piecewise linear law, its hot end repeated.

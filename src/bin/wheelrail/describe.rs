@@ -1,9 +1,10 @@
 //! `wheelrail describe`: the variable table for people, or as `modelDescription.xml`.
 
+use crate::standard::Standard;
 use clap::Args;
 use std::io::{self, Write};
-use wheelrail::fmi2::description::model_description;
 use wheelrail::fmi2::variables::{Causality, Kind, Variability, Variable, variables};
+use wheelrail::fmi3::terminals::terminals_and_icons;
 
 /// Options of `describe`.
 #[derive(Args)]
@@ -11,6 +12,12 @@ pub struct Describe {
     /// Print modelDescription.xml instead.
     #[arg(long)]
     xml: bool,
+    /// Print terminalsAndIcons.xml of FMI 3.0 instead.
+    #[arg(long, conflicts_with = "xml")]
+    terminals: bool,
+    /// The version of FMI that the XML is of.
+    #[arg(long, value_name = "VERSION", default_value = "2", requires = "xml")]
+    fmi: Standard,
     /// Print the table in Markdown.
     #[arg(long, conflicts_with = "xml")]
     markdown: bool,
@@ -35,7 +42,11 @@ impl Describe {
     pub fn run(&self) -> Result<(), Error> {
         let mut out = io::stdout().lock();
         if self.xml {
-            out.write_all(model_description()?.as_bytes())?;
+            out.write_all(self.fmi.model_description()?.as_bytes())?;
+            return Ok(());
+        }
+        if self.terminals {
+            out.write_all(terminals_and_icons()?.as_bytes())?;
             return Ok(());
         }
         let table: Vec<_> = variables()

@@ -4,6 +4,7 @@ mod describe;
 mod fields;
 mod pack;
 mod simulate;
+mod standard;
 mod table;
 mod torture;
 mod verify;

@@ -1,11 +1,12 @@
 //! The way into every call on an instance.
 
+use crate::fmi::call;
 use crate::fmi2::failures::Failure;
 use crate::fmi2::instance::Instance;
 use crate::fmi2::states::Function;
 use crate::fmi2::types::{Component, Status};
 
-/// Every call on an instance: null check, state check, panic fence, status and messages.
+/// As [`call::call`], of this version.
 ///
 /// # Safety
 /// `component` must be null or an instance that fmi2Instantiate returned, not freed, and not used by another thread.
@@ -14,15 +15,8 @@ pub(super) unsafe fn call(
     function: Function,
     body: impl FnOnce(&mut Instance) -> Result<(), Failure>,
 ) -> Status {
-    // SAFETY: null or a live instance that nobody else uses (the caller's promise).
-    let Some(instance) = (unsafe { component.cast::<Instance>().as_mut() }) else {
-        return Status::ERROR;
-    };
-    let status = instance.call(function, body);
-    // From here on the instance is not touched: the logger may call back into it, or free it.
-    let (messages, logger) = instance.take_messages();
-    logger.send(&messages);
-    status
+    // SAFETY: the caller's promise.
+    unsafe { call::call(component, function, body) }
 }
 
 #[cfg(test)]

@@ -1,10 +1,11 @@
 //! What the library is, and the life of an instance.
 
 use super::call::call;
+use crate::fmi::component;
+use crate::fmi::exported;
 use crate::fmi::failures::Failure;
 use crate::fmi::fence;
-use crate::fmi::logging::Category;
-use crate::fmi::pointers::{input, string};
+use crate::fmi::pointers::string;
 use crate::fmi2::instance::{Instance, Instantiation};
 use crate::fmi2::states::Function;
 use crate::fmi2::types::{Boolean, CallbackFunctions, Component, FALSE, FmiString, FmuType, Real, Status};
@@ -86,22 +87,11 @@ pub unsafe extern "C" fn fmi2SetDebugLogging(
     n_categories: usize,
     categories: *const FmiString,
 ) -> Status {
-    let body = |instance: &mut Instance| {
-        // SAFETY: as many strings as the caller says.
-        let names = unsafe { input(categories, n_categories, "categories") }?;
-        let categories = names.iter().map(|name| {
-            // SAFETY: a valid string (the caller's promise).
-            let name = unsafe { string(*name) };
-            Category::named(name.ok_or(Failure::NullPointer {
-                argument: "categories[i]",
-            })?)
-        });
-        let categories: Vec<_> = categories.collect::<Result<_, Failure>>()?;
-        instance.component.journal.switch(logging_on != FALSE, &categories);
-        Ok(())
-    };
-    // SAFETY: a live instance (the caller's promise).
-    unsafe { call(component, Function::SetDebugLogging, body) }
+    let on = logging_on != FALSE;
+    // SAFETY: the caller's promise.
+    unsafe {
+        exported::set_debug_logging::<Instance>(component, Function::SetDebugLogging, on, n_categories, categories)
+    }
 }
 
 /// Sets start and stop time; the tolerance is not used.
@@ -148,12 +138,8 @@ pub unsafe extern "C" fn fmi2EnterInitializationMode(component: Component) -> St
 /// `component` must be null or a live instance.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2ExitInitializationMode(component: Component) -> Status {
-    // SAFETY: a live instance (the caller's promise).
-    unsafe {
-        call(component, Function::ExitInitializationMode, |instance| {
-            Ok(instance.component.exit_initialization()?)
-        })
-    }
+    // SAFETY: the caller's promise.
+    unsafe { exported::exit_initialization::<Instance>(component, Function::ExitInitializationMode) }
 }
 
 /// Ends the simulation.
@@ -162,12 +148,8 @@ pub unsafe extern "C" fn fmi2ExitInitializationMode(component: Component) -> Sta
 /// `component` must be null or a live instance.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2Terminate(component: Component) -> Status {
-    let body = |instance: &mut Instance| {
-        instance.component.terminate();
-        Ok(())
-    };
-    // SAFETY: a live instance (the caller's promise).
-    unsafe { call(component, Function::Terminate, body) }
+    // SAFETY: the caller's promise.
+    unsafe { exported::simply::<Instance>(component, Function::Terminate, component::Component::terminate) }
 }
 
 /// Back to the start values.
@@ -176,10 +158,6 @@ pub unsafe extern "C" fn fmi2Terminate(component: Component) -> Status {
 /// `component` must be null or a live instance.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2Reset(component: Component) -> Status {
-    let body = |instance: &mut Instance| {
-        instance.component.reset();
-        Ok(())
-    };
-    // SAFETY: a live instance (the caller's promise).
-    unsafe { call(component, Function::Reset, body) }
+    // SAFETY: the caller's promise.
+    unsafe { exported::simply::<Instance>(component, Function::Reset, component::Component::reset) }
 }

@@ -1,8 +1,6 @@
 //! Saved states.
 
-use super::call::call;
-use crate::fmi::failures::Failure;
-use crate::fmi::pointers::{input, output, place, variable};
+use crate::fmi::exported;
 use crate::fmi2::instance::Instance;
 use crate::fmi2::states::Function;
 use crate::fmi2::types::{Byte, Component, FmuState, Status};
@@ -13,10 +11,8 @@ use crate::fmi2::types::{Byte, Component, FmuState, Status};
 /// A live instance and a pointer to a variable.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2GetFMUstate(component: Component, state: *mut FmuState) -> Status {
-    // SAFETY: a variable of the importer (the caller's promise).
-    let body = |instance: &mut Instance| unsafe { Ok(instance.component.get_state(variable(state, "FMUstate")?)?) };
-    // SAFETY: a live instance (the caller's promise).
-    unsafe { call(component, Function::GetFmuState, body) }
+    // SAFETY: the caller's promise.
+    unsafe { exported::get_state::<Instance>(component, Function::GetFmuState, state) }
 }
 
 /// Restores a saved state.
@@ -25,12 +21,8 @@ pub unsafe extern "C" fn fmi2GetFMUstate(component: Component, state: *mut FmuSt
 /// `component` must be null or a live instance; `state` is never followed.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2SetFMUstate(component: Component, state: FmuState) -> Status {
-    // SAFETY: a live instance (the caller's promise).
-    unsafe {
-        call(component, Function::SetFmuState, |instance| {
-            Ok(instance.component.set_state(state)?)
-        })
-    }
+    // SAFETY: the caller's promise.
+    unsafe { exported::set_state::<Instance>(component, Function::SetFmuState, state) }
 }
 
 /// Frees a saved state and sets the pointer to null.
@@ -39,10 +31,8 @@ pub unsafe extern "C" fn fmi2SetFMUstate(component: Component, state: FmuState) 
 /// A live instance and a pointer to a variable.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2FreeFMUstate(component: Component, state: *mut FmuState) -> Status {
-    // SAFETY: a variable of the importer (the caller's promise).
-    let body = |instance: &mut Instance| unsafe { Ok(instance.component.free_state(variable(state, "FMUstate")?)?) };
-    // SAFETY: a live instance (the caller's promise).
-    unsafe { call(component, Function::FreeFmuState, body) }
+    // SAFETY: the caller's promise.
+    unsafe { exported::free_state::<Instance>(component, Function::FreeFmuState, state) }
 }
 
 /// The number of bytes of a serialised state.
@@ -51,14 +41,8 @@ pub unsafe extern "C" fn fmi2FreeFMUstate(component: Component, state: *mut FmuS
 /// A live instance and a place for the size.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2SerializedFMUstateSize(component: Component, state: FmuState, size: *mut usize) -> Status {
-    let body = |instance: &mut Instance| {
-        // SAFETY: a place for one value (the caller's promise).
-        let size = unsafe { place(size, "size") }?;
-        size.write(instance.component.serialized(state)?.len());
-        Ok(())
-    };
-    // SAFETY: a live instance (the caller's promise).
-    unsafe { call(component, Function::SerializedFmuStateSize, body) }
+    // SAFETY: the caller's promise.
+    unsafe { exported::serialized_size::<Instance>(component, Function::SerializedFmuStateSize, state, size) }
 }
 
 /// Writes a saved state as bytes.
@@ -72,24 +56,8 @@ pub unsafe extern "C" fn fmi2SerializeFMUstate(
     bytes: *mut Byte,
     size: usize,
 ) -> Status {
-    let body = |instance: &mut Instance| {
-        let serialized = instance.component.serialized(state)?;
-        // SAFETY: room for `size` bytes (the caller's promise).
-        let room = unsafe { output(bytes.cast::<u8>(), size, "serializedState") }?;
-        if room.len() != serialized.len() {
-            return Err(Failure::BufferSize {
-                given: size,
-                needed: serialized.len(),
-            }
-            .into());
-        }
-        for (place, byte) in room.iter_mut().zip(serialized) {
-            place.write(byte);
-        }
-        Ok(())
-    };
-    // SAFETY: a live instance (the caller's promise).
-    unsafe { call(component, Function::SerializeFmuState, body) }
+    // SAFETY: the caller's promise.
+    unsafe { exported::serialize::<Instance>(component, Function::SerializeFmuState, state, bytes.cast(), size) }
 }
 
 /// Makes a saved state of bytes.
@@ -103,14 +71,6 @@ pub unsafe extern "C" fn fmi2DeSerializeFMUstate(
     size: usize,
     state: *mut FmuState,
 ) -> Status {
-    let body = |instance: &mut Instance| {
-        // SAFETY: `size` bytes (the caller's promise).
-        let bytes = unsafe { input(bytes.cast::<u8>(), size, "serializedState") }?;
-        // SAFETY: a variable of the importer (the caller's promise).
-        Ok(instance
-            .component
-            .deserialize(bytes, unsafe { variable(state, "FMUstate") }?)?)
-    };
-    // SAFETY: a live instance (the caller's promise).
-    unsafe { call(component, Function::DeserializeFmuState, body) }
+    // SAFETY: the caller's promise.
+    unsafe { exported::deserialize::<Instance>(component, Function::DeserializeFmuState, bytes.cast(), size, state) }
 }

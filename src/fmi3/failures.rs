@@ -1,0 +1,66 @@
+//! What can go wrong in a call of FMI 3.0, and the status that follows.
+
+use super::types::Status;
+use crate::error::Error;
+use crate::fmi::call::Refusal;
+use crate::fmi::failures::{self, Blame};
+
+/// Why a call did not return fmi3OK.
+#[derive(Debug, thiserror::Error)]
+pub enum Failure {
+    /// What can go wrong in every version of FMI.
+    #[error(transparent)]
+    Shared(#[from] failures::Failure),
+    /// A step that came only part of its way, under an importer that lets the unit return early.
+    #[error("the step returned early at t = {reached} s: {error}")]
+    ReturnedEarly {
+        /// Time reached, `s`.
+        reached: f64,
+        /// Why the rest was not begun.
+        error: Error,
+    },
+    /// Room for another number of values than the variables have elements.
+    #[error("nValues = {given}: the variables have {needed} elements")]
+    Values {
+        /// Room for so many values.
+        given: usize,
+        /// Elements.
+        needed: usize,
+    },
+    /// Another number of seeds or sensitivities than variables.
+    #[error("{argument} = {given}: there are {needed} variables, none of them an array")]
+    Derivatives {
+        /// The argument.
+        argument: &'static str,
+        /// Its value.
+        given: usize,
+        /// Variables.
+        needed: usize,
+    },
+}
+
+impl Refusal for Failure {
+    fn blame(&self) -> Blame {
+        match self {
+            // Nothing was changed: the computation may go on with another step or other inputs.
+            Failure::Shared(failures::Failure::Step { .. }) => Blame::Value,
+            // The state is not that of before the call, which fmi3Discard would mean.
+            Failure::Shared(failures::Failure::Interrupted { .. }) => Blame::Call,
+            Failure::Shared(failure) => failure.blame(),
+            Failure::ReturnedEarly { .. } => Blame::Unused,
+            Failure::Values { .. } | Failure::Derivatives { .. } => Blame::Call,
+        }
+    }
+}
+
+impl Status {
+    /// The status of a call: a value is discarded; what else cannot be done is an error.
+    pub fn of(blame: Option<Blame>) -> Status {
+        match blame {
+            None => Status::OK,
+            Some(Blame::Unused) => Status::WARNING,
+            Some(Blame::Value | Blame::PartOfStep) => Status::DISCARD,
+            Some(Blame::Call | Blame::Library) => Status::ERROR,
+        }
+    }
+}
