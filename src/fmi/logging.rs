@@ -78,44 +78,60 @@ pub fn escaped(text: &str) -> CString {
     CString::new(text.trim_end()).unwrap_or_default()
 }
 
+/// Which categories a standard wants on.
+#[derive(Debug, Clone, Copy)]
+pub struct Rules {
+    /// At first, where the importer has not asked for all.
+    pub at_first: &'static [Category],
+    /// Whatever the importer has switched off.
+    pub always: &'static [Category],
+    /// Whether those that are switched on come on top of those that are on already.
+    pub adds: bool,
+}
+
 /// The messages of a call, which wait for its end: the importer's logger may call back into the instance. And the categories
-/// that are on: from the start those of failed calls.
+/// that are on.
 pub struct Journal {
     /// Whether anybody listens; if not, no text is put together.
     heard: bool,
+    rules: Rules,
     enabled: u8,
     messages: Vec<Message>,
 }
 
+fn bits(categories: &[Category]) -> u8 {
+    categories.iter().fold(0, |bits, category| bits | category.bit())
+}
+
 impl Journal {
-    /// A journal with all categories on, or only those of failed calls.
-    pub fn new(heard: bool, all: bool) -> Journal {
-        let mut journal = Journal {
+    /// A journal with all categories on, or only those that the rules name.
+    pub fn new(heard: bool, all: bool, rules: Rules) -> Journal {
+        Journal {
             heard,
-            enabled: Category::StatusError.bit() | Category::StatusWarning.bit(),
+            rules,
+            enabled: bits(if all { &Category::ALL } else { rules.at_first }),
             messages: Vec::new(),
-        };
-        if all {
-            journal.switch(true, &Category::ALL);
         }
-        journal
     }
 
-    /// Switches categories. Switched on, exactly the given ones are; switched off, the given ones are not. An empty list
-    /// stands for all.
+    /// Switches categories on, as the rules say, or off. An empty list stands for all.
     pub fn switch(&mut self, on: bool, categories: &[Category]) {
-        let all = if categories.is_empty() {
+        let categories = if categories.is_empty() {
             &Category::ALL[..]
         } else {
             categories
         };
-        let bits = all.iter().fold(0, |bits, category| bits | category.bit());
-        self.enabled = if on { bits } else { self.enabled & !bits };
+        let kept = if on && !self.rules.adds { 0 } else { self.enabled };
+        self.enabled = if on {
+            kept | bits(categories)
+        } else {
+            kept & !bits(categories)
+        };
     }
 
     /// Whether a message of this category would be written; if not, its text need not be put together.
     pub fn hears(&self, category: Category) -> bool {
-        self.heard && self.enabled & category.bit() != 0
+        self.heard && (self.enabled | bits(self.rules.always)) & category.bit() != 0
     }
 
     /// Tells why a call failed, where the category is on.
@@ -161,13 +177,18 @@ mod tests {
         journal.take().into_iter().map(|message| message.category).collect()
     }
 
+    const EXACT: Rules = Rules {
+        at_first: &[Category::StatusError, Category::StatusWarning],
+        always: &[],
+        adds: false,
+    };
+
     #[test]
     fn only_what_is_on_and_heard_is_written() {
-        let failures = [Category::StatusError, Category::StatusWarning];
-        assert_eq!(categories(&mut Journal::new(true, false)), failures);
-        assert_eq!(categories(&mut Journal::new(true, true)), Category::ALL);
-        assert_eq!(categories(&mut Journal::new(false, true)), []);
-        let mut journal = Journal::new(true, false);
+        assert_eq!(categories(&mut Journal::new(true, false, EXACT)), EXACT.at_first);
+        assert_eq!(categories(&mut Journal::new(true, true, EXACT)), Category::ALL);
+        assert_eq!(categories(&mut Journal::new(false, true, EXACT)), []);
+        let mut journal = Journal::new(true, false, EXACT);
         journal.switch(true, &[Category::Solver]);
         assert_eq!(categories(&mut journal), [Category::Solver]);
         journal.switch(true, &[]);
@@ -178,5 +199,24 @@ mod tests {
         );
         journal.switch(false, &[]);
         assert_eq!(categories(&mut journal), []);
+    }
+
+    #[test]
+    fn categories_may_add_up_and_errors_may_always_be_told() {
+        let rules = Rules {
+            at_first: &[],
+            always: &[Category::StatusError],
+            adds: true,
+        };
+        let mut journal = Journal::new(true, false, rules);
+        assert_eq!(categories(&mut journal), [Category::StatusError]);
+        journal.switch(true, &[Category::Solver]);
+        journal.switch(true, &[Category::Events]);
+        assert_eq!(
+            categories(&mut journal),
+            [Category::StatusError, Category::Solver, Category::Events]
+        );
+        journal.switch(false, &[]);
+        assert_eq!(categories(&mut journal), [Category::StatusError]);
     }
 }

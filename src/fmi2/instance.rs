@@ -8,8 +8,15 @@ use super::types::{CO_SIMULATION, CallbackFunctions, LAST_SUCCESSFUL_TIME, Real,
 use crate::fmi::call::{self, Logger as _};
 use crate::fmi::component::Component;
 use crate::fmi::failures::Blame;
-use crate::fmi::logging::{Category, Journal};
+use crate::fmi::logging::{Category, Journal, Rules};
 use std::ffi::CStr;
+
+/// At first the reasons of failed calls are told. A list of categories is the whole list.
+const LOGGING: Rules = Rules {
+    at_first: &[Category::StatusError, Category::StatusWarning],
+    always: &[],
+    adds: false,
+};
 
 /// An instance.
 pub struct Instance {
@@ -70,7 +77,7 @@ impl Instance {
     /// fmi2Instantiate; `None` after a logged refusal.
     pub fn new(arguments: &Instantiation<'_>) -> Option<Instance> {
         let logger = Logger::new(&arguments.callbacks, arguments.name.unwrap_or_default());
-        let mut journal = Journal::new(logger.is_there(), arguments.logging_on);
+        let mut journal = Journal::new(logger.is_there(), arguments.logging_on, LOGGING);
         let checked = arguments.check();
         match &checked {
             Ok(()) => journal.inform(Category::Events, arguments.greeting()),

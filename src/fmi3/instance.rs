@@ -8,8 +8,16 @@ use super::types::{self, InstanceEnvironment, LogMessageCallback, Status};
 use crate::fmi::call::{self, Logger as _};
 use crate::fmi::component::Component;
 use crate::fmi::failures::{self, Blame};
-use crate::fmi::logging::{Category, Journal};
+use crate::fmi::logging::{Category, Journal, Rules};
 use std::ffi::CStr;
+
+/// Without logging the reasons of errors are told, and nothing else is. Each list of categories switches its own (section
+/// 2.2.3 of the standard).
+const LOGGING: Rules = Rules {
+    at_first: &[],
+    always: &[Category::StatusError],
+    adds: true,
+};
 
 /// An instance.
 pub struct Instance {
@@ -44,11 +52,10 @@ pub struct Messages {
 }
 
 impl Messages {
-    /// To the importer's logger, if there is one. Not all log categories are on, but those of failed calls, until
-    /// fmi3SetDebugLogging.
+    /// To the importer's logger, if there is one; all log categories are on, or only that of errors.
     pub fn new(environment: InstanceEnvironment, callback: Option<LogMessageCallback>, all: bool) -> Messages {
         Messages {
-            journal: Journal::new(callback.is_some(), all),
+            journal: Journal::new(callback.is_some(), all, LOGGING),
             logger: Logger { callback, environment },
         }
     }

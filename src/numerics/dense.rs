@@ -64,7 +64,7 @@ impl Arithmetic {
 
     /// `out += Σ factors · columns`.
     #[inline(always)]
-    fn add_quad(self, columns: [&[f64]; QUAD], [a, b, c, d]: [f64; QUAD], out: &mut [f64]) {
+    pub fn add_quad(self, columns: [&[f64]; QUAD], [a, b, c, d]: [f64; QUAD], out: &mut [f64]) {
         let [first, second, third, fourth] = columns;
         for ((((out, p), q), r), s) in out.iter_mut().zip(first).zip(second).zip(third).zip(fourth) {
             let pair = self.multiply_add(a, *p, self.multiply_add(b, *q, *out));
@@ -111,7 +111,7 @@ fn multiply_add_kernel(arithmetic: Arithmetic, matrix: &[f64], x: &[f64], factor
 }
 
 /// Columns that are added together: `out` is loaded and stored once for them.
-const QUAD: usize = 4;
+pub const QUAD: usize = 4;
 
 /// `out += factor · columns · x`, for [`QUAD`] columns or the rest of them.
 #[inline(always)]

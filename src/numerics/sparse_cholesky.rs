@@ -1,19 +1,18 @@
 //! The sparse Cholesky factor of the stiffness, and its solve for many right-hand sides at once.
 //!
-//! faer factorises. The solve, which takes far longer with two right-hand sides for each contact node, is written out here:
-//! faer's own is slow without faer's feature `std`, and that feature's matrix product keeps a thread-local buffer with a
-//! destructor, which a library that is unloaded at run time must not have.
+//! faer orders the unknowns and finds the supernodes: runs of columns with one pattern, each a dense triangle and below it a
+//! dense block whose rows lie at the places of the pattern. What is done with numbers is written out here: faer's matrix product
+//! keeps its sizes of caches on the heap, and with faer's feature `std` a thread-local buffer with a destructor, and neither
+//! may be left behind by a library that is unloaded at run time. Without that feature faer's solve is slow, too.
 
-use crate::numerics::dense::{self, Arithmetic};
-use faer::dyn_stack::{MemBuffer, MemStack};
-use faer::linalg::cholesky::llt::factor::LltRegularization;
+use crate::numerics::dense::{self, Arithmetic, QUAD};
+use faer::Side;
 use faer::sparse::SparseColMat;
 use faer::sparse::linalg::SupernodalThreshold;
-use faer::sparse::linalg::cholesky::supernodal::SupernodalLltRef;
+use faer::sparse::linalg::cholesky::supernodal::{SupernodalLltRef, SymbolicSupernodalCholesky};
 use faer::sparse::linalg::cholesky::{
     CholeskySymbolicParams, SymbolicCholesky, SymbolicCholeskyRaw, SymmetricOrdering, factorize_symbolic_cholesky,
 };
-use faer::{Par, Side};
 
 /// P A Pᵀ = L Lᵀ for the lower triangle of a symmetric positive definite A.
 #[derive(Debug)]
@@ -31,20 +30,80 @@ impl SparseCholesky {
         };
         let symbolic =
             factorize_symbolic_cholesky(matrix.symbolic(), Side::Lower, SymmetricOrdering::Amd, parameters).ok()?;
-        let mut values = vec![0.0; symbolic.len_val()];
-        let scratch = symbolic.factorize_numeric_llt_scratch::<f64>(Par::Seq, Default::default());
-        symbolic
-            .factorize_numeric_llt(
-                &mut values,
-                matrix.as_ref(),
-                Side::Lower,
-                LltRegularization::default(),
-                Par::Seq,
-                MemStack::new(&mut MemBuffer::try_new(scratch).ok()?),
-                Default::default(),
-            )
-            .ok()?;
-        Some(SparseCholesky { symbolic, values })
+        let mut factor = SparseCholesky {
+            values: vec![0.0; symbolic.len_val()],
+            symbolic,
+        };
+        factor.factorise(matrix)?;
+        Some(factor)
+    }
+
+    fn supernodes(&self) -> &SymbolicSupernodalCholesky<usize> {
+        let SymbolicCholeskyRaw::Supernodal(supernodes) = self.symbolic.raw() else {
+            unreachable!("a supernodal factorisation was asked for");
+        };
+        supernodes
+    }
+
+    /// Supernode by supernode: its part of the matrix, minus the products of the supernodes before that have rows among its
+    /// columns, divided by its own triangle (left-looking, as in T. A. Davis, *Direct Methods for Sparse Linear Systems*,
+    /// section 4.8, with blocks for columns). `None` where a pivot is not positive.
+    fn factorise(&mut self, matrix: &SparseColMat<usize, f64>) -> Option<()> {
+        let n = matrix.ncols();
+        let mut values = std::mem::take(&mut self.values);
+        let supernodes = self.supernodes();
+        let count = supernodes.n_supernodes();
+        let (begin, end) = (supernodes.supernode_begin(), supernodes.supernode_end());
+        let mut supernode_of = vec![0; n];
+        for node in 0..count {
+            supernode_of[begin[node]..end[node]].fill(node);
+        }
+        let mut entries = vec![Vec::new(); count];
+        for entry in matrix.triplet_iter() {
+            let (row, column) = (self.row_of(entry.row), self.row_of(entry.col));
+            let (row, column) = (row.max(column), row.min(column));
+            entries[supernode_of[column]].push((row, column, *entry.val));
+        }
+        // The supernodes that wait for a later one, and from which row of their pattern on.
+        let mut waiting = vec![Vec::new(); count];
+        let mut row_in_block = vec![0; n];
+        let mut product = vec![0.0; n];
+        for node in 0..count {
+            let (start, columns) = (begin[node], end[node] - begin[node]);
+            let pattern = supernodes.supernode(node).pattern();
+            let rows = columns + pattern.len();
+            for (place, row) in (start..end[node]).chain(pattern.iter().copied()).enumerate() {
+                row_in_block[row] = place;
+            }
+            let (before, rest) = values.split_at_mut(supernodes.col_ptr_for_val()[node]);
+            let block = &mut rest[..rows * columns];
+            for (row, column, value) in &entries[node] {
+                block[(column - start) * rows + row_in_block[*row]] += value;
+            }
+            for (other, from) in std::mem::take(&mut waiting[node]) {
+                let (columns, below): (usize, &[usize]) =
+                    (end[other] - begin[other], supernodes.supernode(other).pattern());
+                let factor = Block {
+                    values: &before[supernodes.col_ptr_for_val()[other]..],
+                    rows: columns + below.len(),
+                    columns,
+                };
+                let here = below[from..].partition_point(|row| *row < end[node]);
+                for first in from..from + here {
+                    let product = &mut product[..below.len() - first];
+                    factor.product(columns + first, product);
+                    let column = &mut block[(below[first] - start) * rows..][..rows];
+                    for (row, value) in below[first..].iter().zip(product) {
+                        column[row_in_block[*row]] -= *value;
+                    }
+                }
+                wait(&mut waiting, &supernode_of, other, below, from + here);
+            }
+            factorise_block(block, rows, columns)?;
+            wait(&mut waiting, &supernode_of, node, pattern, 0);
+        }
+        self.values = values;
+        Some(())
     }
 
     /// The row of an unknown in what [`SparseCholesky::solve_in_place`] solves: the order of the factor.
@@ -55,12 +114,9 @@ impl SparseCholesky {
     }
 
     /// Solves A X = B in place, rows in the order of the factor: forward with L, backward with Lᵀ. Where there are many
-    /// right-hand sides, 32 at a time are quickest: eight vector registers of AVX2. A supernode is a run of
-    /// columns with one pattern: a dense triangle, and below it a dense block whose rows lie at the places of the pattern.
+    /// right-hand sides, 32 at a time are quickest: eight vector registers of AVX2.
     pub fn solve_in_place<const WIDTH: usize>(&self, rows: &mut [[f64; WIDTH]]) {
-        let SymbolicCholeskyRaw::Supernodal(symbolic) = self.symbolic.raw() else {
-            unreachable!("a supernodal factorisation was asked for");
-        };
+        let symbolic = self.supernodes();
         let factor = SupernodalLltRef::new(symbolic, &self.values);
         dense::vectorised(
             #[inline(always)]
@@ -107,6 +163,75 @@ impl SparseCholesky {
             },
         );
     }
+}
+
+/// Lets a supernode wait for the one that has its next row, at `from` in its pattern, among its columns.
+fn wait(waiting: &mut [Vec<(usize, usize)>], supernode_of: &[usize], node: usize, pattern: &[usize], from: usize) {
+    if let Some(row) = pattern.get(from) {
+        waiting[supernode_of[*row]].push((node, from));
+    }
+}
+
+/// The factor of a supernode, column by column.
+struct Block<'a> {
+    values: &'a [f64],
+    rows: usize,
+    columns: usize,
+}
+
+impl Block<'_> {
+    /// The rows from `row` on times the row `row`: a column of L Lᵀ.
+    fn product(&self, row: usize, out: &mut [f64]) {
+        out.fill(0.0);
+        dense::vectorised(
+            #[inline(always)]
+            |arithmetic| self.add_columns(arithmetic, row, 1.0, out),
+        );
+    }
+
+    /// `out += factor ·` the rows from `row` on times the row `row`.
+    #[inline(always)]
+    fn add_columns(&self, arithmetic: Arithmetic, row: usize, factor: f64, out: &mut [f64]) {
+        let length = out.len();
+        let column = |column: usize| &self.values[column * self.rows + row..][..length];
+        let quads = self.columns - self.columns % QUAD;
+        for first in (0..quads).step_by(QUAD) {
+            let four = [column(first), column(first + 1), column(first + 2), column(first + 3)];
+            arithmetic.add_quad(four, four.map(|column| factor * column[0]), out);
+        }
+        for first in quads..self.columns {
+            arithmetic.add_multiple(column(first), factor * column(first)[0], out);
+        }
+    }
+}
+
+/// Replaces the columns of a supernode by those of its factor. `None` where a pivot is not positive.
+fn factorise_block(block: &mut [f64], rows: usize, columns: usize) -> Option<()> {
+    dense::vectorised(
+        #[inline(always)]
+        |arithmetic| {
+            for column in 0..columns {
+                let (before, rest) = block.split_at_mut(column * rows);
+                let before = Block {
+                    values: before,
+                    rows,
+                    columns: column,
+                };
+                let out = &mut rest[column..rows];
+                before.add_columns(arithmetic, column, -1.0, out);
+                let pivot = out[0];
+                // Not a number is not positive either.
+                if !(pivot > 0.0) {
+                    return None;
+                }
+                let scale = 1.0 / pivot.sqrt();
+                for value in out {
+                    *value *= scale;
+                }
+            }
+            Some(())
+        },
+    )
 }
 
 #[inline(always)]
