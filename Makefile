@@ -1,6 +1,7 @@
 # wheelrail: `make demo` shows what it does, `make test` checks it. Both do all set-up in a fresh clone.
 #
 #   make fmu     target/WheelRailContact.fmu
+#   make platforms  win64 in the same archive, and aarch64 Linux: built where there is a compiler, run under wine and qemu
 #   make demo    the paper's cases, a braking manoeuvre and the patch: results/
 #   make couplings  the component in vehicle models, masters and sweeps: results/, one page each in docs/couplings/
 #   make test    formatting, lints, order of the modules, documentation, all Rust tests, `wheelrail verify`, all Python tests
@@ -42,7 +43,7 @@ install = $(PY) -m uv pip install --quiet --python $(PY) -r $(1) \
 COUPLINGS := longitudinal stiff multibody train sweep hunting
 WHEELSET := target/Wheelset.fmu
 
-.PHONY: fmu demo test docs site bench clean lint rust-test verify python-test hosts library command couplings packages
+.PHONY: fmu platforms demo test docs site bench clean lint rust-test verify python-test hosts library command couplings packages
 .PHONY: pytest couplings-set-up couplings-docs sweep-scaling description $(addprefix coupling-,$(COUPLINGS))
 
 # ---- set-up -------------------------------------------------------------------------------------------------------
@@ -88,6 +89,11 @@ command: library
 fmu: library
 	$(call say,$(FMU))
 	@$(WHEELRAIL) pack --library "$$(cat target/library.path)" --output $(FMU)
+
+# Skips with a reason what cannot be built or run here. Options by PLATFORMS, as in `make platforms PLATFORMS=--twice`.
+platforms: fmu
+	$(call say,Other platforms)
+	@$(PY) tools/platforms.py $(PLATFORMS)
 
 # The description that is checked in; a test compares.
 description: command

@@ -5,13 +5,16 @@
 
 On x86-64 Linux all is linked by zig against the symbols of an old glibc, so that the library loads on every
 distribution of the last ten years. Where that is not possible it is built for this machine alone, with a warning.
-`library` says where the library lies, in target/library.path, and puts the command line into target/release.
+`library` says where the library lies, in target/library.path, and puts the command line into target/release. The
+same compiler gives the same bytes in any folder; what compiled it is written beside the library for `wheelrail pack`.
 """
 
 import argparse
+import importlib.metadata
 import importlib.util
 import os
 import platform
+import re
 import shutil
 import subprocess
 import sys
@@ -43,8 +46,39 @@ def file_names():
     return library, "wheelrail.exe" if sys.platform == "win32" else "wheelrail"
 
 
+def said(*command):
+    """Return what a command prints."""
+    return subprocess.check_output([str(word) for word in command], text=True).strip()
+
+
+def without_folders(rustc="rustc"):
+    """Return the flags for rustc that leave this machine's folders out of what it compiles."""
+    home = Path(os.environ.get("CARGO_HOME", Path.home() / ".cargo"))
+    sources = Path(said(rustc, "--print", "sysroot")) / "lib" / "rustlib" / "src" / "rust"
+    commit = re.search(r"commit-hash: (\w+)", said(rustc, "-vV"))[1]
+    # The standard library's own name for its sources, which rustc replaces where it finds them installed.
+    virtual = f"/rustc/{commit}"
+    # A later one comes first.
+    names = {REPOSITORY: "/wheelrail", home: "/cargo", sources.resolve(): virtual, sources: virtual}
+    return [f"--remap-path-prefix={folder}={name}" for folder, name in names.items()]
+
+
+def add_flags(environment, flags):
+    """Add flags for rustc to those that an environment has."""
+    encoded = environment.get("CARGO_ENCODED_RUSTFLAGS", "").split("\x1f")
+    given = encoded if encoded != [""] else environment.get("RUSTFLAGS", "").split()
+    environment["CARGO_ENCODED_RUSTFLAGS"] = "\x1f".join([*given, *flags])
+
+
+def write_origin(library, compiler, linker):
+    """Write beside a library what `wheelrail pack` puts into documentation/build.txt."""
+    Path(f"{library}.build.txt").write_text(f"{compiler}; linked by {linker}\n")
+
+
 def call(command, options, portable, target, glibc):
     """Return cargo's exit status."""
+    if portable:
+        add_flags(os.environ, without_folders())
     flags = ["--release", "--locked", *(["--target", f"{target}.{glibc}"] if portable else [])]
     line = ["cargo-zigbuild", ZIG.get(command, command)] if portable else ["cargo", command]
     return subprocess.run([*line, *flags, *options], cwd=REPOSITORY).returncode
@@ -62,6 +96,8 @@ def library(portable, target, glibc):
             part = copy.with_suffix(".part")
             shutil.copy2(folder / copy.name, part)
             part.replace(copy)
+        zig = f"zig {importlib.metadata.version('ziglang')} for glibc {glibc}" if portable else "this machine's linker"
+        write_origin(built, said("rustc", "--version"), zig)
         (TARGET / "library.path").write_text(f"{built}\n")
         (TARGET / "library.portable").write_text(f"{portable}\n")
         print(f"{built} ({built.stat().st_size / 1e6:.1f} MB)")

@@ -1,6 +1,7 @@
 //! `wheelrail pack`: the archive's content, several platforms in one archive, and the same bytes from the same sources.
 
-use std::fs::{File, read, write};
+use super::images::{darwin, functions, windows};
+use std::fs::{File, copy, read, write};
 use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
@@ -14,14 +15,20 @@ fn folder(name: &str) -> PathBuf {
     folder
 }
 
-/// What passes for a library of this build: it carries the GUID.
-fn library(path: &Path, content: &str) {
-    write(path, format!("{content}{GUID}{content}")).unwrap();
+/// What passes for a library of this build for win64: it carries the GUID.
+fn windows_library(path: &Path, content: &str) {
+    write(path, windows(&functions(), &format!("{content}{GUID}"))).unwrap();
+}
+
+/// The same for darwin64.
+fn darwin_library(path: &Path) {
+    write(path, darwin(&functions(), GUID)).unwrap();
 }
 
 fn pack(folder: &Path, arguments: &[&str]) -> Output {
-    library(&folder.join("own.so"), "this platform");
+    // A copy, without what may say beside the library what compiled it.
     let library = folder.join("own.so");
+    copy(super::library_path(), &library).unwrap();
     Command::new(env!("CARGO_BIN_EXE_wheelrail"))
         .current_dir(env!("CARGO_MANIFEST_DIR"))
         .arg("pack")
@@ -112,11 +119,11 @@ fn the_archive_is_as_the_standard_wants_it() {
 fn the_same_sources_give_the_same_bytes() {
     let folder = folder("same");
     let other = folder.join("other.dll");
-    library(&other, "another platform");
+    windows_library(&other, "another platform");
     let binary = format!("win64={}", other.display());
     let first = packed(&folder, "first.fmu", &["--binary", &binary]);
     // The dates of the files are other ones.
-    library(&other, "another platform");
+    windows_library(&other, "another platform");
     let second = packed(&folder, "second.fmu", &["--binary", &binary]);
     assert_eq!(read(first).unwrap(), read(second).unwrap());
 }
@@ -125,8 +132,8 @@ fn the_same_sources_give_the_same_bytes() {
 fn libraries_of_other_platforms_are_added_and_merged() {
     let folder = folder("merged");
     let (windows, mac) = (folder.join("w.dll"), folder.join("m.dylib"));
-    library(&windows, "windows");
-    library(&mac, "mac");
+    windows_library(&windows, "windows");
+    darwin_library(&mac);
     let win = format!("win64={}", windows.display());
     let darwin = format!("darwin64={}", mac.display());
     let both = packed(&folder, "both.fmu", &["--binary", &win, "--binary", &darwin]);
@@ -160,8 +167,8 @@ fn what_does_not_belong_together_is_refused() {
     );
     // Two libraries for one platform.
     let (first, second) = (folder.join("1.dll"), folder.join("2.dll"));
-    library(&first, "one");
-    library(&second, "two");
+    windows_library(&first, "one");
+    windows_library(&second, "two");
     let platform = |path: &Path| format!("win64={}", path.display());
     let message = refused(
         &folder,
@@ -194,9 +201,68 @@ fn what_does_not_belong_together_is_refused() {
 #[test]
 fn a_platform_is_named_before_its_file() {
     let folder = folder("usage");
-    for argument in ["win64", "=a.dll", "../x=a.dll"] {
+    for (argument, reason) in [
+        ("win64", "PLATFORM=FILE"),
+        ("win64=", "PLATFORM=FILE"),
+        ("=a.dll", "FMI 2.0 has no platform"),
+        ("../x=a.dll", "FMI 2.0 has no platform ../x"),
+        ("aarch64-linux=a.so", "it has darwin64, linux32, linux64, win32, win64"),
+    ] {
         let output = pack(&folder, &["--binary", argument]);
         assert_eq!(output.status.code(), Some(2), "{argument}");
-        assert!(String::from_utf8_lossy(&output.stderr).contains("PLATFORM=FILE"));
+        let message = String::from_utf8_lossy(&output.stderr);
+        assert!(message.contains(reason), "{message}");
+    }
+}
+
+#[test]
+fn a_library_is_of_the_platform_that_it_is_given_for() {
+    let folder = folder("platform");
+    let [dll, dylib, text, part] = ["a.dll", "a.dylib", "a.txt", "part.dll"].map(|name| folder.join(name));
+    windows_library(&dll, "");
+    darwin_library(&dylib);
+    write(&text, GUID).unwrap();
+    let mut some = functions();
+    let missing = some.split_off(some.len() - 2);
+    write(&part, windows(&some, GUID)).unwrap();
+    for (platform, path, reason) in [
+        ("win32", &dll, "a.dll is Pe for X86_64, which is no library of win32"),
+        ("linux64", &dll, "which is no library of linux64"),
+        (
+            "win64",
+            &dylib,
+            "a.dylib is MachO for X86_64 and Aarch64, which is no library of win64",
+        ),
+        ("win64", &text, "a.txt cannot be read as a shared library"),
+        (
+            "win64",
+            &part,
+            &format!("part.dll does not export {}", missing.join(", ")),
+        ),
+    ] {
+        let message = refused(&folder, &["--binary", &format!("{platform}={}", path.display())]);
+        assert!(message.contains(reason), "{message}");
+    }
+}
+
+#[test]
+fn the_archive_says_what_compiled_each_library() {
+    let folder = folder("build");
+    let dll = folder.join("a.dll");
+    windows_library(&dll, "");
+    write(folder.join("a.dll.build.txt"), "rustc 1.89.0; linked by MinGW\n").unwrap();
+    let binary = format!("win64={}", dll.display());
+    let first = packed(&folder, "first.fmu", &["--binary", &binary]);
+    let merged = packed(&folder, "merged.fmu", &["--merge", first.to_str().unwrap()]);
+    for path in [first, merged] {
+        let mut archive = ZipArchive::new(File::open(path).unwrap()).unwrap();
+        let mut text = String::new();
+        let mut entry = archive.by_name("documentation/build.txt").unwrap();
+        entry.read_to_string(&mut text).unwrap();
+        let own = own().split('/').next().unwrap().to_owned();
+        assert_eq!(
+            text,
+            format!("{own}: not recorded\nwin64: rustc 1.89.0; linked by MinGW\n")
+        );
     }
 }

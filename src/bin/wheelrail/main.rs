@@ -1,5 +1,6 @@
 //! The command line `wheelrail`.
 
+mod binary;
 mod describe;
 mod fields;
 mod pack;

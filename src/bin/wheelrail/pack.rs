@@ -1,7 +1,8 @@
 //! `wheelrail pack`: the archive WheelRailContact.fmu from `modelDescription/` and the shared library.
 
+use crate::binary::{Binary, Platform};
 use clap::Args;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Read, Write};
 use std::path::{Path, PathBuf};
@@ -21,7 +22,7 @@ pub struct Pack {
     description: PathBuf,
     /// A library of another platform, as win64=wheelrail.dll or darwin64=libwheelrail.dylib.
     #[arg(long, value_name = "PLATFORM=FILE", value_parser = platform_and_file)]
-    binary: Vec<(String, PathBuf)>,
+    binary: Vec<(&'static Platform, PathBuf)>,
     /// Another WheelRailContact.fmu of the same sources: its platforms are merged in.
     #[arg(long, value_name = "FMU")]
     merge: Vec<PathBuf>,
@@ -68,6 +69,40 @@ pub enum Error {
         /// The description's GUID.
         guid: String,
     },
+    /// A file that is no library of any platform.
+    #[error("{path} cannot be read as a shared library: {source}")]
+    NoLibrary {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong with it.
+        source: object::Error,
+    },
+    /// A library of another platform than it is given for.
+    #[error("{path} is {found}, which is no library of {platform}")]
+    OtherPlatform {
+        /// The library.
+        path: PathBuf,
+        /// Its format and processors.
+        found: String,
+        /// The platform that it is given for.
+        platform: &'static str,
+    },
+    /// A library without some of the functions.
+    #[error("{path} does not export {}", .missing.join(", "))]
+    MissingFunctions {
+        /// The library.
+        path: PathBuf,
+        /// The functions' names.
+        missing: Vec<String>,
+    },
+    /// A platform in an archive that the standard has no name for.
+    #[error("{path}: {reason}")]
+    UnknownPlatform {
+        /// The archive.
+        path: PathBuf,
+        /// The name, and those that there are.
+        reason: String,
+    },
     /// An archive to merge that has another description.
     #[error("{path} has another modelDescription.xml: only archives of the same sources can be merged")]
     OtherDescription {
@@ -84,6 +119,10 @@ pub enum Error {
     },
 }
 
+/// Where the archive says what compiled each library.
+const BUILD: &str = "documentation/build.txt";
+
+/// Name in the archive and content.
 type Entries = BTreeMap<String, Vec<u8>>;
 
 impl Pack {
@@ -108,7 +147,6 @@ impl Pack {
         Ok(())
     }
 
-    /// Name in the archive and content.
     fn entries(&self) -> Result<Entries, Error> {
         let description = self.description.join("modelDescription.xml");
         let xml = read(&description)?;
@@ -116,7 +154,6 @@ impl Pack {
         if xml != generated.as_bytes() {
             return Err(Error::StaleDescription { path: description });
         }
-        let guid = guid_of(&generated);
         let mut entries = Entries::new();
         add_folder(&mut entries, &self.description.join("documentation"), "documentation/")?;
         add_folder(
@@ -125,75 +162,150 @@ impl Pack {
             "documentation/licenses/",
         )?;
         entries.insert("model.png".to_owned(), read(&self.description.join("model.png"))?);
-        add_library(&mut entries, &platform(), &self.library, guid)?;
-        for (platform, path) in &self.binary {
-            add_library(&mut entries, platform, path, guid)?;
-        }
-        for path in &self.merge {
-            merge(&mut entries, path, &xml)?;
-        }
+        let libraries = self.libraries(guid_of(&generated), &xml)?;
+        entries.insert(BUILD.to_owned(), libraries.build_lines().into_bytes());
+        entries.extend(libraries.entries);
         entries.insert("modelDescription.xml".to_owned(), xml);
         Ok(entries)
     }
-}
 
-fn add_library(entries: &mut Entries, platform: &str, path: &Path, guid: &str) -> Result<(), Error> {
-    let library = read(path)?;
-    if !library.windows(guid.len()).any(|window| window == guid.as_bytes()) {
-        return Err(Error::StaleLibrary {
-            path: path.to_owned(),
-            guid: guid.to_owned(),
-        });
+    fn libraries(&self, guid: &str, xml: &[u8]) -> Result<Libraries, Error> {
+        let mut libraries = Libraries::default();
+        let own = Platform::named(&own_platform()).map_err(|reason| Error::UnknownPlatform {
+            path: self.library.clone(),
+            reason,
+        })?;
+        for (platform, path) in std::iter::once((own, &self.library)).chain(self.binary.iter().map(|(p, f)| (*p, f))) {
+            let library = read(path)?;
+            if !library.windows(guid.len()).any(|window| window == guid.as_bytes()) {
+                return Err(Error::StaleLibrary {
+                    path: path.to_owned(),
+                    guid: guid.to_owned(),
+                });
+            }
+            libraries.add(platform, library, path)?;
+            libraries.builds.insert(platform.name.to_owned(), build_of(path)?);
+        }
+        for path in &self.merge {
+            libraries.merge(path, xml)?;
+        }
+        Ok(libraries)
     }
-    let extension = match platform {
-        _ if platform.starts_with("win") => "dll",
-        _ if platform.starts_with("darwin") => "dylib",
-        _ => "so",
-    };
-    insert_library(
-        entries,
-        format!("binaries/{platform}/wheelrail.{extension}"),
-        library,
-        path,
-    )
 }
 
-/// Adds the binaries of another archive of the same sources.
-fn merge(entries: &mut Entries, path: &Path, xml: &[u8]) -> Result<(), Error> {
+/// The libraries of an archive.
+#[derive(Default)]
+struct Libraries {
+    entries: Entries,
+    /// The functions that the first one exports, and every other has to.
+    functions: BTreeSet<String>,
+    /// By platform, what compiled its library.
+    builds: BTreeMap<String, String>,
+}
+
+impl Libraries {
+    /// Adds a library after a look at what it is.
+    fn add(&mut self, platform: &Platform, library: Vec<u8>, path: &Path) -> Result<(), Error> {
+        let binary = Binary::read(&library).map_err(|source| Error::NoLibrary {
+            path: path.to_owned(),
+            source,
+        })?;
+        if !binary.is_of(platform) {
+            return Err(Error::OtherPlatform {
+                path: path.to_owned(),
+                found: binary.description(),
+                platform: platform.name,
+            });
+        }
+        let functions = binary.functions();
+        if self.functions.is_empty() {
+            // Any importer begins with this one.
+            self.functions = &functions | &BTreeSet::from(["fmi2Instantiate".to_owned()]);
+        }
+        let missing: Vec<_> = self.functions.difference(&functions).cloned().collect();
+        if !missing.is_empty() {
+            let path = path.to_owned();
+            return Err(Error::MissingFunctions { path, missing });
+        }
+        let name = format!("binaries/{}/wheelrail.{}", platform.name, platform.extension);
+        match self.entries.get(&name) {
+            Some(present) if *present != library => Err(Error::TwoLibraries {
+                name,
+                path: path.to_owned(),
+            }),
+            _ => {
+                self.entries.insert(name, library);
+                Ok(())
+            }
+        }
+    }
+
+    /// Adds the libraries of another archive of the same sources, and what compiled them.
+    fn merge(&mut self, path: &Path, xml: &[u8]) -> Result<(), Error> {
+        let mut others = read_archive(path)?;
+        if others.get("modelDescription.xml").map(Vec::as_slice) != Some(xml) {
+            return Err(Error::OtherDescription { path: path.to_owned() });
+        }
+        let builds = others.remove(BUILD).unwrap_or_default();
+        for (name, content) in others {
+            let Some((folder, _)) = name.strip_prefix("binaries/").and_then(|rest| rest.split_once('/')) else {
+                continue;
+            };
+            let platform = Platform::named(folder).map_err(|reason| Error::UnknownPlatform {
+                path: path.to_owned(),
+                reason,
+            })?;
+            self.add(platform, content, path)?;
+        }
+        for (platform, build) in String::from_utf8_lossy(&builds)
+            .lines()
+            .filter_map(|line| line.split_once(": "))
+        {
+            self.builds
+                .entry(platform.to_owned())
+                .or_insert_with(|| build.to_owned());
+        }
+        Ok(())
+    }
+
+    /// A line for each platform.
+    fn build_lines(&self) -> String {
+        let lines = self
+            .builds
+            .iter()
+            .map(|(platform, build)| format!("{platform}: {build}\n"));
+        lines.collect()
+    }
+}
+
+/// What compiled a library, which the build writes beside it.
+fn build_of(library: &Path) -> Result<String, Error> {
+    let mut path = library.as_os_str().to_owned();
+    path.push(".build.txt");
+    let path = PathBuf::from(path);
+    if !path.exists() {
+        return Ok("not recorded".to_owned());
+    }
+    let text = String::from_utf8_lossy(&read(&path)?).into_owned();
+    Ok(text.split_whitespace().collect::<Vec<_>>().join(" "))
+}
+
+fn read_archive(path: &Path) -> Result<Entries, Error> {
     let archive = File::open(path).map_err(|source| file_error(path, source))?;
     let mut archive = ZipArchive::new(archive).map_err(|source| archive_error(path, source))?;
-    let mut same_description = false;
+    let mut entries = Entries::new();
     for index in 0..archive.len() {
         let mut entry = archive.by_index(index).map_err(|source| archive_error(path, source))?;
         let name = entry.name().map_err(|source| archive_error(path, source))?.into_owned();
-        let mut content = Vec::new();
-        entry
-            .read_to_end(&mut content)
-            .map_err(|source| file_error(path, source))?;
-        if name == "modelDescription.xml" {
-            same_description = content == xml;
-        } else if name.starts_with("binaries/") && !name.contains("..") && entry.is_file() {
-            insert_library(entries, name, content, path)?;
-        }
-    }
-    if same_description {
-        Ok(())
-    } else {
-        Err(Error::OtherDescription { path: path.to_owned() })
-    }
-}
-
-fn insert_library(entries: &mut Entries, name: String, content: Vec<u8>, path: &Path) -> Result<(), Error> {
-    match entries.get(&name) {
-        Some(present) if *present != content => Err(Error::TwoLibraries {
-            name,
-            path: path.to_owned(),
-        }),
-        _ => {
+        if entry.is_file() {
+            let mut content = Vec::new();
+            entry
+                .read_to_end(&mut content)
+                .map_err(|source| file_error(path, source))?;
             entries.insert(name, content);
-            Ok(())
         }
     }
+    Ok(entries)
 }
 
 /// Adds the files of a folder and of the folders in it.
@@ -246,7 +358,7 @@ fn archive_error(path: &Path, source: zip::result::ZipError) -> Error {
 }
 
 /// This platform's folder under binaries/.
-fn platform() -> String {
+fn own_platform() -> String {
     let system = match std::env::consts::OS {
         "windows" => "win",
         "macos" => "darwin",
@@ -265,11 +377,9 @@ fn default_library() -> PathBuf {
     Path::new("target/release").join(name)
 }
 
-fn platform_and_file(text: &str) -> Result<(String, PathBuf), String> {
+fn platform_and_file(text: &str) -> Result<(&'static Platform, PathBuf), String> {
     match text.split_once('=') {
-        Some((platform, file)) if !platform.is_empty() && platform.bytes().all(|byte| byte.is_ascii_alphanumeric()) => {
-            Ok((platform.to_owned(), PathBuf::from(file)))
-        }
+        Some((platform, file)) if !file.is_empty() => Ok((Platform::named(platform)?, PathBuf::from(file))),
         _ => Err("expected PLATFORM=FILE, for example win64=wheelrail.dll".to_owned()),
     }
 }
