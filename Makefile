@@ -88,12 +88,14 @@ command: library
 
 fmu: library
 	$(call say,$(FMU))
-	@$(WHEELRAIL) pack --library "$$(cat target/library.path)" --output $(FMU)
+	@$(WHEELRAIL) pack --library "$$(cat target/library.path)" $$($(PY) tools/platforms.py --binaries fmi2) --output $(FMU)
 
 # Skips with a reason what cannot be built or run here. Options by PLATFORMS, as in `make platforms PLATFORMS=--twice`.
-platforms: fmu
+# What passes is packed, by `make fmu` as well as long as the sources stay as they are.
+platforms: library
 	$(call say,Other platforms)
 	@$(PY) tools/platforms.py $(PLATFORMS)
+	@$(MAKE) --no-print-directory fmu
 
 # The description that is checked in; a test compares.
 description: command

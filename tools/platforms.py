@@ -1,11 +1,11 @@
-"""Build the component for platforms beside linux64, run each under an emulator, and put them into one archive.
+"""Build the component for platforms beside linux64 and run each under an emulator, for `make fmu` to pack.
 
-    make platforms                           after `make fmu`, whose library is the reference
-    .venv/bin/python tools/platforms.py --twice    build in a second folder too and compare the bytes
+    make platforms                       and pack what was built
+    make platforms PLATFORMS=--twice     build in a second folder too and compare the bytes
 
-What cannot be built or run here is skipped with the reason; the archive of linux64 stays as it is. Exit status 1: a
-library that was built is not as it should be. tools/toolchains.py says where compilers come from,
-tools/manoeuvre.py what is run and how results are compared.
+What cannot be built or run here is skipped with the reason. Exit status 1: a library that was built is not as it should
+be; it is not packed, and the archive of linux64 is as it would be without it. tools/toolchains.py says where
+compilers come from, tools/manoeuvre.py what is run and how results are compared.
 """
 
 import argparse
@@ -30,8 +30,10 @@ LIBRARY = ("--locked", "--release", "--lib", "--no-default-features", "--feature
 HOST = manoeuvre.HOST
 SHIM = HOST.with_name("bcryptprimitives.c")
 WARNINGS = ("-std=c11", "-O2", "-Wall", "-Wextra", "-Werror")
-# Archive, options of `wheelrail pack`, and the platforms' names in it: FMI 2.0 has none for aarch64.
-ARCHIVES = (("WheelRailContact.fmu", (), {"win64": "win64"}),)
+# Beside a library that is as it should be: a digest of the sources that it was built from.
+PASSED = "passed"
+# The platforms' names in the archive of each version of FMI: 2.0 has none for aarch64.
+NAMES = {"fmi2": {"win64": "win64"}, "fmi3": {"win64": "x86_64-windows", "aarch64-linux": "aarch64-linux"}}
 
 
 @dataclass
@@ -59,6 +61,29 @@ def say(text):
     print(f"\n== {text}", flush=True)
 
 
+def digest_of_sources():
+    """Return a SHA-256 of what libraries are compiled from."""
+    digest = hashlib.sha256()
+    paths = [path for path in (REPOSITORY / "src").rglob("*.rs") if not path.is_relative_to(REPOSITORY / "src" / "bin")]
+    for path in sorted([*paths, REPOSITORY / "Cargo.toml", REPOSITORY / "Cargo.lock"]):
+        digest.update(f"{path.relative_to(REPOSITORY)}\0".encode() + path.read_bytes())
+    return digest.hexdigest()
+
+
+def passed(name):
+    """Whether a library was built from the sources as they are, and is as it should be."""
+    mark = PLATFORMS / name / PASSED
+    return mark.exists() and mark.read_text() == digest_of_sources()
+
+
+def print_binaries(version):
+    """Print the options of `wheelrail pack` for the platforms that passed."""
+    for platform, _, _ in BUILDS:
+        if platform.name in NAMES[version] and passed(platform.name):
+            path = os.path.relpath(PLATFORMS / platform.name / platform.library, REPOSITORY)
+            print(f"--binary={NAMES[version][platform.name]}={path}")
+
+
 def reference_library():
     """Return the library of linux64 that `make fmu` left."""
     path = TARGET / "library.path"
@@ -73,6 +98,7 @@ def compile_library(platform, chain):
     built = PLATFORMS / "build" / platform.target / "release" / platform.library
     copy = PLATFORMS / platform.name / platform.library
     copy.parent.mkdir(parents=True, exist_ok=True)
+    (copy.parent / PASSED).unlink(missing_ok=True)
     shutil.copy2(built, copy)
     write_origin(copy, chain.compiler, platform.linker)
     return copy
@@ -168,23 +194,6 @@ def run(name, host, reference, report, given):
     report.fail(name, wrong)
 
 
-def pack(reference, report):
-    """Put what was built into the archives."""
-    for archive, options, names in ARCHIVES:
-        binary = [f"--binary={names[name]}={path}" for name, path in report.built.items() if name in names]
-        if not binary:
-            continue
-        command = [TARGET / "release" / "wheelrail", "pack", *options, "--library", reference, *binary]
-        done = subprocess.run([*command, "--output", TARGET / archive], cwd=REPOSITORY)
-        if done.returncode != 0:
-            report.fail(archive, ["not packed"])
-
-
-def digest(path):
-    """Return the SHA-256 of a file."""
-    return hashlib.sha256(Path(path).read_bytes()).hexdigest()
-
-
 def copy_sources(folder):
     """Copy what git knows, or would, to another folder."""
     command = ["git", "ls-files", "-z", "--cached", "--others", "--exclude-standard"]
@@ -238,31 +247,33 @@ def abi_tests(report, given):
 
 
 def main():
-    """Build, run, pack, and say what was left out."""
+    """Build, run, and say what was left out."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--no-install", dest="install", action="store_false", help="install no packages of Debian")
     parser.add_argument("--build-only", action="store_true", help="neither run nor pack what was built")
     parser.add_argument("--twice", action="store_true", help="build in a second folder too; compare the bytes")
     parser.add_argument("--unmask", action="store_true", help="the host's floating-point exceptions raise signals")
     parser.add_argument("--abi-tests", action="store_true", help="run `cargo test --test fmi2` under wine as well")
+    parser.add_argument("--binaries", choices=NAMES, help="print `wheelrail pack`'s options for what was built before")
     parser.add_argument("--require", action="store_true", help="what is skipped is an error")
     given = parser.parse_args()
+    if given.binaries:
+        return print_binaries(given.binaries)
     started, report = time.monotonic(), Report()
     library = None if given.build_only else reference_library()
     reference = Reference(library)
+    sources = digest_of_sources()
     for platform, toolchain, host in BUILDS:
         build(platform, toolchain, report, given)
         if platform.name in report.built and not given.build_only:
             inspect(platform.name, library, report)
             run(platform.name, host, reference, report, given)
-    if not given.build_only:
-        if not report.wrong:
-            say("Archives")
-            pack(library, report)
-        if given.abi_tests:
-            abi_tests(report, given)
-        if given.twice:
-            compare_elsewhere(library, report)
+            if not any(line.startswith(platform.name) for line in report.wrong):
+                (PLATFORMS / platform.name / PASSED).write_text(sources)
+    if given.abi_tests:
+        abi_tests(report, given)
+    if given.twice:
+        compare_elsewhere(library, report)
     say(f"Platforms: {time.monotonic() - started:.0f} s")
     for line in (
         *(f"built    {name}: {path}" for name, path in report.built.items()),

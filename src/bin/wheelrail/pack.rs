@@ -121,6 +121,7 @@ pub enum Error {
 
 /// Where the archive says what compiled each library.
 const BUILD: &str = "documentation/build.txt";
+const NOT_RECORDED: &str = "not recorded";
 
 /// Name in the archive and content.
 type Entries = BTreeMap<String, Vec<u8>>;
@@ -261,9 +262,10 @@ impl Libraries {
             .lines()
             .filter_map(|line| line.split_once(": "))
         {
-            self.builds
-                .entry(platform.to_owned())
-                .or_insert_with(|| build.to_owned());
+            let known = self.builds.entry(platform.to_owned()).or_default();
+            if known.is_empty() || known == NOT_RECORDED {
+                build.clone_into(known);
+            }
         }
         Ok(())
     }
@@ -284,7 +286,7 @@ fn build_of(library: &Path) -> Result<String, Error> {
     path.push(".build.txt");
     let path = PathBuf::from(path);
     if !path.exists() {
-        return Ok("not recorded".to_owned());
+        return Ok(NOT_RECORDED.to_owned());
     }
     let text = String::from_utf8_lossy(&read(&path)?).into_owned();
     Ok(text.split_whitespace().collect::<Vec<_>>().join(" "))
