@@ -1,11 +1,12 @@
 # wheelrail: `make demo` shows what it does, `make test` checks it. Both do all set-up in a fresh clone.
 #
 #   make fmu     target/WheelRailContact.fmu
+#   make fmu3    target/WheelRailContact-fmi3.fmu, the same library under FMI 3.0
 #   make platforms  win64 in the same archive, and aarch64 Linux: built where there is a compiler, run under wine and qemu
 #   make demo    the paper's cases, a braking manoeuvre and the patch: results/
 #   make couplings  the component in vehicle models, masters and sweeps: results/, one page each in docs/couplings/
 #   make test    formatting, lints, order of the modules, documentation, all Rust tests, `wheelrail verify`, all Python tests
-#   make description  modelDescription/modelDescription.xml, after a change of a variable
+#   make description  the XML files in modelDescription/, after a change of a variable
 #   make docs    the generated tables and pictures of README.md and of the documentation
 #   make site    the documentation as a site: target/site/index.html
 #   make bench   run times: a step, a cold start, saving; against the number of contact nodes and the targets
@@ -26,6 +27,7 @@ export OPENBLAS_NUM_THREADS := 1
 export MPLBACKEND := Agg
 
 FMU := target/WheelRailContact.fmu
+FMU3 := target/WheelRailContact-fmi3.fmu
 WHEELRAIL := target/release/wheelrail
 # Everything is compiled once, in one profile for one target, and linked by zig against the symbols of glibc 2.17 (2012):
 # the library that the FMU takes along, the command line, and the tests. tools/cargo.py says how.
@@ -43,7 +45,7 @@ install = $(PY) -m uv pip install --quiet --python $(PY) -r $(1) \
 COUPLINGS := longitudinal stiff multibody train sweep hunting
 WHEELSET := target/Wheelset.fmu
 
-.PHONY: fmu platforms demo test docs site bench clean lint rust-test verify python-test hosts library command couplings packages
+.PHONY: fmu fmu3 platforms demo test docs site bench clean lint rust-test verify python-test hosts library command couplings packages
 .PHONY: pytest couplings-set-up couplings-docs sweep-scaling description $(addprefix coupling-,$(COUPLINGS))
 
 # ---- set-up -------------------------------------------------------------------------------------------------------
@@ -90,22 +92,31 @@ fmu: library
 	$(call say,$(FMU))
 	@$(WHEELRAIL) pack --library "$$(cat target/library.path)" $$($(PY) tools/platforms.py --binaries fmi2) --output $(FMU)
 
+# From the same library.
+fmu3: library
+	$(call say,$(FMU3))
+	@$(WHEELRAIL) pack --fmi 3 --library "$$(cat target/library.path)" $$($(PY) tools/platforms.py --binaries fmi3) --output $(FMU3)
+
 # Skips with a reason what cannot be built or run here. Options by PLATFORMS, as in `make platforms PLATFORMS=--twice`.
 # What passes is packed, by `make fmu` as well as long as the sources stay as they are.
 platforms: library
 	$(call say,Other platforms)
 	@$(PY) tools/platforms.py $(PLATFORMS)
-	@$(MAKE) --no-print-directory fmu
+	@$(MAKE) --no-print-directory fmu fmu3
 
 # The description that is checked in; a test compares.
 description: command
 	$(WHEELRAIL) describe --xml > target/modelDescription.xml
 	mv target/modelDescription.xml modelDescription/modelDescription.xml
+	$(WHEELRAIL) describe --xml --fmi 3 > target/modelDescription.xml
+	mv target/modelDescription.xml modelDescription/fmi3/modelDescription.xml
+	$(WHEELRAIL) describe --terminals > target/terminalsAndIcons.xml
+	mv target/terminalsAndIcons.xml modelDescription/fmi3/terminalsAndIcons.xml
 
 # ---- what it does -------------------------------------------------------------------------------------------------
 
 demo:
-	+@$(BESIDE) fmu $(VENV)/ready
+	+@$(BESIDE) fmu fmu3 $(VENV)/ready
 	$(call say,The cases of the paper)
 	@$(PY) examples/paper_cases.py
 	$(call say,A braking manoeuvre)
@@ -145,7 +156,7 @@ sweep-scaling: couplings-set-up
 
 # First what the checks need, compiled and downloaded side by side; then the checks, each with its output in one piece.
 test:
-	+@$(BESIDE) verify fmu packages
+	+@$(BESIDE) verify fmu fmu3 packages
 	$(call say,Rust tests - Python tests - lints: each is printed as it ends)
 	+@$(BESIDE) --output-sync=target --keep-going rust-test pytest lint
 	$(call say,All checks passed)
@@ -172,7 +183,7 @@ verify: command
 	$(WHEELRAIL) verify | tee target/verification.part
 	@mv target/verification.part target/verification.txt
 
-python-test: fmu verify packages
+python-test: fmu fmu3 verify packages
 	@$(MAKE) --no-print-directory pytest
 
 # Alone it takes what is built for granted: rust-test, beside it, has locked the build folder.

@@ -1,57 +1,72 @@
 //! Shared libraries as `wheelrail pack` takes them: what platform each is of, and the functions of FMI that it exports.
 
+use crate::standard::Standard;
 use object::read::NameOrOrdinal;
 use object::read::macho::{FatArch, MachOFatFile32};
 use object::{Architecture, BinaryFormat, File, FileKind, Object, ObjectKind};
 use std::collections::BTreeSet;
 
-/// A platform that the standard has a name for.
+/// A platform that a version of FMI has a name for.
 #[derive(Debug, PartialEq)]
 pub struct Platform {
     /// The folder's name under binaries/.
     pub name: &'static str,
-    /// What a shared library's name ends with there.
-    pub extension: &'static str,
     format: BinaryFormat,
     /// A library for several processors has at least one of them.
     processors: &'static [Architecture],
 }
 
-/// Those of FMI 2.0.
-pub const PLATFORMS: [Platform; 5] = [
-    platform(
-        "darwin64",
-        "dylib",
-        BinaryFormat::MachO,
-        &[Architecture::X86_64, Architecture::Aarch64],
-    ),
-    platform("linux32", "so", BinaryFormat::Elf, &[Architecture::I386]),
-    platform("linux64", "so", BinaryFormat::Elf, &[Architecture::X86_64]),
-    platform("win32", "dll", BinaryFormat::Pe, &[Architecture::I386]),
-    platform("win64", "dll", BinaryFormat::Pe, &[Architecture::X86_64]),
-];
-
-const fn platform(
-    name: &'static str,
-    extension: &'static str,
-    format: BinaryFormat,
-    processors: &'static [Architecture],
-) -> Platform {
+const fn platform(name: &'static str, format: BinaryFormat, processors: &'static [Architecture]) -> Platform {
     Platform {
         name,
-        extension,
         format,
         processors,
     }
 }
 
+const DARWIN: &[Architecture] = &[Architecture::X86_64, Architecture::Aarch64];
+
+/// Those of FMI 2.0.
+const FMI2: &[Platform] = &[
+    platform("darwin64", BinaryFormat::MachO, DARWIN),
+    platform("linux32", BinaryFormat::Elf, &[Architecture::I386]),
+    platform("linux64", BinaryFormat::Elf, &[Architecture::X86_64]),
+    platform("win32", BinaryFormat::Pe, &[Architecture::I386]),
+    platform("win64", BinaryFormat::Pe, &[Architecture::X86_64]),
+];
+
+/// Those of FMI 3.0 that there are compilers for.
+const FMI3: &[Platform] = &[
+    platform("aarch64-darwin", BinaryFormat::MachO, &[Architecture::Aarch64]),
+    platform("aarch64-linux", BinaryFormat::Elf, &[Architecture::Aarch64]),
+    platform("aarch64-windows", BinaryFormat::Pe, &[Architecture::Aarch64]),
+    platform("x86-linux", BinaryFormat::Elf, &[Architecture::I386]),
+    platform("x86-windows", BinaryFormat::Pe, &[Architecture::I386]),
+    platform("x86_64-darwin", BinaryFormat::MachO, &[Architecture::X86_64]),
+    platform("x86_64-linux", BinaryFormat::Elf, &[Architecture::X86_64]),
+    platform("x86_64-windows", BinaryFormat::Pe, &[Architecture::X86_64]),
+];
+
 impl Platform {
     /// The platform of a name.
-    pub fn named(name: &str) -> Result<&'static Platform, String> {
-        PLATFORMS.iter().find(|platform| platform.name == name).ok_or_else(|| {
-            let names = PLATFORMS.map(|platform| platform.name).join(", ");
-            format!("FMI 2.0 has no platform {name}: it has {names}")
+    pub fn named(standard: Standard, name: &str) -> Result<&'static Platform, String> {
+        let (version, platforms) = match standard {
+            Standard::Fmi2 => ("2.0", FMI2),
+            Standard::Fmi3 => ("3.0", FMI3),
+        };
+        platforms.iter().find(|platform| platform.name == name).ok_or_else(|| {
+            let names: Vec<_> = platforms.iter().map(|platform| platform.name).collect();
+            format!("FMI {version} has no platform {name}: it has {}", names.join(", "))
         })
+    }
+
+    /// What a shared library's name ends with there.
+    pub fn extension(&self) -> &'static str {
+        match self.format {
+            BinaryFormat::MachO => "dylib",
+            BinaryFormat::Pe => "dll",
+            _ => "so",
+        }
     }
 }
 

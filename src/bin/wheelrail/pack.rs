@@ -1,13 +1,13 @@
-//! `wheelrail pack`: the archive WheelRailContact.fmu from `modelDescription/` and the shared library.
+//! `wheelrail pack`: the archive WheelRailContact.fmu, or that of FMI 3.0, from `modelDescription/` and the shared library.
 
 use crate::binary::{Binary, Platform};
+use crate::standard::Standard;
 use clap::Args;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Read, Write};
 use std::path::{Path, PathBuf};
-use wheelrail::fmi2::description::model_description;
-use wheelrail::fmi2::guid_of;
+use wheelrail::fmi3::terminals::terminals_and_icons;
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, DateTime, ZipArchive, ZipWriter};
 
@@ -20,15 +20,18 @@ pub struct Pack {
     /// The folder with modelDescription.xml, documentation/, licenses/ and model.png.
     #[arg(long, value_name = "FOLDER", default_value = "modelDescription")]
     description: PathBuf,
-    /// A library of another platform, as win64=wheelrail.dll or darwin64=libwheelrail.dylib.
+    /// The version of FMI.
+    #[arg(long, value_name = "VERSION", default_value = "2")]
+    fmi: Standard,
+    /// A library of another platform under its name in the standard, as win64=wheelrail.dll or aarch64-linux=libwheelrail.so.
     #[arg(long, value_name = "PLATFORM=FILE", value_parser = platform_and_file)]
-    binary: Vec<(&'static Platform, PathBuf)>,
+    binary: Vec<(String, PathBuf)>,
     /// Another WheelRailContact.fmu of the same sources: its platforms are merged in.
     #[arg(long, value_name = "FMU")]
     merge: Vec<PathBuf>,
-    /// Where the archive goes.
-    #[arg(short, long, value_name = "FMU", default_value = "target/WheelRailContact.fmu")]
-    output: PathBuf,
+    /// Where the archive goes; target/WheelRailContact.fmu, or -fmi3.fmu, if not told.
+    #[arg(short, long, value_name = "FMU")]
+    output: Option<PathBuf>,
 }
 
 /// Why there is no archive.
@@ -54,7 +57,7 @@ pub enum Error {
         source: zip::result::ZipError,
     },
     /// The checked-in description is not what the variable table says.
-    #[error("{path} is stale: run `wheelrail describe --xml > {path}` and build the library again")]
+    #[error("{path} is stale: run `make description` and build the library again")]
     StaleDescription {
         /// The description.
         path: PathBuf,
@@ -130,31 +133,24 @@ impl Pack {
     /// Runs the command.
     pub fn run(&self) -> Result<(), Error> {
         let entries = self.entries()?;
-        if let Some(folder) = self.output.parent() {
+        let path = self.output.clone().unwrap_or_else(|| self.fmi.default_output());
+        if let Some(folder) = path.parent() {
             fs::create_dir_all(folder).map_err(|source| file_error(folder, source))?;
         }
-        let output = File::create(&self.output).map_err(|source| file_error(&self.output, source))?;
-        write_archive(BufWriter::new(output), &entries).map_err(|source| archive_error(&self.output, source))?;
+        let output = File::create(&path).map_err(|source| file_error(&path, source))?;
+        write_archive(BufWriter::new(output), &entries).map_err(|source| archive_error(&path, source))?;
         let platforms: Vec<_> = entries
             .keys()
             .filter_map(|name| name.strip_prefix("binaries/"))
             .collect();
-        eprintln!(
-            "{}: {} files, {}",
-            self.output.display(),
-            entries.len(),
-            platforms.join(", ")
-        );
+        eprintln!("{}: {} files, {}", path.display(), entries.len(), platforms.join(", "));
         Ok(())
     }
 
     fn entries(&self) -> Result<Entries, Error> {
-        let description = self.description.join("modelDescription.xml");
-        let xml = read(&description)?;
-        let generated = model_description()?;
-        if xml != generated.as_bytes() {
-            return Err(Error::StaleDescription { path: description });
-        }
+        let folder = self.description.join(self.fmi.folder());
+        let generated = self.fmi.model_description()?;
+        let xml = fresh(&folder.join("modelDescription.xml"), &generated)?;
         let mut entries = Entries::new();
         add_folder(&mut entries, &self.description.join("documentation"), "documentation/")?;
         add_folder(
@@ -162,8 +158,19 @@ impl Pack {
             &self.description.join("licenses"),
             "documentation/licenses/",
         )?;
-        entries.insert("model.png".to_owned(), read(&self.description.join("model.png"))?);
-        let libraries = self.libraries(guid_of(&generated), &xml)?;
+        let picture = read(&self.description.join("model.png"))?;
+        match self.fmi {
+            Standard::Fmi2 => {
+                entries.insert("model.png".to_owned(), picture);
+            }
+            Standard::Fmi3 => {
+                const FILE: &str = "terminalsAndIcons.xml";
+                let terminals = fresh(&folder.join(FILE), &terminals_and_icons()?)?;
+                entries.insert(format!("terminalsAndIcons/{FILE}"), terminals);
+                entries.insert("terminalsAndIcons/icon.png".to_owned(), picture);
+            }
+        }
+        let libraries = self.libraries(self.fmi.token_of(&generated), &xml)?;
         entries.insert(BUILD.to_owned(), libraries.build_lines().into_bytes());
         entries.extend(libraries.entries);
         entries.insert("modelDescription.xml".to_owned(), xml);
@@ -171,12 +178,10 @@ impl Pack {
     }
 
     fn libraries(&self, guid: &str, xml: &[u8]) -> Result<Libraries, Error> {
-        let mut libraries = Libraries::default();
-        let own = Platform::named(&own_platform()).map_err(|reason| Error::UnknownPlatform {
-            path: self.library.clone(),
-            reason,
-        })?;
-        for (platform, path) in std::iter::once((own, &self.library)).chain(self.binary.iter().map(|(p, f)| (*p, f))) {
+        let mut libraries = Libraries::new(self.fmi);
+        let own = (self.fmi.own_platform(), self.library.clone());
+        for (platform, path) in std::iter::once(&own).chain(&self.binary) {
+            let platform = libraries.platform(platform, path)?;
             let library = read(path)?;
             if !library.windows(guid.len()).any(|window| window == guid.as_bytes()) {
                 return Err(Error::StaleLibrary {
@@ -195,8 +200,8 @@ impl Pack {
 }
 
 /// The libraries of an archive.
-#[derive(Default)]
 struct Libraries {
+    standard: Standard,
     entries: Entries,
     /// The functions that the first one exports, and every other has to.
     functions: BTreeSet<String>,
@@ -205,6 +210,21 @@ struct Libraries {
 }
 
 impl Libraries {
+    fn new(standard: Standard) -> Libraries {
+        Libraries {
+            standard,
+            entries: Entries::new(),
+            functions: BTreeSet::new(),
+            builds: BTreeMap::new(),
+        }
+    }
+
+    /// The platform of a name; `path` is where the name comes from.
+    fn platform(&self, name: &str, path: &Path) -> Result<&'static Platform, Error> {
+        let path = path.to_owned();
+        Platform::named(self.standard, name).map_err(|reason| Error::UnknownPlatform { path, reason })
+    }
+
     /// Adds a library after a look at what it is.
     fn add(&mut self, platform: &Platform, library: Vec<u8>, path: &Path) -> Result<(), Error> {
         let binary = Binary::read(&library).map_err(|source| Error::NoLibrary {
@@ -220,15 +240,14 @@ impl Libraries {
         }
         let functions = binary.functions();
         if self.functions.is_empty() {
-            // Any importer begins with this one.
-            self.functions = &functions | &BTreeSet::from(["fmi2Instantiate".to_owned()]);
+            self.functions = &functions | &BTreeSet::from([self.standard.first_function().to_owned()]);
         }
         let missing: Vec<_> = self.functions.difference(&functions).cloned().collect();
         if !missing.is_empty() {
             let path = path.to_owned();
             return Err(Error::MissingFunctions { path, missing });
         }
-        let name = format!("binaries/{}/wheelrail.{}", platform.name, platform.extension);
+        let name = format!("binaries/{}/wheelrail.{}", platform.name, platform.extension());
         match self.entries.get(&name) {
             Some(present) if *present != library => Err(Error::TwoLibraries {
                 name,
@@ -252,10 +271,7 @@ impl Libraries {
             let Some((folder, _)) = name.strip_prefix("binaries/").and_then(|rest| rest.split_once('/')) else {
                 continue;
             };
-            let platform = Platform::named(folder).map_err(|reason| Error::UnknownPlatform {
-                path: path.to_owned(),
-                reason,
-            })?;
+            let platform = self.platform(folder, path)?;
             self.add(platform, content, path)?;
         }
         for (platform, build) in String::from_utf8_lossy(&builds)
@@ -341,6 +357,16 @@ fn write_archive(output: impl Write + io::Seek, entries: &Entries) -> zip::resul
     Ok(())
 }
 
+/// A checked-in file, which must have the generated text.
+fn fresh(path: &Path, generated: &str) -> Result<Vec<u8>, Error> {
+    let text = read(path)?;
+    if text == generated.as_bytes() {
+        Ok(text)
+    } else {
+        Err(Error::StaleDescription { path: path.to_owned() })
+    }
+}
+
 fn read(path: &Path) -> Result<Vec<u8>, Error> {
     fs::read(path).map_err(|source| file_error(path, source))
 }
@@ -359,16 +385,6 @@ fn archive_error(path: &Path, source: zip::result::ZipError) -> Error {
     }
 }
 
-/// This platform's folder under binaries/.
-fn own_platform() -> String {
-    let system = match std::env::consts::OS {
-        "windows" => "win",
-        "macos" => "darwin",
-        _ => "linux",
-    };
-    format!("{system}{}", usize::BITS)
-}
-
 /// Where `cargo build --release --lib --no-default-features --features fmi` leaves the library.
 fn default_library() -> PathBuf {
     let name = format!(
@@ -379,9 +395,11 @@ fn default_library() -> PathBuf {
     Path::new("target/release").join(name)
 }
 
-fn platform_and_file(text: &str) -> Result<(&'static Platform, PathBuf), String> {
+fn platform_and_file(text: &str) -> Result<(String, PathBuf), String> {
     match text.split_once('=') {
-        Some((platform, file)) if !file.is_empty() => Ok((Platform::named(platform)?, PathBuf::from(file))),
+        Some((platform, file)) if !platform.is_empty() && !file.is_empty() => {
+            Ok((platform.to_owned(), PathBuf::from(file)))
+        }
         _ => Err("expected PLATFORM=FILE, for example win64=wheelrail.dll".to_owned()),
     }
 }
