@@ -3,6 +3,7 @@
 #   make fmu     target/WheelRailContact.fmu
 #   make fmu3    target/WheelRailContact-fmi3.fmu, the same library under FMI 3.0
 #   make platforms  win64 in the same archive, and aarch64 Linux: built where there is a compiler, run under wine and qemu
+#   make wheel   dist/wheelrail-*.whl: a Python package with the FMUs in it
 #   make demo    the paper's cases, a braking manoeuvre and the patch: results/
 #   make couplings  the component in vehicle models, masters and sweeps: results/, one page each in docs/couplings/
 #   make test    formatting, lints, order of the modules, documentation, all Rust tests, `wheelrail verify`, all Python tests
@@ -45,7 +46,7 @@ install = $(PY) -m uv pip install --quiet --python $(PY) -r $(1) \
 COUPLINGS := longitudinal stiff multibody train sweep hunting
 WHEELSET := target/Wheelset.fmu
 
-.PHONY: fmu fmu3 platforms demo test docs site bench clean lint rust-test verify python-test hosts library command couplings packages
+.PHONY: fmu fmu3 platforms wheel demo test docs site bench clean lint rust-test verify python-test hosts library command couplings packages
 .PHONY: pytest couplings-set-up couplings-docs sweep-scaling description $(addprefix coupling-,$(COUPLINGS))
 
 # ---- set-up -------------------------------------------------------------------------------------------------------
@@ -103,6 +104,12 @@ platforms: library
 	$(call say,Other platforms)
 	@$(PY) tools/platforms.py $(PLATFORMS)
 	@$(MAKE) --no-print-directory fmu fmu3
+
+# python/ and every FMU that is built; the version is that of Cargo.toml.
+wheel: fmu fmu3 $(VENV)/ready
+	$(call say,Python package)
+	@rm -rf dist
+	@$(PY) -m hatchling build -t wheel -d dist
 
 # The description that is checked in; a test compares.
 description: command
@@ -171,6 +178,7 @@ lint: $(VENV)/ready
 	RUSTDOCFLAGS='-D warnings' $(CARGO) doc --quiet --no-deps
 	$(VENV)/bin/ruff check .
 	$(VENV)/bin/ruff format --check .
+	$(VENV)/bin/mypy
 
 rust-test: $(VENV)/build
 	$(call say,Rust tests)
@@ -210,4 +218,4 @@ bench: $(VENV)/ready
 	@$(PY) tools/scaling_figure.py
 
 clean:
-	rm -rf target $(VENV) .venv-cofmupy results .pytest_cache .ruff_cache
+	rm -rf target dist $(VENV) .venv-cofmupy results .pytest_cache .ruff_cache .mypy_cache

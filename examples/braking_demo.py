@@ -10,11 +10,13 @@ wheel holds it on the gradient.
 
 from types import SimpleNamespace
 
-import matplotlib.pyplot as plt
 import numpy as np
-from helpers import BLACK, BLUE, GREEN, ORANGE, RED, REPOSITORY, WHEEL_RADIUS, read_scenario, save, simulate, write_csv
+from helpers import BLACK, REPOSITORY, WHEEL_RADIUS, save, write_csv
 from stiff import LOAD, NAMES, SPEEDS, WHEEL_INERTIA, Contact, iterating
+from wheelrail import read_table, simulate
+from wheelrail.plots import braking
 
+TITLE = "Braking from 20 m/s with a wheel slide, to a stop on a gradient"
 SCENARIO = REPOSITORY / "examples" / "braking.csv"
 STEP = 1e-3  # s
 COUPLED = 21.0  # s, at 2 m/s; after it the table lets the brake go
@@ -40,9 +42,8 @@ INPUTS = {"wheel_speed": "rad/s", "vehicle_speed": "m/s", "normal_load": "N"}
 
 def driven(contact, signals):
     """Follow the table up to where the vehicle takes over: a column for each input and output."""
-    result = simulate("braking", STEP, COUPLED, list(OUTPUTS), {}, signals, contact)
-    columns = {"time": result["time"]} | {name: result[name] for name in OUTPUTS}
-    return columns | {name: np.interp(result["time"], signals["time"], signals[name]) for name in INPUTS}
+    result = simulate(signals, step=STEP, stop_time=COUPLED, outputs=OUTPUTS, instance=contact, progress="braking")
+    return {name: result[name].to_numpy() for name in ("time", *INPUTS, *OUTPUTS)}
 
 
 def coupled(contact, before):
@@ -81,28 +82,9 @@ def place(result):
 
 def draw(result):
     """Draw the manoeuvre, and what it does to the contact."""
-    figure, panels = plt.subplots(6, 1, figsize=(8.4, 11.0), sharex=True, layout="constrained")
-    time, stood = result["time"], standing(result)
-    speeds, traction, creepage, temperature, friction, wear = panels
-
-    speeds.plot(time, result["vehicle_speed"], color=BLACK, label="vehicle")
-    speeds.plot(time, WHEEL_RADIUS * result["wheel_speed"], color=BLUE, label="wheel circumference")
-    speeds.set_ylabel("speed [m/s]")
-    speeds.legend(loc="upper right", ncols=2)
-
-    traction.plot(time, result["traction_force"] / 1e3, color=BLACK, linewidth=1.0)
-    traction.set_ylabel("traction force [kN]")
-    rolling = time < stood
-    creepage.plot(time[rolling], -100 * result["slip_creepage"][rolling], color=GREEN)
-    creepage.set(yscale="log", ylabel="creepage, negative [%]", ylim=(0.01, 150))
-    temperature.plot(time, result["peak_temperature"] - 273.15, color=RED)
-    temperature.set(ylabel="peak temperature [°C]", ylim=(0, None))
-    friction.plot(time, result["friction_coefficient"], color=BLUE, label="friction coefficient")
-    friction.plot(time, -result["traction_coefficient"], color=ORANGE, linewidth=1.0, label="braking force / load")
-    friction.set(ylabel="coefficient [1]", ylim=(-0.05, 0.5))
-    friction.legend(loc="center right")
-    wear.plot(time, result["worn_volume"] * 1e9, color=BLACK)
-    wear.set(ylabel="worn volume [mm³]", xlabel="time [s]", xlim=(time[0], time[-1]), ylim=(0, None))
+    figure = braking(result, wheel_radius=WHEEL_RADIUS, title=TITLE)
+    panels = figure.axes
+    speeds, traction, time, stood = *panels[:2], result["time"], standing(result)
 
     # The swing of the vehicle on the contact's spring, some tenths of a second.
     near = traction.inset_axes([0.815, 0.14, 0.17, 0.42])
@@ -118,14 +100,12 @@ def draw(result):
         axes.axvspan(stood, END, color="#eef5ee", zorder=0)
     speeds.annotate("wheel slide", (0.5 * (start + end), 18), ha="center", color="#666666")
     speeds.annotate(f"held on {GRADIENT:.1%}", (0.5 * (stood + END), 5), ha="center", color="#557755")
-    figure.align_ylabels(panels)
-    speeds.set_title("Braking from 20 m/s with a wheel slide, to a stop on a gradient")
     save(figure, "braking.png")
 
 
 def main():
     """Simulate, draw, write, report."""
-    signals = read_scenario(SCENARIO)
+    signals = read_table(SCENARIO)
     contact = Contact(signals["vehicle_speed"][0], signals["normal_load"][0])
     first = driven(contact, signals)
     then = coupled(contact, first)

@@ -12,19 +12,17 @@ import csv
 
 import matplotlib.pyplot as plt
 import numpy as np
-from helpers import BLACK, BLUE, ORANGE, RED, RESULTS, WHEEL_RADIUS, profile, profile_names, save, simulate, write_csv
+from helpers import BLACK, BLUE, FMU, ORANGE, RED, RESULTS, WHEEL_RADIUS, profile, save, write_csv
+from wheelrail import simulate
 
 SPEED, CREEPAGE, AMBIENT = 10.0, 0.04, 273.15
-CONSTANT, PIECEWISE_LINEAR = 1, 2
-PENETRATION = 2
-RIGID = 1
 
 # Label, colour, friction law, temperature at which the friction has fallen to its hot value [°C].
 CASES = {
-    "constant": ("constant $\\mu$", BLACK, CONSTANT, 150.0),
-    "a": ("a: $\\theta_F$ = 150 °C", BLUE, PIECEWISE_LINEAR, 150.0),
-    "b": ("b: $\\theta_F$ = 125 °C", ORANGE, PIECEWISE_LINEAR, 125.0),
-    "c": ("c: $\\theta_F$ = 100 °C", RED, PIECEWISE_LINEAR, 100.0),
+    "constant": ("constant $\\mu$", BLACK, "constant", 150.0),
+    "a": ("a: $\\theta_F$ = 150 °C", BLUE, "piecewise_linear", 150.0),
+    "b": ("b: $\\theta_F$ = 125 °C", ORANGE, "piecewise_linear", 125.0),
+    "c": ("c: $\\theta_F$ = 100 °C", RED, "piecewise_linear", 100.0),
 }
 OUTPUTS = ["traction_force", "traction_coefficient", "peak_temperature", "peak_pressure", "friction_coefficient"]
 ACROSS = ["x", "pressure", "shear", "slip", "temperature", "wear_depth"]
@@ -34,22 +32,24 @@ STOP, STEP = 2.0, 0.01
 def roll(case):
     """One case until it is steady."""
     _, _, law, hot = CASES[case]
-    names = [name for quantity in ACROSS for name in profile_names(f"profile.{quantity}", 61)]
-    names += profile_names("depth.z", 41) + profile_names("depth.temperature", 41)
-    start_values = {
-        "wheel": RIGID,
-        "slip_regularisation": 1e-3,
-        "control": PENETRATION,
-        "prescribed_penetration": 1e-4,
-        "friction_law": law,
-        "friction_temperature_cold": 323.15,
-        "friction_temperature_hot": hot + 273.15,
-        "wheel_speed": SPEED * (1.0 + CREEPAGE) / WHEEL_RADIUS,
-        "creepage": CREEPAGE,
-        "ambient_temperature": AMBIENT,
-        "incoming_temperature": AMBIENT,
-    }
-    result = simulate(f"case {case}", STEP, STOP, OUTPUTS + names, start_values)
+    result = simulate(
+        fmu=FMU,
+        step=STEP,
+        stop_time=STOP,
+        outputs=[*OUTPUTS, *(f"profile.{quantity}" for quantity in ACROSS), "depth.z", "depth.temperature"],
+        progress=f"case {case}",
+        wheel="rigid",
+        slip_regularisation=1e-3,
+        control="penetration",
+        prescribed_penetration=1e-4,
+        friction_law=law,
+        friction_temperature_cold=323.15,
+        friction_temperature_hot=hot + 273.15,
+        wheel_speed=SPEED * (1.0 + CREEPAGE) / WHEEL_RADIUS,
+        creepage=CREEPAGE,
+        ambient_temperature=AMBIENT,
+        incoming_temperature=AMBIENT,
+    )
     late = np.ptp(result["peak_temperature"][-20:])
     if late > 1e-6:
         raise RuntimeError(f"case {case} is not steady: the peak still moves by {late:g} K over the last 20 steps")
@@ -148,7 +148,7 @@ def write_tables(results):
 
 def write_summary(results):
     """One row of figures per case."""
-    constant = results["constant"]["peak_temperature"][-1]
+    constant = results["constant"]["peak_temperature"].iloc[-1]
     RESULTS.mkdir(exist_ok=True)
     path = RESULTS / "paper_cases.csv"
     with path.open("w", newline="") as file:
@@ -156,7 +156,7 @@ def write_summary(results):
         units = dict(zip(OUTPUTS, ["N", "1", "K", "Pa", "1"], strict=True))
         writer.writerow(["case", "lower [K]", *(f"{name} [{unit}]" for name, unit in units.items())])
         for case, result in results.items():
-            last = result[-1]
+            last = result.iloc[-1]
             lower = constant - last["peak_temperature"]
             writer.writerow([case, *(repr(float(value)) for value in (lower, *(last[name] for name in OUTPUTS)))])
     print(f"  wrote results/{path.name}")
@@ -169,10 +169,10 @@ def main():
     draw_contact(results)
     write_tables(results)
     write_summary(results)
-    peaks = {case: celsius(result["peak_temperature"][-1]) for case, result in results.items()}
+    peaks = {case: celsius(result["peak_temperature"].iloc[-1]) for case, result in results.items()}
     print("  case       peak temperature   lower than constant   mean friction   peak pressure   traction")
     for case, result in results.items():
-        last = result[-1]
+        last = result.iloc[-1]
         print(
             f"  {case:9s} {peaks[case]:13.2f} °C {peaks['constant'] - peaks[case]:17.2f} K"
             f" {last['friction_coefficient']:17.4f} {last['peak_pressure'] / 1e6:11.1f} MPa"

@@ -13,17 +13,18 @@ import sys
 import matplotlib.pyplot as plt
 import numpy as np
 from helpers import BLACK, BLUE, GREEN, RED, RESULTS, save
+from wheelrail.plots import CreepCurve, creep_panels
 
 TABLE = RESULTS / "patch_creep_curves.csv"
 ACCURACY = RESULTS / "patch_accuracy.csv"
 FORCES = ("Fx", "Fy", "Mz")
-# Creepage, force, and what they are called.
-PANELS = {
-    ("longitudinal", "Fx"): (r"longitudinal creepage $\xi$ [%]", r"$F_x/(\mu N)$"),
-    ("lateral", "Fy"): (r"lateral creepage $\eta$ [%]", r"$F_y/(\mu N)$"),
-    ("lateral", "Mz"): (r"lateral creepage $\eta$ [%]", r"$M_z/(\mu N c)$"),
-    ("spin", "Fy"): (r"spin creepage $\varphi c$ [%]", r"$F_y/(\mu N)$"),
-    ("spin", "Mz"): (r"spin creepage $\varphi c$ [%]", r"$M_z/(\mu N c)$"),
+LABELS = {
+    "longitudinal": r"longitudinal creepage $\xi$ [%]",
+    "lateral": r"lateral creepage $\eta$ [%]",
+    "spin": r"spin creepage $\varphi c$ [%]",
+    "Fx": r"$F_x/(\mu N)$",
+    "Fy": r"$F_y/(\mu N)$",
+    "Mz": r"$M_z/(\mu N c)$",
 }
 COLOURS = {"0.5": BLUE, "1.0": RED, "2.0": GREEN}
 STYLES = {
@@ -58,22 +59,21 @@ def read(path):
 
 def draw(curves, milliseconds):
     """Draw the five creep curves of the three ellipses."""
-    figure, panels = plt.subplots(2, 3, figsize=(9.6, 6.0), layout="constrained")
-    for axes, ((driven, force), (creepage, share)) in zip(panels.flat, PANELS.items(), strict=False):
-        axes.axhline(0.0, color=BLACK, linewidth=0.6)
-        for (ratio, over, by), columns in curves.items():
-            if over == driven and by in STYLES:
-                percent = [100.0 * value for value in columns["creepage"]]
-                axes.plot(percent, columns[force], color=COLOURS[ratio], **STYLES[by])
-        axes.set(xlabel=creepage, title=share, xlim=(0.0, 0.6))
-    explain(panels.flat[5], {by for _, _, by in curves}, milliseconds)
+    drawn = [
+        CreepCurve(driven, 100.0 * np.array(columns["creepage"]), columns, {"color": COLOURS[ratio]} | STYLES[by])
+        for (ratio, driven, by), columns in curves.items()
+        if by in STYLES and driven in LABELS
+    ]
+    figure = creep_panels(drawn, LABELS)
+    for axes in figure.axes[:5]:
+        axes.set_xlim(0.0, 0.6)
+    explain(figure.axes[5], {by for _, _, by in curves}, milliseconds)
     figure.suptitle("Creep curves of an elliptic contact, 80 kN, friction coefficient 0.3", x=0.01, ha="left")
     save(figure, "patch_creep_curves.png")
 
 
 def explain(axes, programs, milliseconds):
     """Use the panel that is left for colours, lines and times."""
-    axes.axis("off")
     handles = [plt.Line2D([], [], color=colour, label=f"$a/b$ = {ratio}") for ratio, colour in COLOURS.items()]
     handles += [
         plt.Line2D([], [], color=BLACK, label=NAMES[by], **style) for by, style in STYLES.items() if by in programs

@@ -9,13 +9,11 @@ wear. Hertz's ellipse beside the cells is the closed form of Johnson, Contact Me
 import csv
 import subprocess
 import sys
-from types import SimpleNamespace
 
-import matplotlib.pyplot as plt
 import numpy as np
-from helpers import BLACK, REPOSITORY, RESULTS, WHEEL_RADIUS, save
-from matplotlib.colors import ListedColormap
-from matplotlib.patches import Ellipse
+from helpers import REPOSITORY, RESULTS, WHEEL_RADIUS, save
+from wheelrail import read_table
+from wheelrail.plots import patch_fields
 
 WHEELRAIL = REPOSITORY / "target" / "release" / "wheelrail"
 SCENARIO, OUTPUTS, FIELDS = (RESULTS / f"patch_{name}.csv" for name in ("scenario", "outputs", "fields"))
@@ -26,11 +24,10 @@ PARAMETERS = {"contact_model": 2, "patch_nodes": 68, "patch_strips": 43}
 STOP, STEP = 0.1, 2e-3
 # Of the default parameters.
 RAIL_CURVATURE, SHEAR_MODULUS, LAME_LAMBDA = 1.0 / 0.3, 8.2e10, 1.166e11
-STICK, SLIP = "#dcebf5", "#f6e3d3"
 
 
 def simulate():
-    """Roll, and return the fields as a grid of strips by cells, and the last outputs."""
+    """Roll, and return the fields at the end, a row for each cell, and the last outputs."""
     if not WHEELRAIL.exists():
         sys.exit(f"{WHEELRAIL} is not there: run `make fmu` first")
     RESULTS.mkdir(exist_ok=True)
@@ -44,12 +41,7 @@ def simulate():
     done = subprocess.run(command, capture_output=True, text=True)
     if done.returncode != 0:
         sys.exit(done.stderr)
-    table = np.genfromtxt(FIELDS, delimiter=",", skip_header=1)
-    with FIELDS.open() as file:
-        names = [heading.partition(" ")[0] for heading in next(csv.reader(file))]
-    shape = (PARAMETERS["patch_strips"], PARAMETERS["patch_nodes"])
-    fields = SimpleNamespace(**{name: column.reshape(shape) for name, column in zip(names, table.T, strict=True)})
-    return fields, np.genfromtxt(OUTPUTS, delimiter=",", names=True)[-1]
+    return read_table(FIELDS), read_table(OUTPUTS).iloc[-1]
 
 
 def complete_integrals(k):
@@ -84,70 +76,16 @@ def hertz():
     return semi_axis, ratio * semi_axis
 
 
-def plan(axes, fields, values, title, unit, colours, axis_pair):
-    """One field over the cells, with the ellipse."""
-    mesh = axes.pcolormesh(1e3 * fields.x, 1e3 * fields.y, values, cmap=colours, shading="nearest", vmin=0.0)
-    bar = axes.figure.colorbar(mesh, ax=axes, shrink=0.85, pad=0.02)
-    bar.outline.set_visible(False)
-    bar.set_label(unit)
-    frame(axes, title, axis_pair)
-    return mesh
-
-
-def frame(axes, title, axis_pair):
-    """What all plan views share."""
-    along, across = (1e3 * axis for axis in axis_pair)
-    axes.add_patch(Ellipse((0, 0), 2 * along, 2 * across, fill=False, edgecolor=BLACK, linewidth=0.9, linestyle="--"))
-    axes.set(title=title, xlim=(-1.12 * along, 1.12 * along), ylim=(-1.2 * across, 1.2 * across), aspect="equal")
-    axes.grid(False)
-
-
 def draw(fields, outputs):
-    """Pressure, shear over stick and slip, slip, temperature."""
+    """Pressure, shear over stick and slip, slip, temperature, beside Hertz's ellipse."""
     axis_pair = hertz()
-    contact = fields.pressure > 0.0
-
-    def inside(values):
-        return np.where(contact, values, np.nan)
-
-    figure, ((pressure, shear), (slip, temperature)) = plt.subplots(2, 2, figsize=(9.6, 7.0), layout="constrained")
-    plan(pressure, fields, inside(fields.pressure) / 1e6, "Pressure, and Hertz's ellipse", "MPa", "Blues", axis_pair)
-
-    sliding = np.where(fields.saturation > 1.0 - 1e-6, 1.0, 0.0)
-    shear.pcolormesh(
-        1e3 * fields.x, 1e3 * fields.y, inside(sliding), cmap=ListedColormap([STICK, SLIP]), shading="nearest"
-    )
-    every = np.zeros_like(contact)
-    every[1::3, 1::3] = True
-    shown = contact & every
-    arrows = shear.quiver(
-        1e3 * fields.x[shown],
-        1e3 * fields.y[shown],
-        -fields.shear_x[shown] / 1e6,
-        -fields.shear_y[shown] / 1e6,
-        scale=4200,
-        width=0.0028,
-        pivot="mid",
-    )
-    shear.quiverkey(arrows, 0.9, 0.05, 200, "200 MPa", labelpos="N", labelsep=0.05)
-    frame(shear, "Shear on the wheel; stick blue, slip orange", axis_pair)
-
-    speed = np.hypot(fields.slip_x, fields.slip_y)
-    plan(slip, fields, inside(np.where(sliding > 0, speed, 0.0)) * 1e3, "Slip", "mm/s", "Oranges", axis_pair)
-    rise = plan(temperature, fields, fields.temperature - 273.15, "Surface temperature", "°C", "YlOrRd", axis_pair)
-    rise.set_clim(fields.temperature.min() - 273.15, None)
-    for axes in (slip, temperature):
-        axes.set_xlabel("along the rail, x [mm]; travel to the right")
-    for axes in (pressure, slip):
-        axes.set_ylabel("to the left, y [mm]")
     title = (
         f"{LOAD / 1e3:.0f} kN, {SPEED:.0f} m/s, creepages $\\xi$ = {100 * CREEPAGES['creepage']:g} %,"
         f" $\\eta$ = {100 * CREEPAGES['lateral_creepage']:g} %, spin $\\varphi$ = {CREEPAGES['spin_creepage']:g} /m:"
         f" $F_x$ = {outputs['traction_force'] / 1e3:.1f} kN, $F_y$ = {outputs['lateral_force'] / 1e3:.1f} kN,"
         f" $M_z$ = {outputs['spin_moment']:.1f} N·m"
     )
-    figure.suptitle(title.replace("-", "−"), x=0.01, ha="left", fontsize=10)
-    save(figure, "patch_fields.png")
+    save(patch_fields(fields, ellipse=axis_pair, title=title.replace("-", "−")), "patch_fields.png")
     return axis_pair
 
 

@@ -63,15 +63,7 @@ def curve(component, digest, law, speed, load, creepages):
     columns = {name: [] for name in OUTPUTS}
     for creepage in creepages:
         instance.set(creepage=creepage, normal_load=load, wheel_speed=speed * (1.0 + creepage) / WHEEL_RADIUS)
-        before = np.zeros(len(OUTPUTS))
-        for _ in range(50):
-            instance.step(STEP)
-            now = np.array(instance.get(*OUTPUTS))
-            if np.allclose(now, before, rtol=STEADY, atol=0.0):
-                break
-            before = now
-        else:
-            raise RuntimeError(f"{law}, {speed} m/s, {load} N, creepage {creepage}: not steady after {50 * STEP} s")
+        now = instance.steady(tuple(OUTPUTS), STEP, STEADY)
         for name, value in zip(OUTPUTS, now, strict=True):
             columns[name].append(value)
     return columns
@@ -240,6 +232,9 @@ def main():
     with Client(chosen.scheduler) if chosen.scheduler else local_client(chosen.workers) as client:
         if chosen.scheduler:
             # Workers on this machine find it where this process does.
+            with tempfile.TemporaryDirectory() as folder:
+                package = shutil.make_archive(f"{folder}/package", "zip", REPOSITORY / "python", "wheelrail")
+                client.upload_file(package)
             client.upload_file(str(Path(__file__).with_name("helpers.py")))
         sweep(client, WORK)
     table = gather(WORK)

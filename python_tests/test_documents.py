@@ -39,8 +39,8 @@ def examples(fmu, wheelrail, tmp_path_factory):
     for source in (REPOSITORY / "examples").iterdir():
         if source.is_file():
             (folder / "examples" / source.name).write_bytes(source.read_bytes())
-    for built in ("WheelRailContact.fmu", "release/wheelrail"):
-        (folder / "target" / built).symlink_to(REPOSITORY / "target" / built)
+    for linked in ("target/WheelRailContact.fmu", "target/release/wheelrail", "python"):
+        (folder / linked).symlink_to(REPOSITORY / linked)
     printed = {}
     for script in EXAMPLES:
         command = [sys.executable, folder / "examples" / script]

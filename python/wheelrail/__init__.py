@@ -1,0 +1,38 @@
+"""Rolling contact of a wheel on a rail, with heat and wear: the FMU of wheelrail, driven from Python.
+
+- `fmu_path`: where the FMU is, for any other importer.
+- `simulate`: a table of inputs in, a table of outputs out, with units; parameters by name.
+- `creep_curves`: steady forces over longitudinal, lateral and spin creepage.
+- `Instance`: the component step by step, for a master written by hand.
+- `variables`: what there is to set and to read.
+- `wheelrail.plots`: pictures of a braking manoeuvre, of the patch in plan view, of creep curves.
+
+All quantities are in SI units, angles in radians, temperatures absolute.
+"""
+
+from importlib import metadata
+
+from .archive import example, fmu_path
+from .creep import creep_curves
+from .instance import Instance, SimulationError
+from .simulation import simulate
+from .tables import read_table
+from .variables import variables
+
+__all__ = [
+    "Instance",
+    "SimulationError",
+    "creep_curves",
+    "example",
+    "fmu_path",
+    "read_table",
+    "simulate",
+    "variables",
+]
+
+
+def __getattr__(name: str) -> str:
+    """Version of the installed package."""
+    if name == "__version__":
+        return metadata.version("wheelrail")
+    raise AttributeError(f"module 'wheelrail' has no attribute {name!r}")

@@ -1,0 +1,181 @@
+"""The component's variables: what may be set and read, and how a name or a choice becomes a number."""
+
+import difflib
+import math
+import numbers
+import re
+from collections.abc import Iterable, Mapping
+from functools import cache
+from os import fspath
+from typing import Any
+
+import pandas as pd
+from fmpy.model_description import ModelDescription, ModelVariable
+
+from .archive import AnyPath, description, fmu_path
+
+
+def variables(fmu: AnyPath | None = None) -> pd.DataFrame:
+    """Inputs, outputs and parameters of the component.
+
+    Parameters
+    ----------
+    fmu
+        Another FMU than the package's own.
+
+    Returns
+    -------
+    pandas.DataFrame
+        A row for each variable, by name: kind, unit, start, min, max, choices, description.
+    """
+    model = description(fmu or fmu_path())
+    rows = [
+        {
+            "name": variable.name,
+            "kind": variable.causality,
+            "unit": unit(variable),
+            "start": variable.start,
+            "min": variable.min,
+            "max": variable.max,
+            "choices": ", ".join(choices(variable)),
+            "description": variable.description,
+        }
+        for variable in model.modelVariables
+        if variable.causality in ("input", "output", "parameter", "structuralParameter")
+    ]
+    return pd.DataFrame(rows).set_index("name")
+
+
+@cache
+def by_name(fmu: str) -> dict[str, ModelVariable]:
+    """Variables of an FMU by name."""
+    return {variable.name: variable for variable in description(fmu).modelVariables}
+
+
+def unit(variable: ModelVariable) -> str:
+    """Unit of a variable, an empty text where it has none."""
+    declared = variable.declaredType.unit if variable.declaredType is not None else None
+    return variable.unit or declared or ""
+
+
+def choices(variable: ModelVariable) -> dict[str, int]:
+    """Names and numbers of what a variable chooses from; empty where it is a quantity.
+
+    FMI 3.0 has them as items of an enumeration, FMI 2.0 in the description: "…: 1 constant, 2 piecewise_linear, …".
+    """
+    if variable.type == "Enumeration" and variable.declaredType is not None:
+        return {item.name: int(item.value) for item in variable.declaredType.items}
+    if variable.type != "Integer" or variable.causality != "parameter":
+        return {}
+    low, high = int(variable.min), int(variable.max)
+    # A description may go on with other numbers, in parentheses for example.
+    found = {
+        name: int(number)
+        for number, name in re.findall(r"(?:: |, )(\d+) (\w+)", variable.description)
+        if low <= int(number) <= high
+    }
+    return found if len(found) == high - low + 1 else {}
+
+
+def near(name: str, names: Iterable[str]) -> str:
+    """A hint at what may have been meant."""
+    close = difflib.get_close_matches(name, list(names), n=3, cutoff=0.6)
+    return f"; did you mean {' or '.join(close)}?" if close else ""
+
+
+def settable(fmu: AnyPath, name: str, causalities: tuple[str, ...]) -> ModelVariable:
+    """The variable of a name that may be set.
+
+    Raises
+    ------
+    ValueError
+        There is no such variable, or it is not of that kind.
+    """
+    known = by_name(fspath(fmu))
+    if name not in known:
+        candidates = [other for other, variable in known.items() if variable.causality in causalities]
+        raise ValueError(f"there is no variable {name}{near(name, candidates)}")
+    variable = known[name]
+    if variable.causality not in causalities:
+        raise ValueError(f"{name} is of kind {variable.causality}: it cannot be set as {' or '.join(causalities)}")
+    return variable
+
+
+def number(variable: ModelVariable, value: Any) -> float | int:
+    """A value as the component takes it: a choice by its name or number, a quantity within its range.
+
+    Raises
+    ------
+    ValueError
+        It is no number, not finite, out of range, or no such choice.
+    """
+    name, named = variable.name, choices(variable)
+    if isinstance(value, str) and value in named:
+        return named[value]
+    if isinstance(value, str) or not isinstance(value, numbers.Real) or not math.isfinite(value):
+        expected = f"choose one of {', '.join(named)}" if named else "a finite number is needed"
+        hint = near(value, named) if isinstance(value, str) else ""
+        raise ValueError(f"{name} = {value!r}: {expected}{hint}")
+    real, plain = variable.type in ("Real", "Float64"), float(value)
+    if not real and not plain.is_integer():
+        raise ValueError(f"{name} = {value!r}: a whole number is needed")
+    low, high = bounds(variable)
+    if not low <= plain <= high:
+        expected = f"choose one of {', '.join(named)}" if named else f"allowed is {low:g} to {high:g} {unit(variable)}"
+        raise ValueError(f"{name} = {value!r}: {expected.rstrip()}")
+    return plain if real else int(plain)
+
+
+def bounds(variable: ModelVariable) -> tuple[float, float]:
+    """Smallest and largest value."""
+    named = choices(variable)
+    if named:
+        return min(named.values()), max(named.values())
+    return float(variable.min or -math.inf), float(variable.max or math.inf)
+
+
+def start_values(fmu: AnyPath, given: Mapping[str, Any]) -> dict[str, Any]:
+    """Parameters and constant inputs as the component takes them.
+
+    The points of a table may be given in one: `{"friction_table.temperature": [300.0, 400.0]}`.
+    """
+    values: dict[str, Any] = {}
+    known = by_name(fspath(fmu))
+    kinds = ("parameter", "structuralParameter", "input")
+    for name, value in given.items():
+        if isinstance(value, (str, numbers.Real)):
+            variable = settable(fmu, name, kinds)
+            values[name] = number(variable, value)
+        elif name in known:
+            variable = settable(fmu, name, kinds)
+            if not variable.dimensions:
+                raise ValueError(f"{name} is a single value, not {value!r}")
+            values[name] = [number(variable, element) for element in value]
+        else:
+            for index, element in enumerate(value, 1):
+                values[f"{name}[{index}]"] = number(settable(fmu, f"{name}[{index}]", kinds), element)
+    return values
+
+
+def outputs_named(fmu: AnyPath, names: Iterable[str] | None) -> list[str]:
+    """Names of outputs: all of them by default; a profile's name stands for all of its points."""
+    known = by_name(fspath(fmu))
+    if names is None:
+        return [name for name, variable in known.items() if variable.causality == "output" and not variable.dimensions]
+    points: dict[str, list[str]] = {}
+    for name in known:
+        points.setdefault(name.partition("[")[0], []).append(name)
+    chosen: list[str] = []
+    for name in names:
+        if name in known:
+            chosen.append(name)
+        elif name in points:
+            chosen += points[name]
+        else:
+            raise ValueError(f"there is no variable {name}{near(name, points)}")
+    return chosen
+
+
+def units(model: ModelDescription) -> dict[str, str]:
+    """Unit of each variable of a model by name."""
+    return {variable.name: unit(variable) for variable in model.modelVariables}
