@@ -122,22 +122,6 @@ def test_figures_of_the_verification():
             assert abs(float(computed) - float(row["computed"])) <= 1e-3 * scale, f"{quantity}; {STALE}"
 
 
-def test_readme_example_runs():
-    """README's lines of Python run as they stand, and print the last row."""
-    program = re.search(r"```python\n(.*?)```", update_docs.README.read_text(), re.DOTALL)[1]
-    assert len(program.strip().splitlines()) <= 10
-    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, cwd=REPOSITORY)
-    assert done.returncode == 0, done.stderr
-    time, traction, temperature, friction, worn = map(
-        float, re.findall(r"[-+\d.e]+", done.stdout.splitlines()[-1].replace("np.float64", ""))
-    )
-    assert time == 1.0
-    assert 10e3 < traction < 80e3
-    assert temperature > 300.0
-    assert 0.2 <= friction <= 0.45
-    assert worn > 0.0
-
-
 def test_links_of_readme():
     """Every file that README links to is in the repository."""
     targets = re.findall(r"\]\((?!http)([^)#]+)\)", update_docs.README.read_text())

@@ -10,7 +10,8 @@
 All quantities are in SI units, angles in radians, temperatures absolute.
 """
 
-from importlib import metadata
+from importlib import import_module, metadata
+from typing import TYPE_CHECKING, Any
 
 from .archive import example, fmu_path
 from .creep import creep_curves
@@ -19,20 +20,26 @@ from .simulation import simulate
 from .tables import read_table
 from .variables import variables
 
+if TYPE_CHECKING:
+    from . import plots
+
 __all__ = [
     "Instance",
     "SimulationError",
     "creep_curves",
     "example",
     "fmu_path",
+    "plots",
     "read_table",
     "simulate",
     "variables",
 ]
 
 
-def __getattr__(name: str) -> str:
-    """Version of the installed package."""
+def __getattr__(name: str) -> Any:
+    """The pictures, with matplotlib where they are asked for only; the version of the installed package."""
+    if name == "plots":
+        return import_module(".plots", __name__)
     if name == "__version__":
         return metadata.version("wheelrail")
     raise AttributeError(f"module 'wheelrail' has no attribute {name!r}")

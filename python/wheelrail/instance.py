@@ -2,7 +2,7 @@
 
 import itertools
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from ctypes import byref
 from os import fspath
 from pathlib import Path
@@ -13,6 +13,7 @@ import numpy as np
 from fmpy.fmi1 import FMICallException, printLogMessage
 from fmpy.fmi2 import FMU2Slave, fmi2CallbackFunctions, fmi2CallbackLoggerTYPE
 from fmpy.fmi3 import FMU3Slave
+from fmpy.model_description import ModelVariable
 
 from .archive import AnyPath, description, fmu_path, unpacked
 from .variables import by_name, near, number
@@ -101,16 +102,18 @@ def reported(messages: list[str]) -> Iterator[None]:
 
 
 class Instance:
-    """The component step by step, or another co-simulation FMU of version 2.0: what a master written by hand needs.
+    """The component step by step, or another co-simulation FMU: what a master written by hand needs.
 
     FMPy's class below it speaks in value references and may be used beside it: `instance.slave`.
 
     Parameters
     ----------
     fmu
-        Path of the FMU; by default the package's own.
+        Path of the FMU, of FMI 2.0 or 3.0; by default the package's own.
     name
         Name of the instance, in messages.
+    start_time
+        Time at which it starts [s].
     **start_values
         Parameters and inputs by name; choices by name or number.
 
@@ -123,19 +126,20 @@ class Instance:
     >>> contact.close()
     """
 
-    def __init__(self, fmu: AnyPath | None = None, name: str = "instance", **start_values: Any) -> None:
+    def __init__(
+        self, fmu: AnyPath | None = None, name: str = "instance", start_time: float = 0.0, **start_values: Any
+    ) -> None:
         """Unpack, instantiate, set parameters and inputs, and initialise."""
         self.fmu = fspath(fmu or fmu_path())
         self.slave, self.messages = connect(self.fmu, name)
-        if not isinstance(self.slave, FMU2Slave):
-            raise ValueError(f"{self.fmu}: an FMU of version 2.0 is needed")
         self.variables = by_name(self.fmu)
-        self.reference = {name: variable.valueReference for name, variable in self.variables.items()}
-        self.slave.setupExperiment(startTime=0.0)
-        self.time = 0.0
+        self.time = start_time
+        third = isinstance(self.slave, FMU3Slave)
+        if not third:
+            self.slave.setupExperiment(startTime=start_time)
         self.set(**start_values)
         with reported(self.messages):
-            self.slave.enterInitializationMode()
+            self.slave.enterInitializationMode(**({"startTime": start_time} if third else {}))
 
     def start(self) -> Self:
         """Leave the initialisation: from here on, step."""
@@ -144,25 +148,44 @@ class Instance:
         return self
 
     def set(self, **values: Any) -> None:
-        """Set variables, Integer or Real; choices by name or number."""
+        """Set variables; choices by name or number, arrays of FMI 3.0 as a sequence."""
         with reported(self.messages):
             for name, value in values.items():
-                reference = self._references((name,))
-                if self.variables[name].type == "Integer":
-                    whole = number(self.variables[name], value) if isinstance(value, str) else value
-                    self.slave.setInteger(reference, [whole])
-                else:
-                    self.slave.setReal(reference, [value])
+                variable = self._variable(name)
+                plain: Any = number(variable, value) if isinstance(value, str) else value
+                kind = "Int64" if variable.type == "Enumeration" else variable.type
+                set_values = getattr(self.slave, f"set{kind}")
+                set_values([variable.valueReference], list(plain) if variable.dimensions else [plain])
 
     def get(self, *names: str) -> list[float]:
-        """Return the values of Real variables."""
+        """Return the values of real variables, those of an array of FMI 3.0 one after another."""
+        variables = [self._variable(name) for name in names]
+        references = [variable.valueReference for variable in variables]
         with reported(self.messages):
-            values: list[float] = self.slave.getReal(self._references(names))
-        return values
+            if isinstance(self.slave, FMU3Slave):
+                count = sum(int(np.prod(variable.shape or ())) for variable in variables)
+                return list(self.slave.getFloat64(references, count))
+            return list(self.slave.getReal(references))
 
     def step(self, step: float) -> None:
         """Step on in time [s]."""
         with reported(self.messages):
+            self.slave.doStep(self.time, step)
+        self.time += step
+
+    def follow(self, names: Sequence[str], before: Sequence[float], after: Sequence[float], step: float) -> None:
+        """Step on in time, with inputs that go from one value to another.
+
+        In FMI 2.0 the component is told their rates of change; FMI 3.0 has none, and it is told the values at the end.
+        """
+        references = [self._variable(name).valueReference for name in names]
+        with reported(self.messages):
+            if isinstance(self.slave, FMU3Slave):
+                self.slave.setFloat64(references, after)
+            else:
+                rates = [(then - now) / step for now, then in zip(before, after, strict=True)]
+                self.slave.setReal(references, before)
+                self.slave.setRealInputDerivatives(references, [1] * len(rates), rates)
             self.slave.doStep(self.time, step)
         self.time += step
 
@@ -198,11 +221,9 @@ class Instance:
 
     def derivative(self, outputs: Sequence[str], known: str) -> list[float]:
         """Partial derivatives of outputs with respect to one input."""
+        unknown = [self._variable(name).valueReference for name in outputs]
         with reported(self.messages):
-            slopes: list[float] = self.slave.getDirectionalDerivative(
-                self._references(outputs), self._references((known,)), [1.0]
-            )
-        return slopes
+            return list(self.slave.getDirectionalDerivative(unknown, [self._variable(known).valueReference], [1.0]))
 
     def save(self) -> tuple[Any, float]:
         """Return the state as it is now."""
@@ -219,13 +240,14 @@ class Instance:
 
     def close(self) -> None:
         """Terminate and free."""
-        self.slave.terminate()
+        # After an error there is nothing to terminate.
+        with suppress(FMICallException):
+            self.slave.terminate()
         disconnect(self.slave)
 
-    def _references(self, names: Sequence[str]) -> list[int]:
-        """Value references of names."""
+    def _variable(self, name: str) -> ModelVariable:
+        """A variable by name."""
         try:
-            return [self.reference[name] for name in names]
-        except KeyError as error:
-            name = error.args[0]
-            raise ValueError(f"there is no variable {name}{near(name, self.reference)}") from None
+            return self.variables[name]
+        except KeyError:
+            raise ValueError(f"there is no variable {name}{near(name, self.variables)}") from None

@@ -1,17 +1,19 @@
 """A table of inputs in, a table of outputs out."""
 
+import math
 import sys
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from itertools import pairwise
+from os import fspath
 from typing import Any, TypeAlias
 
 import numpy as np
 import pandas as pd
-from fmpy.simulation import simulate_fmu
 
-from .archive import AnyPath, description, fmu_path, unpacked
-from .instance import Instance, SimulationError, connect, disconnect, reported
-from .tables import Table, check_columns, columns_of, signals
-from .variables import outputs_named, settable, start_values, units
+from .archive import AnyPath, fmu_path
+from .instance import Instance, SimulationError
+from .tables import Table, check_columns, columns_of
+from .variables import by_name, outputs_named, settable, start_values, unit
 
 Progress: TypeAlias = bool | str | Callable[[float], object]
 
@@ -90,11 +92,23 @@ def simulate(
         raise ValueError(f"stop_time = {end:g} s: after {start:g} s is needed")
     if not step > 0.0:
         raise ValueError(f"step = {step!r}: a positive number of seconds is needed")
-    table_of_inputs = signals(fmu, columns, constants)
     names = outputs_named(fmu, outputs)
-    rows = run(fmu, start, end, step, table_of_inputs, names, given, reporter(progress, start, end), instance)
-    inputs = [name for name in table_of_inputs.dtype.names or () if name in columns or name in constants]
-    return frame(rows, fmu, table_of_inputs, [name for name in inputs if name != "time"], names)
+    report = reporter(progress, start, end)
+    times = points(start, end, step, columns["time"])
+    inputs = {name: column for name, column in columns.items() if name != "time"}
+    first = {name: float(np.interp(start, columns["time"], column)) for name, column in inputs.items()}
+    if instance is not None:
+        instance.set(**constants)
+        rows = follow(instance, times, columns["time"], inputs, names, report)
+    else:
+        own = Instance(fmu, "simulate", start, **given, **first)
+        try:
+            rows = follow(own.start(), times, columns["time"], inputs, names, report)
+        finally:
+            own.close()
+    after = {name: np.interp(times, columns["time"], column) for name, column in inputs.items()}
+    after |= {name: np.full(times.size, value) for name, value in constants.items()}
+    return frame(times, after, rows, fmu, names)
 
 
 def settable_as_input(fmu: AnyPath, name: str) -> bool:
@@ -102,76 +116,63 @@ def settable_as_input(fmu: AnyPath, name: str) -> bool:
     return bool(settable(fmu, name, ("input", "parameter", "structuralParameter")).causality == "input")
 
 
-def run(
-    fmu: AnyPath,
-    start: float,
-    end: float,
-    step: float,
+def points(start: float, end: float, step: float, table: np.ndarray) -> np.ndarray:
+    """Communication points: every step, the jumps of the table, the end."""
+    regular = start + step * np.arange(math.ceil((end - start) / step * (1.0 - 1e-12)))
+    jumps = table[1:][np.diff(table) == 0.0]
+    jumps = np.unique(np.append(jumps[(jumps > start) & (jumps < end)], end))
+    # A point that is one of these but for round-off is that one.
+    marks = np.concatenate([[-np.inf], jumps, [np.inf]])
+    after = np.searchsorted(marks, regular)
+    other = np.minimum(marks[after] - regular, regular - marks[after - 1]) > 1e-9 * step
+    return np.union1d(regular[other], jumps)
+
+
+def follow(
+    instance: Instance,
+    times: np.ndarray,
     table: np.ndarray,
-    names: list[str],
-    given: Mapping[str, Any],
+    inputs: Mapping[str, np.ndarray],
+    names: Sequence[str],
     report: Callable[[float], object],
-    instance: Instance | None,
 ) -> np.ndarray:
-    """Simulate in FMPy, in an instance of its own or in a given one."""
-    slave, messages = connect(fmu, "simulate") if instance is None else (instance.slave, instance.messages)
-    last, recorder = start, None
-
-    def finished(time: float, recorded: Any) -> bool:
-        nonlocal last, recorder
-        recorder = recorded
-        # FMPy repeats a step that was discarded, without end.
-        if time <= last:
-            raise SimulationError("; ".join(messages) or "the step cannot be completed")
-        last = time
-        messages.clear()
-        report(time)
-        return True
-
-    try:
-        with reported(messages):
-            rows: np.ndarray = simulate_fmu(
-                unpacked(fmu),
-                validate=False,
-                start_time=start,
-                stop_time=end,
-                output_interval=step,
-                start_values={} if instance is not None else dict(given),
-                input=table,
-                output=names,
-                step_finished=finished,
-                model_description=description(fmu),
-                fmu_instance=slave,
-                initialize=instance is None,
-                terminate=instance is None,
-            )
-    except SimulationError as error:
-        failed = SimulationError(f"after {last:g} s: {error}")
-        if recorder is not None:
-            failed.table = frame(recorder.result(), fmu, table, [], names)
-        raise failed from error
-    finally:
-        if instance is None:
-            disconnect(slave)
-        else:
-            instance.time = last
-    return rows
+    """Step through the communication points with the inputs of the table; a row of outputs for each."""
+    moving = list(inputs)
+    # After a jump, and before one.
+    right = np.column_stack([times, *(np.interp(times, table, column) for column in inputs.values())])[:, 1:]
+    left = np.column_stack([times, *(np.interp(-times, -table[::-1], column[::-1]) for column in inputs.values())])[
+        :, 1:
+    ]
+    rows = [instance.get(*names)]
+    for number, (now, then) in enumerate(pairwise(times.tolist())):
+        try:
+            instance.follow(moving, right[number].tolist(), left[number + 1].tolist(), then - now)
+            rows.append(instance.get(*names))
+        except SimulationError as error:
+            failed = SimulationError(f"after {now:g} s: {error}")
+            failed.table = frame(times[: number + 1], {}, np.array(rows), instance.fmu, names)
+            raise failed from error
+        # Without the round-off of a sum.
+        instance.time = then
+        report(then)
+    return np.array(rows)
 
 
-def frame(rows: np.ndarray, fmu: AnyPath, table: np.ndarray, inputs: list[str], names: list[str]) -> pd.DataFrame:
+def frame(
+    times: np.ndarray, inputs: Mapping[str, np.ndarray], rows: np.ndarray, fmu: AnyPath, names: Sequence[str]
+) -> pd.DataFrame:
     """The result as a data frame: time, inputs, outputs, with units; arrays as a column for each element."""
-    time = rows["time"]
-    columns = {"time": time} | {name: np.interp(time, table["time"], table[name]) for name in inputs}
-    of_model = units(description(fmu))
-    of_columns = {"time": "s"} | {name: of_model[name] for name in inputs}
-    for name in names:
-        values = rows[name]
-        for index in np.ndindex(values.shape[1:]):
-            label = f"{name}[{','.join(str(i + 1) for i in index)}]" if index else name
-            columns[label] = values[(slice(None), *index)]
-            of_columns[label] = of_model[name]
+    known = by_name(fspath(fmu))
+    labels = [
+        f"{name}[{','.join(str(i + 1) for i in index)}]" if index else name
+        for name in names
+        for index in np.ndindex(tuple(known[name].shape or ()))
+    ]
+    columns = {"time": times, **inputs, **dict(zip(labels, rows.T, strict=True))}
     result = pd.DataFrame(columns)
-    result.attrs["units"] = of_columns
+    result.attrs["units"] = {"time": "s"} | {
+        label: unit(known.get(label) or known[label.partition("[")[0]]) for label in columns if label != "time"
+    }
     return result
 
 

@@ -2,7 +2,7 @@
 
 import re
 from collections.abc import Mapping
-from os import PathLike, fspath
+from os import PathLike
 from pathlib import Path
 from typing import Any, TypeAlias
 
@@ -10,7 +10,7 @@ import numpy as np
 import pandas as pd
 
 from .archive import AnyPath
-from .variables import bounds, by_name, settable, unit
+from .variables import bounds, settable, unit
 
 Table: TypeAlias = pd.DataFrame | np.ndarray | Mapping[str, Any] | str | PathLike[str]
 
@@ -80,15 +80,3 @@ def check_columns(fmu: AnyPath, columns: Mapping[str, np.ndarray]) -> None:
                 f"{name} = {column[wrong[0]]:g} at {time[wrong[0]]:g} s:"
                 f" allowed is {low:g} to {high:g} {unit(variable)}".rstrip()
             )
-
-
-def signals(fmu: AnyPath, columns: Mapping[str, np.ndarray], constants: Mapping[str, float]) -> np.ndarray:
-    """The structured array that FMPy asks for: a column for every input, at its start value where nothing is given."""
-    inputs = [variable for variable in by_name(fspath(fmu)).values() if variable.causality == "input"]
-    time = columns["time"]
-    complete = np.empty(time.size, dtype=[("time", float), *((variable.name, float) for variable in inputs)])
-    complete["time"] = time
-    for variable in inputs:
-        given = constants.get(variable.name, float(variable.start))
-        complete[variable.name] = columns.get(variable.name, given)
-    return complete

@@ -167,12 +167,12 @@ def outputs_named(fmu: AnyPath, names: Iterable[str] | None) -> list[str]:
         points.setdefault(name.partition("[")[0], []).append(name)
     chosen: list[str] = []
     for name in names:
-        if name in known:
-            chosen.append(name)
-        elif name in points:
-            chosen += points[name]
-        else:
+        if name not in known and name not in points:
             raise ValueError(f"there is no variable {name}{near(name, points)}")
+        chosen += [name] if name in known else points[name]
+    for name in chosen:
+        if known[name].type not in ("Real", "Float64"):
+            raise ValueError(f"{name} is a number that counts or chooses, and no output")
     return chosen
 
 

@@ -1,0 +1,262 @@
+"""The Python package: its wheel where there is pip alone, and its functions against the native simulation."""
+
+import json
+import re
+import subprocess
+import sys
+import tomllib
+import zipfile
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+
+REPOSITORY = Path(__file__).resolve().parent.parent
+sys.path.insert(0, str(REPOSITORY / "python"))
+
+import wheelrail  # noqa: E402
+
+TABLE = {"time": [0.0, 0.5], "creepage": [0.0, 0.02], "normal_load": [60e3, 80e3]}
+CHOSEN = {"wheel_speed": 40.0, "friction_law": "piecewise_linear", "friction_hot": 0.2}
+# What the environment says of itself, after what the documentation has.
+ASK = """
+import json
+print(json.dumps({
+    "package": wheelrail.__file__,
+    "version": wheelrail.__version__,
+    "fmu": str(wheelrail.fmu_path()),
+    "rows": len(manoeuvre),
+    "force": list(curves[curves.driven == "longitudinal"].traction_force),
+}))
+"""
+
+
+@pytest.fixture(scope="module")
+def wheel(fmu, tmp_path_factory):
+    """Build the wheel as `make wheel` does; return its path."""
+    folder = tmp_path_factory.mktemp("dist")
+    build = [sys.executable, "-m", "hatchling", "build", "-t", "wheel", "-d", folder]
+    subprocess.run(build, check=True, capture_output=True, cwd=REPOSITORY)
+    return next(folder.glob("*.whl"))
+
+
+@pytest.fixture(scope="module")
+def fresh(wheel, tmp_path_factory):
+    """Install the wheel into a new environment by its pip; return a function that runs a program there."""
+    folder = tmp_path_factory.mktemp("fresh")
+    subprocess.run([sys.executable, "-m", "venv", folder / "venv"], check=True)
+    python = folder / "venv" / "bin" / "python"
+    # The pinned versions; compiling all of them would take longer than the test.
+    options = [
+        "--quiet",
+        "--no-compile",
+        "--disable-pip-version-check",
+        "--constraint",
+        REPOSITORY / "requirements.txt",
+    ]
+    done = subprocess.run([python, "-m", "pip", "install", *options, wheel], capture_output=True, text=True)
+    if "from versions: none" in done.stderr:
+        pytest.skip(f"pip reaches no index: {done.stderr.splitlines()[-1]}")
+    assert done.returncode == 0, done.stderr
+
+    def run(program):
+        answer = subprocess.run([python, "-c", program], capture_output=True, text=True, cwd=folder)
+        assert answer.returncode == 0, answer.stdout + answer.stderr
+        return answer.stdout, folder
+
+    return run
+
+
+def blocks(path):
+    """Return the blocks of Python in a document."""
+    return re.findall(r"```python\n(.*?)```", path.read_text(), re.DOTALL)
+
+
+def test_files_of_the_wheel(wheel, fmu):
+    """Sources, the FMUs as they are built, types, licences, and the crate's version."""
+    version = tomllib.loads((REPOSITORY / "Cargo.toml").read_text())["package"]["version"]
+    assert wheel.name == f"wheelrail-{version}-py3-none-any.whl"
+    with zipfile.ZipFile(wheel) as archive:
+        names = set(archive.namelist())
+        sources = {path.name for path in (REPOSITORY / "python" / "wheelrail").glob("*.py")}
+        assert {f"wheelrail/{name}" for name in sources | {"py.typed", "data/braking.csv"}} <= names
+        for built in (REPOSITORY / "target").glob("WheelRailContact*.fmu"):
+            assert archive.read(f"wheelrail/fmu/{built.name}") == built.read_bytes()
+        assert any(name.endswith("licenses/LICENSE-MIT") for name in names)
+
+
+def test_documentation_runs_where_there_is_only_pip(fresh):
+    """The lines of docs/python.md run one after another in a new environment, from the installed package."""
+    program = "import matplotlib; matplotlib.use('Agg')\n" + "\n".join(blocks(REPOSITORY / "docs" / "python.md")) + ASK
+    printed, folder = fresh(program)
+    answer = json.loads(printed.splitlines()[-1])
+    assert "there is no variable frictio_law; did you mean friction_law" in printed
+    assert Path(answer["package"]).is_relative_to(folder / "venv")
+    assert Path(answer["fmu"]).is_relative_to(folder / "venv")
+    assert answer["version"] == tomllib.loads((REPOSITORY / "Cargo.toml").read_text())["package"]["version"]
+    assert answer["rows"] == 11001
+    assert answer["force"][0] == pytest.approx(0.0, abs=1.0)
+    assert answer["force"][-1] == pytest.approx(0.3 * 80e3, rel=0.01)
+    for picture in ("braking.png", "creep_curves.png"):
+        assert (folder / picture).stat().st_size > 20_000
+
+
+def test_readme_example_runs(fresh):
+    """README's lines of Python run as they stand in a new environment, and print the last row with units."""
+    program = blocks(REPOSITORY / "README.md")[0]
+    assert len(program.strip().splitlines()) <= 10
+    printed, folder = fresh("import matplotlib; matplotlib.use('Agg')\n" + program)
+    row = next(line for line in printed.splitlines() if line.startswith("1000 "))
+    traction, temperature, worn = map(float, row.split()[1:4])
+    assert 10e3 < traction < 80e3
+    assert temperature > 300.0
+    assert worn > 0.0
+    assert "'traction_force': 'N'" in printed
+    assert (folder / "creep_curves.png").exists()
+
+
+def test_simulate_is_the_native_simulation(fmu, simulate_natively, tmp_path):
+    """All outputs are those of `wheelrail simulate` to 1e-12: FMPy interpolates the table with its own round-off."""
+    scenario = tmp_path / "scenario.csv"
+    pd.DataFrame(TABLE | {"wheel_speed": CHOSEN["wheel_speed"]}).to_csv(scenario, index=False)
+    native = wheelrail.read_table(simulate_natively(scenario, 1e-3, {"friction_law": 2, "friction_hot": 0.2}))
+    result = wheelrail.simulate(TABLE, fmu=fmu, **CHOSEN)
+    assert len(result) == len(native) == 501
+    for name in native:
+        if name in result:
+            scale = np.abs(native[name]).max()
+            assert np.allclose(result[name], native[name], rtol=1e-12, atol=1e-12 * scale), name
+    units = wheelrail.variables(fmu)["unit"]
+    assert all(unit == units.get(name, "s") for name, unit in result.attrs["units"].items())
+    assert {"time", "peak_temperature", "worn_volume"} <= set(native) & set(result)
+
+
+@pytest.mark.parametrize(
+    "form",
+    [
+        pd.DataFrame(TABLE),
+        pd.DataFrame(TABLE).set_index("time"),
+        pd.DataFrame(TABLE).to_records(index=False),
+        TABLE | {"wheel_speed": 40.0},
+    ],
+    ids=["data frame", "by index", "records", "constant column"],
+)
+def test_every_form_of_table_is_the_same(fmu, form):
+    """The same numbers from each, choices by number too; progress ends at 1."""
+    expected = wheelrail.simulate(TABLE, step=0.05, fmu=fmu, **CHOSEN)
+    shares = []
+    columns = form.dtype.names if isinstance(form, np.ndarray) else list(form)
+    chosen = {name: value for name, value in CHOSEN.items() if name not in columns} | {"friction_law": 2}
+    result = wheelrail.simulate(form, step=0.05, fmu=fmu, progress=shares.append, **chosen)
+    pd.testing.assert_frame_equal(result, expected)
+    assert shares == pytest.approx(np.linspace(0.1, 1.0, 10))
+
+
+def test_instance_goes_on(fmu):
+    """A table in two parts through one instance gives the bits of the whole."""
+    times = np.arange(9) / 64
+    table = pd.DataFrame({"time": times, "creepage": np.linspace(0.0, 0.02, 9)})
+    whole = wheelrail.simulate(table, step=1 / 64, fmu=fmu)
+    instance = wheelrail.Instance(fmu).start()
+    parts = [
+        wheelrail.simulate(table, step=1 / 64, stop_time=times[4], instance=instance),
+        wheelrail.simulate(table, step=1 / 64, instance=instance),
+    ]
+    assert instance.time == times[-1]
+    instance.close()
+    pd.testing.assert_frame_equal(pd.concat([parts[0], parts[1].iloc[1:]], ignore_index=True), whole)
+
+
+def test_jump_and_profiles(fmu):
+    """Two rows of one time are a jump; a profile's name stands for its points, with its unit."""
+    table = {"time": [0.0, 0.05, 0.05, 0.1], "creepage": [0.0, 0.0, 0.02, 0.02]}
+    result = wheelrail.simulate(table, step=0.01, fmu=fmu, outputs=["slip_creepage", "profile.pressure"])
+    jumped = result["time"] > 0.055
+    assert result["slip_creepage"][jumped].to_numpy() == pytest.approx(0.02, rel=1e-12)
+    assert np.all(result["slip_creepage"][~jumped] == 0.0)
+    assert result.attrs["units"]["profile.pressure[1]"] == "Pa"
+    assert sum(name.startswith("profile.pressure[") for name in result) > 50
+
+
+@pytest.mark.parametrize(
+    ("table", "values", "message"),
+    [
+        (TABLE, {"frictio_law": 1}, "there is no variable frictio_law; did you mean friction_law"),
+        (TABLE, {"friction_law": "piecewise"}, "friction_law = 'piecewise': choose one of constant, piecewise_linear"),
+        (TABLE, {"contact_model": 3}, "contact_model = 3: choose one of line, patch"),
+        (TABLE, {"contact_nodes": 20.5}, "contact_nodes = 20.5: a whole number is needed"),
+        (TABLE, {"friction_hot": 1.5}, "friction_hot = 1.5: allowed is 0 to 1 1"),
+        (TABLE, {"friction_hot": float("nan")}, "friction_hot = nan: a finite number is needed"),
+        (TABLE, {"traction_force": 1.0}, "traction_force is of kind output"),
+        (TABLE, {"creepage": 0.1}, "given in the table and as a constant: creepage"),
+        (TABLE, {"outputs": ["peak_temperatur"]}, "did you mean peak_temperature"),
+        (TABLE, {"outputs": ["solver.iterations"]}, "solver.iterations is a number that counts"),
+        (TABLE, {"step": 0.0}, "step = 0.0"),
+        (None, {}, "stop_time = 0 s"),
+        (TABLE | {"normal_lod": 1.0}, {}, "there is no variable normal_lod; did you mean normal_load"),
+        (TABLE | {"friction_hot": [0.1, 0.2]}, {}, "friction_hot is of kind parameter"),
+        (TABLE | {"creepage": [0.0, 1e3]}, {}, "creepage = 1000 at 0.5 s: allowed is -0.99 to 100 1"),
+        (TABLE | {"creepage": [0.0, 0.1, 0.2]}, {}, "column creepage has the shape (3,), time has 2 rows"),
+        (TABLE | {"time": [1.0, 0.5]}, {}, "time: finite numbers in ascending order"),
+        ({"creepage": [0.0, 0.1]}, {}, "no column time"),
+    ],
+)
+def test_what_is_refused_before(fmu, table, values, message):
+    """A wrong name or value is said with the name, before anything runs."""
+    with pytest.raises(ValueError, match=re.escape(message)):
+        wheelrail.simulate(table, fmu=fmu, **values)
+
+
+def test_what_the_component_refuses(fmu):
+    """A load above largest_load, half-way: its words, the time, and the rows before; combinations at the start."""
+    with pytest.raises(
+        wheelrail.SimulationError, match=r"after 0\.243 s: .*normal_load = .*allowed is 0 to 100000 N"
+    ) as error:
+        wheelrail.simulate(TABLE | {"normal_load": [60e3, 142e3]}, fmu=fmu)
+    assert error.value.table["time"].iloc[-1] == pytest.approx(0.243)
+    with pytest.raises(wheelrail.SimulationError, match="the hot temperature must lie above the cold one"):
+        wheelrail.simulate(TABLE, fmu=fmu, friction_temperature_hot=300.0)
+    # And FMPy's own way of saying it is as it was, in the same process.
+    with pytest.raises(wheelrail.SimulationError, match="lateral_creepage"):
+        wheelrail.Instance(fmu, lateral_creepage=0.01).start()
+
+
+def test_creep_curves(fmu):
+    """Odd in the creepage that drives, mirrored in the others, saturated at the friction; units; the line alone."""
+    values = [-0.02, -0.001, 0.0, 0.001, 0.02]
+    curves = wheelrail.creep_curves(("longitudinal", "lateral"), values, fmu=fmu, friction_law="constant", load=70e3)
+    assert curves.attrs["units"]["spin_moment"] == "N.m"
+    assert (curves.attrs["normal_load"], curves.attrs["speed"]) == (70e3, 20.0)
+    limit = 0.45 * 70e3
+    for driven, force, sign in (("longitudinal", "traction_force", 1.0), ("lateral", "lateral_force", -1.0)):
+        curve = sign * curves[curves["driven"] == driven][force].to_numpy()
+        # To what a step of the patch is solved to, and longitudinally to the speed of the wheel, which is not mirrored.
+        assert curve == pytest.approx(-curve[::-1], abs=2e-3 * limit)
+        assert curve[-1] == pytest.approx(limit, rel=1e-3)
+        assert 0.1 * limit < curve[3] < 0.6 * limit
+    line = wheelrail.creep_curves("longitudinal", [0.05], fmu=fmu, contact_model="line")
+    assert line["traction_force"].iloc[0] < 0.45 * 60e3
+    with pytest.raises(ValueError, match="longitudinal creepage alone"):
+        wheelrail.creep_curves("lateral", fmu=fmu, contact_model="line")
+    with pytest.raises(ValueError, match="did you mean lateral"):
+        wheelrail.creep_curves("laterl", fmu=fmu)
+
+
+def test_variables(fmu):
+    """Kinds, units and choices of what may be set and read."""
+    table = wheelrail.variables(fmu)
+    assert table.loc["normal_load", ["kind", "unit"]].tolist() == ["input", "N"]
+    assert table.loc["friction_law", "choices"] == "constant, piecewise_linear, flow_stress, table"
+    assert table.loc["contact_nodes", "choices"] == ""
+    assert set(table["kind"]) == {"input", "output", "parameter"}
+
+
+@pytest.mark.skipif(
+    not (REPOSITORY / "target" / "WheelRailContact-fmi3.fmu").exists(), reason="the FMU of FMI 3.0 is not built"
+)
+def test_both_versions_give_the_same_bits(fmu):
+    """The same table and parameters through FMI 2.0 and 3.0."""
+    third = REPOSITORY / "target" / "WheelRailContact-fmi3.fmu"
+    results = [wheelrail.simulate(TABLE, step=0.01, fmu=path, **CHOSEN) for path in (fmu, third)]
+    pd.testing.assert_frame_equal(*results, check_like=True, check_exact=True)
