@@ -65,7 +65,7 @@ $(VENV)/ready: requirements.txt $(VENV)/build
 	@touch $@
 
 $(VENV)/couplings: requirements-couplings.txt $(VENV)/ready
-	$(call say,Packages for the couplings)
+	$(call say,Packages for the couplings and some hosts)
 	$(call install,requirements-couplings.txt)
 	@touch $@
 

@@ -5,6 +5,7 @@ which libcosim counts. Inputs are constant, since not every host can change them
 """
 
 import ctypes
+import json
 import subprocess
 import sys
 from pathlib import Path
@@ -60,6 +61,8 @@ def native(simulate_natively, tmp_path_factory):
         pytest.param("fmpy_slave.py", sys.executable, id="FMPy, low level"),
         pytest.param("fmpy_container.py", sys.executable, id="FMPy, FMU container"),
         pytest.param("libcosim.py", sys.executable, id="libcosim"),
+        pytest.param("pathsim_host.py", sys.executable, id="PathSim"),
+        pytest.param("syssimx_host.py", sys.executable, id="SysSimX"),
         pytest.param(
             "ecos.py",
             sys.executable,
@@ -81,6 +84,17 @@ def test_host_equals_native_simulation(script, python, native, host_process, out
     assert answer["peak_temperature"] > INPUTS["ambient_temperature"] + 10.0
     for name in outputs:
         assert answer[name] == pytest.approx(native[name], rel=1e-12, abs=0.0), name
+
+
+@pytest.mark.parametrize("script", ["pathsim_host.py", "syssimx_host.py"], ids=["PathSim", "SysSimX"])
+def test_unconnected_inputs_of_zero_are_refused(script, fmu, tmp_path):
+    """These hosts write 0 to what is not connected: the component says which input that cannot be, and why."""
+    file = tmp_path / "scenario.json"
+    file.write_text(json.dumps({"start": {}, "step": STEP, "steps": 2, "outputs": [], "connected": False}))
+    path = REPOSITORY / "python_tests" / "hosts" / script
+    done = subprocess.run([sys.executable, path, fmu, file], capture_output=True, text=True, timeout=300)
+    assert done.returncode != 0
+    assert "ambient_temperature = 0: allowed is 100 to 1000 K" in done.stdout + done.stderr
 
 
 def test_fmu_manipulation_toolbox_checks(fmu):
