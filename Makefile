@@ -134,8 +134,9 @@ demo:
 	@$(CARGO) run --quiet --example patch_creep_curves > results/patch_creep_curves.part
 	@mv results/patch_creep_curves.part results/patch_creep_curves.csv
 	@$(PY) examples/patch_creep_curves.py
+	@cp $(FMU) results/
 	$(call say,Written)
-	@ls -l results/*.csv results/*.png | awk '{ print $$NF, "(" $$5, "bytes)" }'
+	@ls -l results/*.fmu results/*.csv results/*.png | awk '{ print $$NF, "(" $$5, "bytes)" }'
 
 # ---- couplings: `make couplings` or one of them, `make coupling-stiff` for example --------------------------------
 

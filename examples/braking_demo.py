@@ -11,13 +11,14 @@ wheel holds it on the gradient.
 from types import SimpleNamespace
 
 import numpy as np
-from helpers import BLACK, REPOSITORY, WHEEL_RADIUS, save, write_csv
+from helpers import BLACK, FMU, REPOSITORY, RESULTS, WHEEL_RADIUS, save, write_csv
 from stiff import LOAD, NAMES, SPEEDS, WHEEL_INERTIA, Contact, iterating
-from wheelrail import read_table, simulate
+from wheelrail import read_table, simulate, variables
 from wheelrail.plots import braking
 
 TITLE = "Braking from 20 m/s with a wheel slide, to a stop on a gradient"
 SCENARIO = REPOSITORY / "examples" / "braking.csv"
+INPUTS_OF_ALL = RESULTS / "braking_inputs.csv"
 STEP = 1e-3  # s
 COUPLED = 21.0  # s, at 2 m/s; after it the table lets the brake go
 COUPLED_STEP = 2e-3  # s
@@ -103,6 +104,14 @@ def draw(result):
     save(figure, "braking.png")
 
 
+def write_inputs(signals):
+    """Write the table with a column for every input of the component: there are hosts that ask for it."""
+    table = variables(FMU)
+    others = table[(table["kind"] == "input") & ~table.index.isin(signals.columns)]
+    signals.assign(**others["start"]).to_csv(INPUTS_OF_ALL, index=False)
+    print(f"  wrote {INPUTS_OF_ALL.relative_to(REPOSITORY)}")
+
+
 def main():
     """Simulate, draw, write, report."""
     signals = read_table(SCENARIO)
@@ -114,6 +123,7 @@ def main():
     units = {"time": "s"} | INPUTS | OUTPUTS
     write_csv("braking.csv", {f"{name} [{unit}]": result[name] for name, unit in units.items()})
     draw(result)
+    write_inputs(signals)
     hottest = np.argmax(result["peak_temperature"])
     start, end = sliding(result)
     before = np.searchsorted(result["time"], start)

@@ -86,10 +86,32 @@ def test_files_of_the_wheel(wheel, fmu):
         assert any(name.endswith("licenses/LICENSE-MIT") for name in names)
 
 
-def test_documentation_runs_where_there_is_only_pip(fresh):
-    """The lines of docs/python.md run one after another in a new environment, from the installed package."""
-    program = "import matplotlib; matplotlib.use('Agg')\n" + "\n".join(blocks(REPOSITORY / "docs" / "python.md")) + ASK
-    printed, folder = fresh(program)
+@pytest.fixture(scope="module")
+def documented(fresh):
+    """Run README's lines and then those of docs/python.md in the new environment; return what each printed."""
+    pages = [blocks(REPOSITORY / "README.md")[:1], blocks(REPOSITORY / "docs" / "python.md")]
+    mark = "print('next page')"
+    program = ["import matplotlib; matplotlib.use('Agg')", *pages[0], mark, *pages[1], ASK]
+    printed, folder = fresh("\n".join(program))
+    return *printed.split("next page\n"), folder
+
+
+def test_readme_example_runs(documented):
+    """README's lines of Python run as they stand, and print the last row with units."""
+    assert len(blocks(REPOSITORY / "README.md")[0].strip().splitlines()) <= 10
+    printed, _, folder = documented
+    row = next(line for line in printed.splitlines() if line.startswith("1000 "))
+    traction, temperature, worn = map(float, row.split()[1:4])
+    assert 10e3 < traction < 80e3
+    assert temperature > 300.0
+    assert worn > 0.0
+    assert "'traction_force': 'N'" in printed
+    assert (folder / "creep_curves.png").exists()
+
+
+def test_documentation_runs_where_there_is_only_pip(documented):
+    """The lines of docs/python.md run one after another, from the installed package."""
+    _, printed, folder = documented
     answer = json.loads(printed.splitlines()[-1])
     assert "there is no variable frictio_law; did you mean friction_law" in printed
     assert Path(answer["package"]).is_relative_to(folder / "venv")
@@ -100,20 +122,6 @@ def test_documentation_runs_where_there_is_only_pip(fresh):
     assert answer["force"][-1] == pytest.approx(0.3 * 80e3, rel=0.01)
     for picture in ("braking.png", "creep_curves.png"):
         assert (folder / picture).stat().st_size > 20_000
-
-
-def test_readme_example_runs(fresh):
-    """README's lines of Python run as they stand in a new environment, and print the last row with units."""
-    program = blocks(REPOSITORY / "README.md")[0]
-    assert len(program.strip().splitlines()) <= 10
-    printed, folder = fresh("import matplotlib; matplotlib.use('Agg')\n" + program)
-    row = next(line for line in printed.splitlines() if line.startswith("1000 "))
-    traction, temperature, worn = map(float, row.split()[1:4])
-    assert 10e3 < traction < 80e3
-    assert temperature > 300.0
-    assert worn > 0.0
-    assert "'traction_force': 'N'" in printed
-    assert (folder / "creep_curves.png").exists()
 
 
 def test_simulate_is_the_native_simulation(fmu, simulate_natively, tmp_path):
