@@ -19,6 +19,7 @@ import wheelrail  # noqa: E402
 
 TABLE = {"time": [0.0, 0.5], "creepage": [0.0, 0.02], "normal_load": [60e3, 80e3]}
 CHOSEN = {"wheel_speed": 40.0, "friction_law": "piecewise_linear", "friction_hot": 0.2}
+THIRD = REPOSITORY / "target" / "WheelRailContact-fmi3.fmu"
 # What the environment says of itself, after what the documentation has.
 ASK = """
 import json
@@ -193,6 +194,7 @@ def test_jump_and_profiles(fmu):
         (TABLE, {"frictio_law": 1}, "there is no variable frictio_law; did you mean friction_law"),
         (TABLE, {"friction_law": "piecewise"}, "friction_law = 'piecewise': choose one of constant, piecewise_linear"),
         (TABLE, {"contact_model": 3}, "contact_model = 3: choose one of line, patch"),
+        (TABLE, {"contact_nodes": True}, "contact_nodes = True: a number is needed"),
         (TABLE, {"contact_nodes": 20.5}, "contact_nodes = 20.5: a whole number is needed"),
         (TABLE, {"friction_hot": 1.5}, "friction_hot = 1.5: allowed is 0 to 1 1"),
         (TABLE, {"friction_hot": float("nan")}, "friction_hot = nan: a finite number is needed"),
@@ -247,6 +249,8 @@ def test_creep_curves(fmu):
     assert line["traction_force"].iloc[0] < 0.45 * 60e3
     with pytest.raises(ValueError, match="longitudinal creepage alone"):
         wheelrail.creep_curves("lateral", fmu=fmu, contact_model="line")
+    with pytest.raises(ValueError, match=r"take the FMU of FMI 3\.0"):
+        wheelrail.Instance(fmu).start().fields()
     with pytest.raises(ValueError, match="did you mean lateral"):
         wheelrail.creep_curves("laterl", fmu=fmu)
 
@@ -260,11 +264,29 @@ def test_variables(fmu):
     assert set(table["kind"]) == {"input", "output", "parameter"}
 
 
-@pytest.mark.skipif(
-    not (REPOSITORY / "target" / "WheelRailContact-fmi3.fmu").exists(), reason="the FMU of FMI 3.0 is not built"
-)
+needs_third = pytest.mark.skipif(not THIRD.exists(), reason="the FMU of FMI 3.0 is not built")
+
+
+@needs_third
 def test_both_versions_give_the_same_bits(fmu):
-    """The same table and parameters through FMI 2.0 and 3.0."""
-    third = REPOSITORY / "target" / "WheelRailContact-fmi3.fmu"
-    results = [wheelrail.simulate(TABLE, step=0.01, fmu=path, **CHOSEN) for path in (fmu, third)]
-    pd.testing.assert_frame_equal(*results, check_like=True, check_exact=True)
+    """The same inputs and parameters through FMI 2.0 and 3.0; the table's points are elements, and an array."""
+    chosen = {"creepage": 0.03, "wheel_speed": 40.0, "wheel_heating": True, "friction_law": "table"}
+    chosen |= {"friction_table_points": 3, "step": 0.01, "stop_time": 0.2}
+    points = {"friction_table.temperature": [300.0, 400.0, 600.0], "friction_table.coefficient": [0.4, 0.3, 0.2]}
+    results = [wheelrail.simulate(fmu=path, parameters=points, **chosen) for path in (fmu, THIRD)]
+    assert results[0]["wheel_temperature"].iloc[-1] > 293.15
+    pd.testing.assert_frame_equal(*results, check_exact=True)
+    assert results[0].attrs == results[1].attrs
+
+
+@needs_third
+def test_fields_of_the_patch():
+    """Arrays of strips by cells, with the grid that was asked for; the pressure sums to the load."""
+    instance = wheelrail.Instance(THIRD, contact_model="patch", patch_nodes=40, patch_strips=25, lateral_creepage=2e-3)
+    instance.start().step(5.0)
+    fields = instance.fields()
+    instance.close()
+    assert {values.shape for values in fields.values()} == {(25, 40)}
+    cell = np.diff(fields["x"][0, :2])[0] * np.diff(fields["y"][:2, 0])[0]
+    assert np.sum(fields["pressure"]) * cell == pytest.approx(60e3, rel=1e-6)
+    assert len(wheelrail.plots.patch_fields(fields).axes) >= 4

@@ -1,6 +1,7 @@
 """An instance of the component, its variables by name."""
 
 import itertools
+import math
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress
 from ctypes import byref
@@ -16,7 +17,7 @@ from fmpy.fmi3 import FMU3Slave
 from fmpy.model_description import ModelVariable
 
 from .archive import AnyPath, description, fmu_path, unpacked
-from .variables import by_name, near, number
+from .variables import by_name, near, number, shape
 
 
 class SimulationError(RuntimeError):
@@ -134,6 +135,12 @@ class Instance:
         self.slave, self.messages = connect(self.fmu, name)
         self.variables = by_name(self.fmu)
         self.time = start_time
+        # Lengths of arrays.
+        self.lengths = {
+            name: int(variable.start)
+            for name, variable in self.variables.items()
+            if variable.causality == "structuralParameter"
+        }
         third = isinstance(self.slave, FMU3Slave)
         if not third:
             self.slave.setupExperiment(startTime=start_time)
@@ -155,7 +162,13 @@ class Instance:
                 plain: Any = number(variable, value) if isinstance(value, str) else value
                 kind = "Int64" if variable.type == "Enumeration" else variable.type
                 set_values = getattr(self.slave, f"set{kind}")
-                set_values([variable.valueReference], list(plain) if variable.dimensions else [plain])
+                if name in self.lengths:
+                    self.slave.enterConfigurationMode()
+                    set_values([variable.valueReference], [plain])
+                    self.slave.exitConfigurationMode()
+                    self.lengths[name] = int(plain)
+                else:
+                    set_values([variable.valueReference], list(plain) if variable.dimensions else [plain])
 
     def get(self, *names: str) -> list[float]:
         """Return the values of real variables, those of an array of FMI 3.0 one after another."""
@@ -163,9 +176,25 @@ class Instance:
         references = [variable.valueReference for variable in variables]
         with reported(self.messages):
             if isinstance(self.slave, FMU3Slave):
-                count = sum(int(np.prod(variable.shape or ())) for variable in variables)
+                count = sum(math.prod(shape(variable, self.lengths)) for variable in variables)
                 return list(self.slave.getFloat64(references, count))
             return list(self.slave.getReal(references))
+
+    def fields(self) -> dict[str, np.ndarray]:
+        """Fields of the patch as they are now, each as an array of strips by cells: FMI 3.0 alone has them.
+
+        They are what `plots.patch_fields` draws: places `x`, `y` [m], `pressure`, `shear_x`, `shear_y` [Pa], `slip_x`,
+        `slip_y` [m/s], `temperature` [K], `wear_depth` [m].
+        """
+        names = [name for name in self.variables if name.startswith("patch.")]
+        if not names:
+            raise ValueError(f"{self.fmu} has no fields of the patch: take the FMU of FMI 3.0")
+        found = {
+            name.removeprefix("patch."): np.reshape(self.get(name), shape(self.variables[name], self.lengths))
+            for name in names
+        }
+        x, y = np.meshgrid(found.pop("x"), found.pop("y"))
+        return {"x": x, "y": y, **found}
 
     def step(self, step: float) -> None:
         """Step on in time [s]."""

@@ -116,9 +116,9 @@ def patch_fields(fields: Columns, *, ellipse: tuple[float, float] | None = None,
     Parameters
     ----------
     fields
-        `x`, `y` [m], `pressure`, `shear_x`, `shear_y` [Pa], `saturation` [1], `slip_x`, `slip_y` [m/s], `temperature`
-        [K] of each cell: the columns that `wheelrail simulate --fields` writes (`read_table`), or arrays of strips by
-        cells.
+        `x`, `y` [m], `pressure`, `shear_x`, `shear_y` [Pa], `slip_x`, `slip_y` [m/s], `temperature` [K] and, if there,
+        `saturation` [1] of each cell: what `Instance.fields` returns, arrays of strips by cells, or the columns that
+        `wheelrail simulate --fields` writes (`read_table`).
     ellipse
         Semi-axes of an ellipse to compare with, along and across the rail [m].
     title
@@ -134,7 +134,9 @@ def patch_fields(fields: Columns, *, ellipse: tuple[float, float] | None = None,
     figure, ((pressure, shear), (slip, temperature)) = plt.subplots(2, 2, figsize=(9.6, 7.0), layout="constrained")
     plan(pressure, field, inside(field["pressure"]) / 1e6, "MPa", "Blues")
 
-    sliding = np.where(field["saturation"] > 1.0 - 1e-6, 1.0, 0.0)
+    speed = np.hypot(field["slip_x"], field["slip_y"])
+    slips = field["saturation"] > 1.0 - 1e-6 if "saturation" in field else speed > 1e-6 * speed.max()
+    sliding = np.where(slips, 1.0, 0.0)
     across, along = 1e3 * field["y"], 1e3 * field["x"]
     shear.pcolormesh(
         along, across, inside(sliding), cmap=ListedColormap([STICK, SLIP]), shading="nearest", vmin=0.0, vmax=1.0
@@ -154,7 +156,6 @@ def patch_fields(fields: Columns, *, ellipse: tuple[float, float] | None = None,
     )
     shear.quiverkey(arrows, 0.9, 0.05, 200, "200 MPa", labelpos="N", labelsep=0.05)
 
-    speed = np.hypot(field["slip_x"], field["slip_y"])
     plan(slip, field, inside(np.where(sliding > 0, speed, 0.0)) * 1e3, "mm/s", "Oranges")
     celsius = field["temperature"] - 273.15
     plan(temperature, field, celsius, "°C", "YlOrRd").set_clim(celsius.min(), None)

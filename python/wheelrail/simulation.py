@@ -4,7 +4,6 @@ import math
 import sys
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from itertools import pairwise
-from os import fspath
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -13,7 +12,7 @@ import pandas as pd
 from .archive import AnyPath, fmu_path
 from .instance import Instance, SimulationError
 from .tables import Table, check_columns, columns_of
-from .variables import by_name, outputs_named, settable, start_values, unit
+from .variables import outputs_named, settable, shape, start_values, unit
 
 Progress: TypeAlias = bool | str | Callable[[float], object]
 
@@ -108,7 +107,7 @@ def simulate(
             own.close()
     after = {name: np.interp(times, columns["time"], column) for name, column in inputs.items()}
     after |= {name: np.full(times.size, value) for name, value in constants.items()}
-    return frame(times, after, rows, fmu, names)
+    return frame(times, after, rows, own if instance is None else instance, names)
 
 
 def settable_as_input(fmu: AnyPath, name: str) -> bool:
@@ -150,7 +149,7 @@ def follow(
             rows.append(instance.get(*names))
         except SimulationError as error:
             failed = SimulationError(f"after {now:g} s: {error}")
-            failed.table = frame(times[: number + 1], {}, np.array(rows), instance.fmu, names)
+            failed.table = frame(times[: number + 1], {}, np.array(rows), instance, names)
             raise failed from error
         # Without the round-off of a sum.
         instance.time = then
@@ -159,14 +158,14 @@ def follow(
 
 
 def frame(
-    times: np.ndarray, inputs: Mapping[str, np.ndarray], rows: np.ndarray, fmu: AnyPath, names: Sequence[str]
+    times: np.ndarray, inputs: Mapping[str, np.ndarray], rows: np.ndarray, instance: Instance, names: Sequence[str]
 ) -> pd.DataFrame:
     """The result as a data frame: time, inputs, outputs, with units; arrays as a column for each element."""
-    known = by_name(fspath(fmu))
+    known = instance.variables
     labels = [
         f"{name}[{','.join(str(i + 1) for i in index)}]" if index else name
         for name in names
-        for index in np.ndindex(tuple(known[name].shape or ()))
+        for index in np.ndindex(shape(known[name], instance.lengths))
     ]
     columns = {"time": times, **inputs, **dict(zip(labels, rows.T, strict=True))}
     result = pd.DataFrame(columns)

@@ -9,6 +9,7 @@ from functools import cache
 from os import fspath
 from typing import Any
 
+import numpy as np
 import pandas as pd
 from fmpy.model_description import ModelDescription, ModelVariable
 
@@ -61,8 +62,11 @@ def unit(variable: ModelVariable) -> str:
 def choices(variable: ModelVariable) -> dict[str, int]:
     """Names and numbers of what a variable chooses from; empty where it is a quantity.
 
-    FMI 3.0 has them as items of an enumeration, FMI 2.0 in the description: "…: 1 constant, 2 piecewise_linear, …".
+    FMI 3.0 has them as items of an enumeration, or off and on as a Boolean; FMI 2.0 in the description: "…: 1 constant,
+    2 piecewise_linear, …".
     """
+    if variable.type == "Boolean":
+        return {"off": 0, "on": 1}
     if variable.type == "Enumeration" and variable.declaredType is not None:
         return {item.name: int(item.value) for item in variable.declaredType.items}
     if variable.type != "Integer" or variable.causality != "parameter":
@@ -110,8 +114,12 @@ def number(variable: ModelVariable, value: Any) -> float | int:
         It is no number, not finite, out of range, or no such choice.
     """
     name, named = variable.name, choices(variable)
+    if isinstance(value, bool | np.bool_) and set(named) == {"off", "on"}:
+        value = "on" if value else "off"
     if isinstance(value, str) and value in named:
         return named[value]
+    if isinstance(value, bool | np.bool_):
+        raise ValueError(f"{name} = {value!r}: a number is needed")
     if isinstance(value, str) or not isinstance(value, numbers.Real) or not math.isfinite(value):
         expected = f"choose one of {', '.join(named)}" if named else "a finite number is needed"
         hint = near(value, named) if isinstance(value, str) else ""
@@ -150,11 +158,21 @@ def start_values(fmu: AnyPath, given: Mapping[str, Any]) -> dict[str, Any]:
             variable = settable(fmu, name, kinds)
             if not variable.dimensions:
                 raise ValueError(f"{name} is a single value, not {value!r}")
-            values[name] = [number(variable, element) for element in value]
+            given_elements = [number(variable, element) for element in value]
+            # The rest of an array stays as it is.
+            values[name] = given_elements + [float(start) for start in variable.start.split()[len(given_elements) :]]
         else:
             for index, element in enumerate(value, 1):
                 values[f"{name}[{index}]"] = number(settable(fmu, f"{name}[{index}]", kinds), element)
     return values
+
+
+def shape(variable: ModelVariable, lengths: Mapping[str, int]) -> tuple[int, ...]:
+    """Lengths of an array of FMI 3.0, for given values of the structural parameters; empty for a single value."""
+    return tuple(
+        int(dimension.start) if dimension.variable is None else lengths[dimension.variable.name]
+        for dimension in variable.dimensions or ()
+    )
 
 
 def outputs_named(fmu: AnyPath, names: Iterable[str] | None) -> list[str]:
