@@ -141,12 +141,20 @@ class Instance:
             for name, variable in self.variables.items()
             if variable.causality == "structuralParameter"
         }
+        try:
+            self._initialise(start_values)
+        except (SimulationError, ValueError):
+            disconnect(self.slave)
+            raise
+
+    def _initialise(self, start_values: dict[str, Any]) -> None:
+        """Enter the initialisation with start values."""
         third = isinstance(self.slave, FMU3Slave)
         if not third:
-            self.slave.setupExperiment(startTime=start_time)
+            self.slave.setupExperiment(startTime=self.time)
         self.set(**start_values)
         with reported(self.messages):
-            self.slave.enterInitializationMode(**({"startTime": start_time} if third else {}))
+            self.slave.enterInitializationMode(**({"startTime": self.time} if third else {}))
 
     def start(self) -> Self:
         """Leave the initialisation: from here on, step."""

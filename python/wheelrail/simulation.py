@@ -87,7 +87,7 @@ def simulate(
         raise ValueError(f"parameters of an instance are set when it is made: {fixed}")
     start = float(columns["time"][0]) if instance is None else start
     end = float(columns["time"][-1]) if stop_time is None else stop_time
-    if not end > start:
+    if not start < end < math.inf:
         raise ValueError(f"stop_time = {end:g} s: after {start:g} s is needed")
     if not step > 0.0:
         raise ValueError(f"step = {step!r}: a positive number of seconds is needed")
@@ -127,6 +127,14 @@ def points(start: float, end: float, step: float, table: np.ndarray) -> np.ndarr
     return np.union1d(regular[other], jumps)
 
 
+def values_at(times: np.ndarray, table: np.ndarray, inputs: Mapping[str, np.ndarray]) -> np.ndarray:
+    """Inputs at given times, a row for each; at a jump those after it."""
+    values = np.empty((times.size, len(inputs)))
+    for number, column in enumerate(inputs.values()):
+        values[:, number] = np.interp(times, table, column)
+    return values
+
+
 def follow(
     instance: Instance,
     times: np.ndarray,
@@ -137,11 +145,9 @@ def follow(
 ) -> np.ndarray:
     """Step through the communication points with the inputs of the table; a row of outputs for each."""
     moving = list(inputs)
-    # After a jump, and before one.
-    right = np.column_stack([times, *(np.interp(times, table, column) for column in inputs.values())])[:, 1:]
-    left = np.column_stack([times, *(np.interp(-times, -table[::-1], column[::-1]) for column in inputs.values())])[
-        :, 1:
-    ]
+    right = values_at(times, table, inputs)
+    # Seen from behind, the values before a jump.
+    left = values_at(-times, -table[::-1], {name: column[::-1] for name, column in inputs.items()})
     rows = [instance.get(*names)]
     for number, (now, then) in enumerate(pairwise(times.tolist())):
         try:
