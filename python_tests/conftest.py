@@ -13,9 +13,9 @@ REPOSITORY = Path(__file__).resolve().parent.parent
 
 
 def built(path):
-    """Return a file that `make fmu` makes."""
+    """Return a file that `make fmu fmu3` makes."""
     if not path.exists():
-        pytest.exit(f"{path} is not there: run `make fmu` first", returncode=2)
+        pytest.exit(f"{path} is not there: run `make fmu fmu3` first", returncode=2)
     return path
 
 
@@ -23,6 +23,12 @@ def built(path):
 def fmu():
     """Return the path of the packed component."""
     return str(built(REPOSITORY / "target" / "WheelRailContact.fmu"))
+
+
+@pytest.fixture(scope="session")
+def fmu3():
+    """Return the path of the component packed under FMI 3.0."""
+    return str(built(REPOSITORY / "target" / "WheelRailContact-fmi3.fmu"))
 
 
 @pytest.fixture(scope="session")

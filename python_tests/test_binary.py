@@ -23,11 +23,12 @@ def tool(*command):
 
 
 def test_exports_only_the_standard(library):
-    """All 34 functions of fmi2Functions.h for co-simulation, and nothing else."""
+    """All 34 functions of fmi2Functions.h for co-simulation, all 75 of fmi3Functions.h, and nothing else."""
     tool("nm", "--version")
     symbols = binaries.exports(library)
-    assert len(symbols) == 34
-    assert all(re.fullmatch(r"fmi2[A-Z]\w+", symbol) for symbol in symbols), symbols
+    of_version = [[symbol for symbol in symbols if re.fullmatch(rf"{fmi}[A-Z]\w+", symbol)] for fmi in ("fmi2", "fmi3")]
+    assert [len(names) for names in of_version] == [34, 75]
+    assert len(symbols) == 34 + 75, symbols
 
 
 def test_needs_only_the_c_library(library):
@@ -72,24 +73,46 @@ def test_is_stripped(library):
     assert ".debug_info" not in sections
 
 
-def test_archive(fmu):
+FMI2 = {"modelDescription.xml", "model.png", "binaries/linux64/wheelrail.so", "documentation/index.html"}
+FMI3 = {
+    "modelDescription.xml",
+    "terminalsAndIcons/terminalsAndIcons.xml",
+    "terminalsAndIcons/icon.png",
+    "binaries/x86_64-linux/wheelrail.so",
+    "documentation/index.html",
+}
+
+
+@pytest.mark.parametrize(("archive", "expected"), [("fmu", FMI2), ("fmu3", FMI3)])
+def test_archive(request, archive, expected):
     """Stored or deflated entries only, at the standard's places, with one fixed date."""
-    with zipfile.ZipFile(fmu) as archive:
-        entries = archive.infolist()
+    with zipfile.ZipFile(request.getfixturevalue(archive)) as packed:
+        entries = packed.infolist()
     names = {entry.filename for entry in entries}
-    assert {"modelDescription.xml", "model.png", "binaries/linux64/wheelrail.so", "documentation/index.html"} <= names
+    assert expected <= names
     assert any(name.startswith("documentation/licenses/") for name in names)
     assert {entry.compress_type for entry in entries} <= {zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED}
     assert len({entry.date_time for entry in entries}) == 1
 
 
+def test_both_archives_have_the_same_library(fmu, fmu3):
+    """Nothing is compiled twice."""
+    libraries = [
+        zipfile.ZipFile(archive).read(f"binaries/{folder}/wheelrail.so")
+        for archive, folder in ((fmu, "linux64"), (fmu3, "x86_64-linux"))
+    ]
+    assert libraries[0] == libraries[1]
+
+
 def test_archive_is_the_same_each_time(wheelrail, tmp_path):
     """Packing again gives the same bytes."""
     library = (REPOSITORY / "target" / "library.path").read_text().strip()
-    archives = [tmp_path / "first.fmu", tmp_path / "second.fmu"]
-    for archive in archives:
-        subprocess.run([wheelrail, "pack", "--library", library, "-o", archive], cwd=REPOSITORY, check=True)
-    assert archives[0].read_bytes() == archives[1].read_bytes()
+    for version in ("2", "3"):
+        archives = [tmp_path / "first.fmu", tmp_path / "second.fmu"]
+        for archive in archives:
+            pack = [wheelrail, "pack", "--fmi", version, "--library", library, "-o", archive]
+            subprocess.run(pack, cwd=REPOSITORY, check=True)
+        assert archives[0].read_bytes() == archives[1].read_bytes()
 
 
 def test_archive_says_what_compiled_it(unpacked):
@@ -100,13 +123,21 @@ def test_archive_says_what_compiled_it(unpacked):
     assert all(re.search(r"rustc \d+\.\d+\.\d+ .*; linked by ", line) for line in lines), lines
 
 
-def test_schema(description, unpacked):
-    """modelDescription.xml is valid under the standard's schema, as FMPy brings it along."""
+@pytest.mark.parametrize(
+    ("archive", "name", "schema"),
+    [
+        ("fmu", "modelDescription.xml", "fmi2/fmi2ModelDescription.xsd"),
+        ("fmu3", "modelDescription.xml", "fmi3/fmi3ModelDescription.xsd"),
+        ("fmu3", "terminalsAndIcons/terminalsAndIcons.xml", "fmi3/fmi3TerminalsAndIcons.xsd"),
+    ],
+)
+def test_schema(request, archive, name, schema):
+    """Each XML file is valid under the standard's schema, as FMPy brings it along."""
     from importlib.resources import files
 
     from lxml import etree
 
-    schema = etree.XMLSchema(file=str(files("fmpy") / "schema" / "fmi2" / "fmi2ModelDescription.xsd"))
-    tree = etree.parse(str(unpacked / "modelDescription.xml"))
-    assert schema.validate(tree), schema.error_log
-    assert description.fmiVersion == "2.0"
+    rules = etree.XMLSchema(file=str(files("fmpy") / "schema" / schema))
+    tree = etree.fromstring(zipfile.ZipFile(request.getfixturevalue(archive)).read(name))
+    assert rules.validate(tree), rules.error_log
+    assert tree.get("fmiVersion") == {"fmu": "2.0", "fmu3": "3.0"}[archive]
