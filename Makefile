@@ -100,7 +100,7 @@ fmu3: library
 
 # Skips with a reason what cannot be built or run here. Options by PLATFORMS, as in `make platforms PLATFORMS=--twice`.
 # What passes is packed, by `make fmu` as well as long as the sources stay as they are.
-platforms: library
+platforms: fmu
 	$(call say,Other platforms)
 	@$(PY) tools/platforms.py $(PLATFORMS)
 	@$(MAKE) --no-print-directory fmu fmu3
