@@ -89,8 +89,9 @@ def test_files_of_the_wheel(wheel, fmu):
 
 @pytest.fixture(scope="module")
 def documented(fresh):
-    """Run README's lines and then those of docs/python.md in the new environment; return what each printed."""
-    pages = [blocks(REPOSITORY / "README.md")[:1], blocks(REPOSITORY / "docs" / "python.md")]
+    """Run the lines of both READMEs, then those of docs/python.md, in the new environment; return what was printed."""
+    pages = [blocks(REPOSITORY / "README.md")[:1] + blocks(REPOSITORY / "python" / "README.md")]
+    pages.append(blocks(REPOSITORY / "docs" / "python.md"))
     mark = "print('next page')"
     program = ["import matplotlib; matplotlib.use('Agg')", *pages[0], mark, *pages[1], ASK]
     printed, folder = fresh("\n".join(program))
