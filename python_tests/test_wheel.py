@@ -291,3 +291,10 @@ def test_fields_of_the_patch():
     cell = np.diff(fields["x"][0, :2])[0] * np.diff(fields["y"][:2, 0])[0]
     assert np.sum(fields["pressure"]) * cell == pytest.approx(60e3, rel=1e-6)
     assert len(wheelrail.plots.patch_fields(fields).axes) >= 4
+
+
+@needs_third
+def test_what_the_component_refuses_in_words_of_its_own():
+    """Through FMI 3.0 too, where nothing is said unless it is asked for."""
+    with pytest.raises(wheelrail.SimulationError, match=r"normal_load = .*allowed is 0 to 100000 N"):
+        wheelrail.simulate(TABLE | {"normal_load": [60e3, 142e3]}, fmu=THIRD)

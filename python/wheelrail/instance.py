@@ -67,6 +67,9 @@ def connect(fmu: AnyPath, name: str) -> tuple[Any, list[str]]:
     if not model.fmiVersion.startswith("2."):
         slave = FMU3Slave(**arguments)
         slave.instantiate(logMessage=lambda _environment, _status, _category, text: messages.append(text.decode()))
+        # Nothing is said without; of a step that succeeds nothing need be.
+        refusals = [category.name for category in model.logCategories if category.name.startswith("logStatus")]
+        slave.setDebugLogging(True, refusals)
         return slave, messages
     slave = FMU2Slave(**arguments)
     callbacks = fmi2CallbackFunctions()
