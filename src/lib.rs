@@ -1,5 +1,5 @@
 //! Thermoelastic rolling contact of a wheel on a rail, with friction that depends on temperature, frictional heat and
-//! wear: the library behind the FMI 2.0 co-simulation unit `WheelRailContact.fmu`.
+//! wear: the library behind the co-simulation unit `WheelRailContact.fmu` for FMI 2.0 and 3.0.
 //!
 //! The model is that of A. Chudzikiewicz and A. Myśliński, *Thermoelastic wheel–rail contact problem with temperature
 //! dependent friction coefficient*, stepped in time. Numbers in parentheses, here and all over the code, are its
@@ -91,8 +91,8 @@
 //! 6. `wheel_rail`: the stepped model. `simulation`: a wheel's way through time.
 //! 7. `verification`: the closed forms and published numbers that all this is held against.
 //!    `torture`: random parameters and drives, which no step may fail.
-//! 8. `fmi`: the same model as a co-simulation unit, `fmi2`: its C functions and its description of FMI 2.0. Nothing above
-//!    knows of FMI.
+//! 8. `fmi`: the same model as a co-simulation unit; `fmi2` and `fmi3`: the C functions and the description of a version of
+//!    FMI. Nothing above knows of FMI.
 //!
 //! `numerics` holds methods that know nothing of contact, `error` what can go wrong.
 
