@@ -220,8 +220,7 @@ fn factorise_block(block: &mut [f64], rows: usize, columns: usize) -> Option<()>
                 let out = &mut rest[column..rows];
                 before.add_columns(arithmetic, column, -1.0, out);
                 let pivot = out[0];
-                // Not a number is not positive either.
-                if !(pivot > 0.0) {
+                if pivot.is_nan() || pivot <= 0.0 {
                     return None;
                 }
                 let scale = 1.0 / pivot.sqrt();
