@@ -110,7 +110,8 @@ class Wheel:
     def __init__(self, number, skin_depth, **start_values):
         """Instantiate and initialise."""
         self.contact = Instance(FMU, f"wheel {number + 1}", skin_depth=skin_depth, **CONTACT | start_values).start()
-        self.inputs, self.outputs = ([self.contact.reference[name] for name in names] for names in (INPUTS, OUTPUTS))
+        variables = self.contact.variables
+        self.inputs, self.outputs = ([variables[name].valueReference for name in names] for names in (INPUTS, OUTPUTS))
         self.skin_depth = skin_depth
         self.entered = (0.0, 0.0)
         self.trail = Trail(AXLES[number] - HALF_LENGTH)
