@@ -6,6 +6,7 @@ use super::logging::Category;
 use super::units::UNITS;
 use quick_xml::se::{SeError, Serializer};
 use serde::Serialize;
+use std::collections::HashSet;
 
 pub const MODEL_NAME: &str = "WheelRailContact";
 pub const MODEL_IDENTIFIER: &str = "wheelrail";
@@ -128,9 +129,10 @@ pub fn default_experiment() -> DefaultExperiment {
     }
 }
 
-/// Every unit that a variable may have.
-pub fn unit_definitions() -> UnitDefinitions {
-    let units = UNITS.iter().map(|unit| Unit {
+/// The units that variables have.
+pub fn unit_definitions(used: &HashSet<&str>) -> UnitDefinitions {
+    let units = UNITS.iter().filter(|unit| used.contains(unit.name));
+    let units = units.map(|unit| Unit {
         name: unit.name,
         base_unit: BaseUnit {
             kg: unit.powers.kg,

@@ -23,6 +23,10 @@ pub fn model_description() -> Result<String, SeError> {
 /// The description without its GUID.
 fn anonymous() -> ModelDescription {
     let table = variables();
+    let units = table.iter().filter_map(|variable| match variable.kind {
+        Kind::Real { unit, .. } => Some(unit),
+        Kind::Integer { .. } => None,
+    });
     ModelDescription {
         fmi_version: "2.0",
         model_name: schema::MODEL_NAME,
@@ -48,7 +52,7 @@ fn anonymous() -> ModelDescription {
             can_serialize_fmu_state: true,
             provides_directional_derivative: true,
         },
-        unit_definitions: schema::unit_definitions(),
+        unit_definitions: schema::unit_definitions(&units.collect()),
         log_categories: schema::log_categories(),
         default_experiment: schema::default_experiment(),
         model_structure: model_structure(&table),

@@ -27,6 +27,10 @@ pub fn model_description() -> Result<String, SeError> {
 
 /// The description without its token.
 fn anonymous() -> ModelDescription {
+    let units = table().filter_map(|(_, variable)| match variable.kind {
+        Kind::Real(kind) => Some(kind.unit),
+        Kind::Integer { .. } => None,
+    });
     ModelDescription {
         fmi_version: "3.0",
         model_name: schema::MODEL_NAME,
@@ -55,7 +59,7 @@ fn anonymous() -> ModelDescription {
             can_return_early_after_intermediate_update: false,
             has_event_mode: false,
         },
-        unit_definitions: schema::unit_definitions(),
+        unit_definitions: schema::unit_definitions(&units.collect()),
         type_definitions: TypeDefinitions {
             enumerations: enumerations(),
         },
