@@ -30,8 +30,8 @@ pub fn respond(problem: &Problem, weights: SlipWeights, strips: usize, scratch: 
 /// (31): pressure for the shear there is, then friction for that pressure.
 pub fn solve(problem: &Problem, fields: &mut PatchFields, scratch: &mut Scratch, tolerance: f64) -> Result<Sweep> {
     if problem.constraint() == Constraint::Total(0.0) {
-        lift(fields);
         scratch.contact.list(&problem.rail.grid, |_| false);
+        lift(problem, fields, scratch);
         return Ok(Sweep::NONE);
     }
     let set_changed = solve_normal(problem, fields, scratch, tolerance)?;
@@ -42,7 +42,7 @@ pub fn solve(problem: &Problem, fields: &mut PatchFields, scratch: &mut Scratch,
         scratch.shear_before[component].copy_from_slice(&fields.shear[component]);
     }
     if scratch.contact.cells() == 0 {
-        lift(fields);
+        lift(problem, fields, scratch);
         return Ok(Sweep {
             shear_change: 0.0,
             set_changed,
@@ -58,14 +58,16 @@ pub fn solve(problem: &Problem, fields: &mut PatchFields, scratch: &mut Scratch,
     })
 }
 
-/// Without contact there are no tractions.
-fn lift(fields: &mut PatchFields) {
+/// Without contact there are no tractions. The displacement that does not come from shear is that of this step all the same: what
+/// the contact before has left would act on the next one.
+fn lift(problem: &Problem, fields: &mut PatchFields, scratch: &mut Scratch) {
     fields.pressure.fill(0.0);
     fields.friction.fill(0.0);
     for vectors in [&mut fields.shear, &mut fields.slip] {
         vectors.iter_mut().for_each(|component| component.fill(0.0));
     }
     fields.penetration = 0.0;
+    given_displacement(problem, fields, scratch);
 }
 
 /// (37). Returns whether other cells are under pressure than before.
