@@ -12,7 +12,7 @@ mod interface;
 mod timing;
 
 use braking::Braking;
-use interface::common::{Api, OK};
+use interface::common::{Api, Fmi2, OK};
 use std::time::Instant;
 use timing::{Steps, median_of_three, target};
 use wheelrail::Model;
@@ -109,7 +109,7 @@ fn two_threads() -> f64 {
 /// What the interface costs, `µs`, medians: a step in addition to the native one, saving, restoring.
 fn interface_costs() -> [f64; 3] {
     const CALLS: usize = 2_000;
-    let api = Api::load();
+    let api = Api::load(Fmi2);
     let (client, start) = interface::instance(&api);
     let mut native = interface::native();
     let mut handle = client.save();
@@ -130,10 +130,10 @@ fn interface_costs() -> [f64; 3] {
         // SAFETY: a live instance and its own state.
         unsafe {
             costs[1].push(timed(&mut || {
-                client.expect(OK, (api.get_state)(client.component, &mut handle))
+                client.expect(OK, api.get_state(client.component, &mut handle))
             }));
             costs[2].push(timed(&mut || {
-                client.expect(OK, (api.set_state)(client.component, handle))
+                client.expect(OK, api.set_state(client.component, handle))
             }));
         }
     }

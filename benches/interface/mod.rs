@@ -4,7 +4,7 @@
 // Each benchmark uses a part of this.
 #![allow(dead_code)]
 
-#[path = "../../tests/fmi2/importer.rs"]
+#[path = "../../tests/fmi/importer/mod.rs"]
 pub mod common;
 
 use common::{Api, Client, OK};
@@ -19,8 +19,7 @@ const WARM_UP: u32 = 100;
 /// An instance in *stepComplete* after the warm-up, and its time.
 pub fn instance(api: &Api) -> (Client<'_>, f64) {
     let client = Client::new(api);
-    client.expect(OK, client.setup(0.0, None));
-    client.expect(OK, client.enter());
+    client.expect(OK, client.begin(0.0, None));
     client.expect(OK, client.set(&[("creepage", CREEPAGE)]));
     client.expect(OK, client.exit());
     let mut time = 0.0;

@@ -6,14 +6,25 @@ mod importer;
 mod own_process;
 
 mod abi;
+mod adjoint_derivatives;
+mod arrays;
+mod both_standards;
 mod calls;
 mod description;
 mod directional_derivatives;
+mod document;
+mod early_return;
+#[cfg(all(target_os = "linux", target_arch = "x86_64", target_env = "gnu"))]
+mod floating_point;
+mod fmi2_alone;
+mod functions;
 mod input_derivatives;
 #[cfg(all(target_os = "linux", target_arch = "x86_64"))]
 mod isolation;
 mod logging;
+mod odd_calls;
 mod probes;
+mod probes_fmi3;
 mod sequences;
 #[cfg(target_os = "linux")]
 mod soak;

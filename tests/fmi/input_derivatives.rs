@@ -1,8 +1,11 @@
 //! A moving load and a moving creepage: with fmi2SetRealInputDerivatives a step of 10 ms follows the inputs to order 2,
 //! without it holds them and lags behind to order 1. And fmi2GetRealOutputDerivatives against the outputs themselves.
 
-use super::importer::{Api, Client, ContactModel, Line, OK, Patch, reference, with_each_contact_model};
+use super::importer::{
+    Api, Client, ContactModel, DISCARD, ERROR, Fmi2, Line, OK, Patch, WARNING, with_each, with_each_contact_model,
+};
 use std::f64::consts::TAU;
+use std::ffi::c_int;
 use wheelrail::parameters::Parameters;
 use wheelrail::signals::{INPUTS, Inputs, OUTPUTS, Outputs};
 use wheelrail::wheel_rail::Model;
@@ -108,8 +111,7 @@ fn through_the_interface(api: &Api, contact: ContactModel, interpolated: bool) -
             .collect();
         client.set(&values)
     };
-    client.expect(OK, client.setup(0.0, None));
-    client.expect(OK, client.enter());
+    client.expect(OK, client.begin(0.0, None));
     client.expect(OK, set(moving(0.0).0));
     client.expect(OK, client.exit());
     let mut points = Vec::new();
@@ -146,8 +148,86 @@ fn order(errors: [f64; 3]) -> f64 {
 }
 
 #[test]
+fn input_derivatives_act_on_one_step() {
+    with_each_contact_model(&Api::load(Fmi2), |api, contact| {
+        let step = |rate: Option<f64>| {
+            let client = Client::running(api, contact, &[("normal_load", 5e4)]);
+            if let Some(rate) = rate {
+                client.expect(OK, client.set_rates(&[("normal_load", 1, rate)]));
+            }
+            client.expect(OK, client.step(0.0, 0.01));
+            let first = client.get("peak_pressure");
+            client.expect(OK, client.step(0.01, 0.01));
+            (first, client.get("peak_pressure"))
+        };
+        let (held, rising) = (step(None), step(Some(1e6)));
+        // Hertz, of a line and of an ellipse.
+        let expected = match contact {
+            Line => (6.0_f64 / 5.0).sqrt(),
+            Patch => (6.0_f64 / 5.0).cbrt(),
+        };
+        assert!((rising.0 / held.0 - expected).abs() < 0.02, "{rising:?} {held:?}");
+        // The derivative is used up, the input is what was set.
+        assert!((rising.1 / held.1 - 1.0).abs() < 1e-6, "{rising:?} {held:?}");
+    });
+}
+
+#[test]
+fn input_derivatives_are_checked() {
+    with_each_contact_model(&Api::load(Fmi2), |api, contact| {
+        for value in [f64::NAN, f64::INFINITY] {
+            let client = Client::running(api, contact, &[]);
+            client.expect(
+                DISCARD,
+                client.set_rates(&[("creepage", 1, 1.0), ("normal_load", 1, value)]),
+            );
+            assert!(client.last_message().contains("normal_load"));
+            let fresh = Client::running(api, contact, &[]);
+            client.expect(OK, client.step(0.0, 0.01));
+            fresh.expect(OK, fresh.step(0.0, 0.01));
+            assert_eq!(client.outputs(), fresh.outputs(), "nothing was set");
+        }
+        for order in [0, -1, c_int::MIN] {
+            let client = Client::running(api, contact, &[]);
+            client.expect(ERROR, client.set_rates(&[("normal_load", order, 1.0)]));
+            assert!(client.last_message().contains("order"));
+        }
+        // Nothing forbids a master a higher order; it is told that it has no effect.
+        let client = Client::running(api, contact, &[]);
+        client.expect(WARNING, client.set_rates(&[("normal_load", 2, 1.0)]));
+        assert!(client.last_message().contains("order 2"));
+        client.expect(OK, client.step(0.0, 0.01));
+        // Inputs have derivatives, outputs and parameters have none that could be set.
+        client.expect(ERROR, client.set_rates(&[("friction_cold", 1, 1.0)]));
+    });
+}
+
+#[test]
+fn an_extrapolated_input_that_leaves_its_range_stops_the_step() {
+    with_each_contact_model(&Api::load(Fmi2), |api, contact| {
+        let client = Client::running(api, contact, &[]);
+        client.expect(OK, client.step(0.0, 0.01));
+        let before = client.outputs();
+        let handle = client.save();
+        for (name, rate) in [
+            ("normal_load", -1e9),
+            ("lateral_creepage", 1e4),
+            ("spin_creepage", -1e6),
+            ("lateral_speed", 1e6),
+            ("spin_rate", -1e6),
+        ] {
+            client.expect(OK, client.set_rates(&[(name, 1, rate)]));
+            client.expect(ERROR, client.step(0.01, 0.01));
+            assert!(client.last_message().contains(&format!("{name} = ")));
+            assert_eq!(client.outputs(), before);
+            client.expect(OK, client.restore(handle));
+        }
+    });
+}
+
+#[test]
 fn input_derivatives_bring_a_long_step_closer_to_the_converged_solution() {
-    with_each_contact_model(|_, contact| {
+    with_each_contact_model(&Api::load(Fmi2), |_, contact| {
         let model = Model::new(parameters(contact)).unwrap();
         let converged = native(&model, CONVERGED, true);
         // Some cells of a coarse patch join the contact, or begin to slip, within a step.
@@ -190,7 +270,7 @@ fn input_derivatives_bring_a_long_step_closer_to_the_converged_solution() {
 /// What a master uses them for: outputs extrapolated over the next step of 10 ms miss it by less than held ones.
 #[test]
 fn output_derivatives_extrapolate_the_outputs() {
-    with_each_contact_model(|_, contact| {
+    with_each_contact_model(&Api::load(Fmi2), |_, contact| {
         let model = Model::new(parameters(contact)).unwrap();
         let points = native(&model, 1, true);
         // The peak of a coarse patch jumps from cell to cell.
@@ -220,9 +300,9 @@ fn output_derivatives_extrapolate_the_outputs() {
 
 #[test]
 fn output_derivatives_are_differences_of_the_outputs() {
-    with_each_contact_model(|api, contact| {
+    with_each(|api, contact| {
         let client = Client::running(api, contact, &[("creepage", 3e-3)]);
-        let references: Vec<u32> = OUTPUTS.iter().map(|row| reference(row.name)).collect();
+        let references: Vec<u32> = OUTPUTS.iter().map(|row| api.reference(row.name)).collect();
         let orders = vec![1; references.len()];
         let read = || client.outputs().into_iter().map(f64::from_bits).collect::<Vec<_>>();
         let mut before = read();
@@ -230,13 +310,15 @@ fn output_derivatives_are_differences_of_the_outputs() {
             let time = f64::from(step) * 1e-3;
             let (inputs, rates) = moving(time, contact);
             client.expect(OK, client.set(&[("normal_load", inputs.normal_load)]));
-            client.expect(OK, client.set_rates(&[("normal_load", 1, rates.normal_load)]));
+            if api.takes_rates() {
+                client.expect(OK, client.set_rates(&[("normal_load", 1, rates.normal_load)]));
+            }
             client.expect(OK, client.step(time, 1e-3));
             let after = read();
             let mut derivatives = vec![f64::NAN; references.len()];
             // SAFETY: as many elements as references.
             let status = unsafe {
-                (api.get_output_derivatives)(
+                api.get_output_derivatives(
                     client.component,
                     references.as_ptr(),
                     references.len(),
@@ -246,7 +328,7 @@ fn output_derivatives_are_differences_of_the_outputs() {
             };
             client.expect(OK, status);
             for (row, derivative) in OUTPUTS.iter().zip(&derivatives) {
-                let column = references.iter().position(|r| *r == reference(row.name)).unwrap();
+                let column = references.iter().position(|r| *r == api.reference(row.name)).unwrap();
                 let difference = (after[column] - before[column]) / 1e-3;
                 // Round-off of the difference.
                 let tolerance = 1e-12 * (after[column].abs() + before[column].abs()) / 1e-3;
@@ -263,9 +345,9 @@ fn output_derivatives_are_differences_of_the_outputs() {
 
 #[test]
 fn the_interface_gives_the_bits_of_the_model() {
-    with_each_contact_model(|api, contact| {
+    with_each(|api, contact| {
         let model = Model::new(parameters(contact)).unwrap();
-        for interpolated in [false, true] {
+        for interpolated in [false, api.takes_rates()] {
             let bits = |outputs: &Outputs| {
                 OUTPUTS
                     .iter()

@@ -1,7 +1,7 @@
 //! The library is loaded and unloaded many times in one process, with an instance in between.
 
 use super::importer::{
-    Api, Client, ContactModel, DISCARD, ERROR, Line, OK, Patch, coarse, is_mapped, reference, sideways,
+    Api, Client, ContactModel, DISCARD, ERROR, Fmi2, Fmi3, Line, OK, Patch, Standard, coarse, is_mapped, sideways,
 };
 use super::own_process::in_own_process;
 use std::ffi::c_int;
@@ -37,23 +37,34 @@ fn use_all(api: &Api, (contact, grid): Grid) {
     client.start();
     client.expect(OK, client.set(&[("creepage", 0.01)]));
     client.expect(OK, client.set(sideways(contact)));
-    client.expect(OK, client.set_rates(&[("normal_load", 1, 1e4)]));
+    if api.takes_rates() {
+        client.expect(OK, client.set_rates(&[("normal_load", 1, 1e4)]));
+    }
     client.expect(OK, client.step(0.0, 0.01));
     let mut handle = client.save();
     let bytes = client.serialize(handle);
     client.expect(OK, client.restore(handle));
     client.expect(OK, client.deserialize(&bytes, &mut handle));
-    let (force, creepage) = (reference("traction_force"), reference("creepage"));
+    let (force, creepage) = (api.reference("traction_force"), api.reference("creepage"));
     // SAFETY: one element behind each pointer.
     unsafe {
-        client.expect(OK, (api.set_debug_logging)(c, 1, 0, n));
+        client.expect(OK, api.set_debug_logging(c, 1, 0, n));
         client.expect(
             OK,
-            (api.directional_derivative)(c, &force, 1, &creepage, 1, &1.0, &mut 0.0),
+            api.directional_derivative(c, &force, 1, &creepage, 1, &1.0, &mut 0.0),
         );
-        client.expect(OK, (api.get_output_derivatives)(c, &force, 1, &1, &mut 0.0));
-        client.expect(DISCARD, (api.get_status)(c, 0, &mut 0));
-        client.expect(OK, (api.free_state)(c, &mut handle));
+        client.expect(OK, api.get_output_derivatives(c, &force, 1, &1, &mut 0.0));
+        if let Fmi2 = api.standard {
+            client.expect(DISCARD, (api.fmi2.fmi2GetStatus)(c, 0, &mut 0));
+        }
+        if let Fmi3 = api.standard {
+            let mut sensitivity = 0.0;
+            client.expect(
+                OK,
+                (api.fmi3.fmi3GetAdjointDerivative)(c, &force, 1, &creepage, 1, &1.0, 1, &mut sensitivity, 1),
+            );
+        }
+        client.expect(OK, api.free_state(c, &mut handle));
     }
     client.expect(ERROR, client.step(0.0, f64::NAN));
     client.expect(OK, client.reset());
@@ -65,18 +76,25 @@ fn a_hundred_loads_leave_nothing_behind() {
 }
 
 fn load_a_hundred_times() {
-    let cycle = |grid: Grid| {
-        let api = Api::load();
+    let cycle = |standard: Standard, grid: Grid| {
+        let api = Api::load(standard);
         use_all(&api, grid);
         assert!(is_mapped());
         drop(api);
         assert!(!is_mapped(), "the library is gone");
     };
     let small = [Line, Patch].map(|contact| (contact, coarse(contact)));
-    LARGE.into_iter().for_each(cycle);
-    (0..5).for_each(|_| small.into_iter().for_each(cycle));
+    let large = LARGE.into_iter().zip([Fmi2, Fmi3, Fmi2]);
+    large.for_each(|(grid, standard)| cycle(standard, grid));
+    // Each grid by each standard in turn.
+    let both = |cycles: usize| {
+        for k in 0..2 * cycles {
+            cycle(Standard::ALL[k / 2 % 2], small[k % 2]);
+        }
+    };
+    both(6);
     let (pages, tasks) = (resident_pages(), threads());
-    (0..50).for_each(|_| small.into_iter().for_each(cycle));
+    both(50);
     // 4 MiB of slack for the allocator; one leaked library or instance would be several hundred.
     assert!(
         resident_pages() < pages + 1024,
@@ -96,8 +114,8 @@ fn threads_outlive_the_library() {
 
 fn outlive_the_library() {
     let small = [Line, Patch].map(|contact| (contact, coarse(contact)));
-    for grid in small.into_iter().chain(LARGE) {
-        let api = Arc::new(Api::load());
+    for (k, grid) in small.into_iter().chain(small).chain(LARGE).enumerate() {
+        let api = Arc::new(Api::load(Standard::ALL[k / 2 % 2]));
         let ((called, wait), (unloaded, go)) = (channel(), channel());
         let shared = Arc::clone(&api);
         let thread = std::thread::spawn(move || {

@@ -1,10 +1,11 @@
-//! fmi2GetDirectionalDerivative of every output with respect to every input against differences of a step that is rolled
-//! back with fmi2SetFMUstate, over random operating points in stick, partial slip and sliding of both contact models.
+//! The directional derivative of every output with respect to every input against differences of a step that is rolled
+//! back with a saved state, over random operating points in stick, partial slip and sliding of both contact models.
 
-use super::importer::{Client, ContactModel, Handle, Line, OK, Patch, reference, with_each_contact_model};
+use super::importer::{Client, ContactModel, Handle, Line, OK, Patch, with_each};
 use wheelrail::parameters::Parameters;
 use wheelrail::signals::{INPUTS, OUTPUTS};
 use wheelrail::torture::random::Random;
+use wheelrail::wheel_rail::PROFILE_POINTS;
 
 const STEP: f64 = 1e-3;
 /// Relative change of all inputs in the step that is differentiated. Without it the operator split would rest after two
@@ -72,7 +73,7 @@ impl Point<'_> {
         inputs[input].1 += change;
         client.expect(OK, client.set(&inputs));
         client.expect(OK, client.step(self.time, STEP));
-        let mut values = vec![f64::NAN; self.references.len()];
+        let mut values = vec![f64::NAN; OUTPUTS.len() + PROFILE_POINTS];
         client.expect(OK, client.get_references(&self.references, &mut values));
         let pressure = values.split_off(OUTPUTS.len());
         (values, pressure.iter().map(|p| *p > 0.0).collect())
@@ -108,10 +109,10 @@ impl Point<'_> {
     /// The column of the interface.
     fn derivatives(&self, input: usize) -> Vec<f64> {
         let (client, unknowns) = (self.client, &self.references[..OUTPUTS.len()]);
-        let (known, mut values) = (reference(INPUTS[input].name), vec![f64::NAN; OUTPUTS.len()]);
+        let (known, mut values) = (client.api.reference(INPUTS[input].name), vec![f64::NAN; OUTPUTS.len()]);
         // SAFETY: as many elements as references.
         let status = unsafe {
-            (client.api.directional_derivative)(
+            client.api.directional_derivative(
                 client.component,
                 unknowns.as_ptr(),
                 unknowns.len(),
@@ -128,7 +129,7 @@ impl Point<'_> {
 
 #[test]
 fn directional_derivatives_are_the_differences_of_a_rolled_back_step() {
-    with_each_contact_model(|api, contact| {
+    with_each(|api, contact| {
         let mut random = Random::new(3, 0);
         let (mut compared, mut large, mut corners, mut regimes, mut worst) = (0, 0, 0, [0; 3], 0.0_f64);
         let accuracy = accuracy(contact);
@@ -193,16 +194,15 @@ fn directional_derivatives_are_the_differences_of_a_rolled_back_step() {
                 _ => (name, value * (1.0 + MOVE)),
             });
             client.expect(OK, client.set(&moved));
-            client.expect(OK, client.setup(0.0, None));
-            client.expect(OK, client.enter());
+            client.expect(OK, client.begin(0.0, None));
             client.expect(OK, client.exit());
             let mut time = 0.0;
             for _ in 0..20 {
                 client.expect(OK, client.step(time, STEP));
                 time += STEP;
             }
-            let outputs = OUTPUTS.iter().map(|row| reference(row.name));
-            let pressure = (1..=61).map(|node| reference(&format!("profile.pressure[{node}]")));
+            let outputs = OUTPUTS.iter().map(|row| api.reference(row.name));
+            let pressure = api.array("profile.pressure", PROFILE_POINTS);
             let point = Point {
                 client: &client,
                 before: client.save(),

@@ -1,7 +1,7 @@
 //! The library leaves its host as it was: floating-point control, signal handlers, working directory, environment, threads and
-//! open files; and between fmi2Instantiate and fmi2FreeInstance it reads and writes nothing.
+//! open files; and between instantiation and fmi2FreeInstance or fmi3FreeInstance it reads and writes nothing.
 
-use super::importer::{Client, Component, ERROR, OK, reference, sideways, with_each_contact_model};
+use super::importer::{Client, Component, ERROR, OK, sideways, with_each};
 use super::own_process::in_own_process;
 use std::collections::BTreeMap;
 use std::ffi::{CStr, CString, OsString, c_int};
@@ -71,11 +71,10 @@ fn reads_and_writes() -> [u64; 2] {
 
 /// A life with steps, states, derivatives, an error and a reset.
 fn live(client: &Client) {
-    let component: Component = client.component;
+    let (api, component): (_, Component) = (client.api, client.component);
     for _ in 0..2 {
         client.make_coarse();
-        client.expect(OK, client.setup(0.0, None));
-        client.expect(OK, client.enter());
+        client.expect(OK, client.begin(0.0, None));
         client.expect(OK, client.set(&[("creepage", 0.01)]));
         client.expect(OK, client.set(sideways(client.contact)));
         client.expect(OK, client.exit());
@@ -85,10 +84,12 @@ fn live(client: &Client) {
         }
         client.expect(OK, client.restore(handle));
         client.serialize(handle);
-        let (force, creepage) = (reference("traction_force"), reference("creepage"));
+        let (force, creepage) = (api.reference("traction_force"), api.reference("creepage"));
         // SAFETY: one element behind each pointer.
         client.expect(OK, unsafe {
-            (client.api.directional_derivative)(component, &force, 1, &creepage, 1, &1.0, &mut 0.0)
+            client
+                .api
+                .directional_derivative(component, &force, 1, &creepage, 1, &1.0, &mut 0.0)
         });
         client.expect(ERROR, client.step(0.0, f64::NAN));
         client.expect(OK, client.reset());
@@ -101,7 +102,7 @@ fn the_host_is_left_as_it_was() {
 }
 
 fn leave_the_host_as_it_was() {
-    with_each_contact_model(|api, contact| {
+    with_each(|api, contact| {
         let before = Surroundings::now();
         let mut client = Client::with_logging(api, true);
         client.contact = contact;
