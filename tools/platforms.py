@@ -232,7 +232,7 @@ def compare_elsewhere(reference, report):
 
 def abi_tests(report, given):
     """Run the tests of the exported functions with wine as cargo's runner."""
-    say("win64: cargo test --test fmi2")
+    say("win64: cargo test --test fmi")
     try:
         chain = toolchains.windows(given.install)
         command, environment = toolchains.wine(given.install)
@@ -253,7 +253,7 @@ def main():
     parser.add_argument("--build-only", action="store_true", help="neither run nor pack what was built")
     parser.add_argument("--twice", action="store_true", help="build in a second folder too; compare the bytes")
     parser.add_argument("--unmask", action="store_true", help="the host's floating-point exceptions raise signals")
-    parser.add_argument("--abi-tests", action="store_true", help="run `cargo test --test fmi2` under wine as well")
+    parser.add_argument("--abi-tests", action="store_true", help="run `cargo test --test fmi` under wine as well")
     parser.add_argument("--binaries", choices=NAMES, help="print `wheelrail pack`'s options for what was built before")
     parser.add_argument("--require", action="store_true", help="what is skipped is an error")
     given = parser.parse_args()
