@@ -241,7 +241,7 @@ def abi_tests(report, given):
     chain.environment |= environment
     chain.environment["CARGO_TARGET_X86_64_PC_WINDOWS_GNU_RUNNER"] = " ".join(command)
     try:
-        chain.call("test", "--locked", "--release", "--test", "fmi2")
+        chain.call("test", "--locked", "--release", "--test", "fmi")
     except subprocess.CalledProcessError as error:
         report.fail("win64, tests of the exported functions", [f"cargo ended with status {error.returncode}"])
 

@@ -15,6 +15,7 @@ fn returning_early(api: &Api, contact: ContactModel) -> Client<'_> {
             ..RIGHT
         },
     );
+    client.hear_refusals();
     client.contact = contact;
     client.make_coarse();
     client

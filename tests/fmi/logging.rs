@@ -1,7 +1,7 @@
 //! Messages: where they go, what they look like, when there are none.
 
 use super::importer::{
-    Api, Client, Component, DISCARD, ERROR, Fmi2, Fmi3, Message, NO_CALLBACKS, OK, Standard, with_each,
+    Api, Client, Component, DISCARD, ERROR, Fmi2, Fmi3, Message, NO_CALLBACKS, OK, RIGHT, Standard, with_each,
     with_each_standard,
 };
 use std::cell::Cell;
@@ -39,10 +39,22 @@ fn categories(messages: &[Message]) -> Vec<&str> {
 #[test]
 fn nothing_is_logged_when_logging_is_off_and_nothing_is_wrong() {
     with_each_standard(|api| {
-        let client = Client::new(api);
+        let client = Client::given(api, RIGHT);
         good_life(&client);
         assert_eq!(client.journal.take(), []);
     });
+}
+
+/// Without being asked for, FMI 3.0 tells the reasons of errors alone, but those always.
+#[test]
+fn without_logging_errors_are_told() {
+    let api = Api::load(Fmi3);
+    let client = Client::given(&api, RIGHT);
+    client.expect(DISCARD, client.set(&[("normal_load", -1.0)]));
+    assert_eq!(client.journal.take(), []);
+    client.expect(OK, set_debug_logging(&client, false, &[]));
+    client.expect(ERROR, client.step(0.0, 1.0));
+    assert_eq!(categories(&client.journal.take()), ["logStatusError"]);
 }
 
 #[test]
@@ -62,8 +74,13 @@ fn the_reason_of_a_failed_call_is_told_until_it_is_switched_off() {
             (ERROR, "logStatusError")
         );
         client.expect(OK, set_debug_logging(&client, false, &[]));
-        client.expect(ERROR, client.step(0.0, 1.0));
+        client.expect(OK, client.reset());
+        client.expect(DISCARD, client.set(&[("normal_load", -1.0)]));
         assert_eq!(client.journal.take(), []);
+        client.expect(ERROR, client.step(0.0, 1.0));
+        // FMI 3.0 tells the reasons of errors always.
+        let told = client.journal.take().len();
+        assert_eq!(told, usize::from(api.standard == Fmi3));
     });
 }
 
@@ -83,15 +100,16 @@ fn with_logging_on_solver_and_events_are_told_with_ok() {
 fn categories_are_switched_one_by_one() {
     with_each_standard(|api| {
         for (chosen, name) in [(c"logEvents", "logEvents"), (c"logSolver", "logSolver")] {
-            let client = Client::new(api);
-            if api.standard == Fmi3 {
-                // Only FMI 2.0 has what is switched on exclude the rest.
-                client.expect(OK, set_debug_logging(&client, false, &[]));
-            }
+            let client = Client::given(api, RIGHT);
             client.expect(OK, set_debug_logging(&client, true, &[chosen]));
             good_life(&client);
             client.expect(ERROR, client.step(0.0, 1.0));
-            assert_eq!(categories(&client.journal.take()), [name]);
+            let expected: &[_] = match api.standard {
+                // What is switched on excludes the rest.
+                Fmi2 => &[name],
+                Fmi3 => &[name, "logStatusError"],
+            };
+            assert_eq!(categories(&client.journal.take()), expected);
         }
         let client = Client::with_logging(api, true);
         client.expect(OK, set_debug_logging(&client, false, &[c"logSolver"]));
@@ -153,9 +171,9 @@ fn categories_add_up() {
     let api = Api::load(Fmi3);
     let client = Client::new(&api);
     client.expect(OK, set_debug_logging(&client, true, &[c"logSolver"]));
+    client.expect(OK, set_debug_logging(&client, true, &[c"logEvents"]));
     good_life(&client);
-    client.expect(ERROR, client.step(0.0, 1.0));
-    assert_eq!(categories(&client.journal.take()), ["logSolver", "logStatusError"]);
+    assert_eq!(categories(&client.journal.take()), ["logEvents", "logSolver"]);
 }
 
 /// An importer whose logger reads a variable.
@@ -227,11 +245,9 @@ fn the_logger_may_call_back_into_the_instance() {
                 assert_eq!((api.fmi2.fmi2SetupExperiment)(component, 0, 0.0, 0.0, 0, 0.0), OK);
             }
             assert_eq!(api.enter_initialization(component), OK);
-            assert_eq!(
-                api.set_real(component, &api.reference("normal_load"), 1, &-1.0),
-                DISCARD
-            );
-            assert_eq!(api.exit_initialization(component), OK);
+            // Any call that is an error.
+            assert_eq!(api.reset(component), OK);
+            assert_eq!(api.exit_initialization(component), ERROR);
             api.free_instance(component);
         }
         assert_eq!(host.seen.get(), 1);

@@ -29,7 +29,20 @@ impl Drop for Client<'_> {
 impl<'a> Client<'a> {
     /// In *instantiated*, with logging off.
     pub fn new(api: &'a Api) -> Client<'a> {
-        Client::given(api, RIGHT)
+        let client = Client::given(api, RIGHT);
+        client.hear_refusals();
+        client
+    }
+
+    /// Has the reasons of refused values told: in FMI 3.0 only those of errors are without being asked for.
+    #[track_caller]
+    pub fn hear_refusals(&self) {
+        if self.api.standard == Fmi3 {
+            let warnings = c"logStatusWarning".as_ptr();
+            // SAFETY: a live instance, a valid string.
+            let status = unsafe { self.api.set_debug_logging(self.component, 1, 1, &warnings) };
+            self.expect(OK, status);
+        }
     }
 
     pub fn with_logging(api: &'a Api, on: bool) -> Client<'a> {
