@@ -7,12 +7,8 @@ use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 use std::ffi::CString;
 use std::ptr::{null, null_mut};
-use wheelrail::fmi2::functions::{
-    fmi2DoStep, fmi2EnterInitializationMode, fmi2ExitInitializationMode, fmi2FreeInstance, fmi2GetReal,
-    fmi2Instantiate, fmi2SetInteger, fmi2SetReal, fmi2SetRealInputDerivatives, fmi2SetupExperiment,
-};
-use wheelrail::fmi2::types::{CallbackFunctions, Status};
-use wheelrail::fmi2::variables::variables;
+use wheelrail::fmi2::types::{self as fmi2, CallbackFunctions};
+use wheelrail::fmi3::types as fmi3;
 use wheelrail::parameters::{ContactModel, NormalSolver, Parameters, SlipSource, Wheel, WheelHeating};
 use wheelrail::signals::Inputs;
 use wheelrail::wheel_rail::Model;
@@ -213,23 +209,47 @@ fn an_instance_holds_at_most_16_mib() {
     }
 }
 
-#[test]
-fn a_step_through_the_interface_allocates_nothing() {
-    through_the_interface(&[("slip_source", 2)], inputs);
-    let patch = [
-        ("slip_source", 2),
-        ("contact_model", 2),
-        ("patch_nodes", 14),
-        ("patch_strips", 7),
-    ];
-    through_the_interface(&patch, swaying);
+/// Inputs that change in a step through the interface.
+const MOVED: [&str; 6] = [
+    "wheel_speed",
+    "normal_load",
+    "vehicle_speed",
+    "friction_scale",
+    "lateral_speed",
+    "spin_rate",
+];
+
+/// Steps that a standard's functions take, given the time and the values of [`MOVED`]; they return the statuses.
+fn drive(inputs: fn(u32) -> Inputs, mut take: impl FnMut(f64, &[f64; 6]) -> [i32; 4]) {
+    for step in 0..STEPS {
+        let given = inputs(step + 1);
+        let values = [
+            given.wheel_speed,
+            given.normal_load,
+            given.vehicle_speed,
+            given.friction_scale,
+            given.lateral_speed,
+            given.spin_rate,
+        ];
+        let (count, statuses) = allocations(|| take(f64::from(step) * 1e-3, &values));
+        assert_eq!(statuses, [0; 4], "step {step}");
+        assert!(step < WARM_UP || count == 0, "step {step}: {count} allocations");
+    }
 }
 
-fn through_the_interface(integers: &[(&str, i32)], inputs: fn(u32) -> Inputs) {
-    let reference = |name: &str| {
-        let row = variables().into_iter().find(|row| row.name == name);
-        row.unwrap().reference
-    };
+#[test]
+fn a_step_through_the_interface_allocates_nothing() {
+    for through in [through_fmi2, through_fmi3] {
+        through(&[], inputs);
+        through(&[("patch_nodes", 14), ("patch_strips", 7)], swaying);
+    }
+}
+
+/// By vehicle speed; of a patch where it is given lengths.
+fn through_fmi2(lengths: &[(&str, u64)], inputs: fn(u32) -> Inputs) {
+    use wheelrail::fmi2::functions::*;
+    let table = wheelrail::fmi2::variables::variables();
+    let reference = |name: &str| table.iter().find(|row| row.name == name).unwrap().reference;
     let guid = CString::new(wheelrail::fmi2::GUID).unwrap();
     let callbacks = CallbackFunctions {
         logger: None,
@@ -238,49 +258,85 @@ fn through_the_interface(integers: &[(&str, i32)], inputs: fn(u32) -> Inputs) {
         step_finished: None,
         component_environment: null_mut(),
     };
-    let names = [
-        "wheel_speed",
-        "normal_load",
-        "vehicle_speed",
-        "friction_scale",
-        "lateral_speed",
-        "spin_rate",
-    ];
-    let (references, output) = (names.map(reference), reference("traction_force"));
-    let load = reference("normal_load");
+    let (references, output, load) = (
+        MOVED.map(reference),
+        reference("traction_force"),
+        reference("normal_load"),
+    );
     // SAFETY: valid pointers, a live instance, as many values as references.
     unsafe {
         let component = fmi2Instantiate(c"wheel".as_ptr(), 1, guid.as_ptr(), null(), &callbacks, 0, 0);
         assert!(!component.is_null());
-        let ok = |status: Status| assert_eq!(status, Status::OK);
-        for (name, value) in integers {
-            ok(fmi2SetInteger(component, &reference(name), 1, value));
+        let ok = |status: fmi2::Status| assert_eq!(status, fmi2::Status::OK);
+        let contact_model = 1 + i32::from(!lengths.is_empty());
+        for (name, value) in [("slip_source", 2), ("contact_model", contact_model)] {
+            ok(fmi2SetInteger(component, &reference(name), 1, &value));
+        }
+        for (name, value) in lengths {
+            ok(fmi2SetInteger(component, &reference(name), 1, &(*value as i32)));
         }
         ok(fmi2SetupExperiment(component, 0, 0.0, 0.0, 0, 0.0));
         ok(fmi2EnterInitializationMode(component));
         ok(fmi2ExitInitializationMode(component));
-        for step in 0..STEPS {
-            let given = inputs(step + 1);
-            let values = [
-                given.wheel_speed,
-                given.normal_load,
-                given.vehicle_speed,
-                given.friction_scale,
-                given.lateral_speed,
-                given.spin_rate,
+        let mut value = 0.0;
+        drive(inputs, |time, values| {
+            let statuses = [
+                fmi2SetReal(component, references.as_ptr(), values.len(), values.as_ptr()),
+                fmi2SetRealInputDerivatives(component, &load, 1, &1, &10.0),
+                fmi2DoStep(component, time, 1e-3, 1),
+                fmi2GetReal(component, &output, 1, &mut value),
             ];
-            let mut value = 0.0;
-            let (count, statuses) = allocations(|| {
-                [
-                    fmi2SetReal(component, references.as_ptr(), values.len(), values.as_ptr()),
-                    fmi2SetRealInputDerivatives(component, &load, 1, &1, &10.0),
-                    fmi2DoStep(component, f64::from(step) * 1e-3, 1e-3, 1),
-                    fmi2GetReal(component, &output, 1, &mut value),
-                ]
-            });
-            assert_eq!(statuses, [Status::OK; 4], "step {step}");
-            assert!(step < WARM_UP || count == 0, "step {step}: {count} allocations");
-        }
+            statuses.map(|status| status.0)
+        });
         fmi2FreeInstance(component);
+    }
+}
+
+/// The same by FMI 3.0.
+fn through_fmi3(lengths: &[(&str, u64)], inputs: fn(u32) -> Inputs) {
+    use wheelrail::fmi3::functions::*;
+    let table: Vec<_> = wheelrail::fmi3::references::table().collect();
+    let reference = |name: &str| table.iter().find(|(_, row)| row.name == name).unwrap().0;
+    let token = CString::new(wheelrail::fmi3::INSTANTIATION_TOKEN).unwrap();
+    let (references, output) = (MOVED.map(reference), reference("traction_force"));
+    let iterations = reference("solver.iterations");
+    // SAFETY: valid pointers, a live instance, as many values as references.
+    unsafe {
+        let (name, token, none) = (c"wheel".as_ptr(), token.as_ptr(), null());
+        let instance = fmi3InstantiateCoSimulation(name, token, none, 0, 0, 0, 1, null(), 0, null_mut(), None, None);
+        assert!(!instance.is_null());
+        let ok = |status: fmi3::Status| assert_eq!(status, fmi3::Status::OK);
+        ok(fmi3EnterConfigurationMode(instance));
+        for (name, value) in lengths {
+            ok(fmi3SetUInt64(instance, &reference(name), 1, value, 1));
+        }
+        ok(fmi3ExitConfigurationMode(instance));
+        let contact_model = 1 + i64::from(!lengths.is_empty());
+        for (name, value) in [("slip_source", 2), ("contact_model", contact_model)] {
+            ok(fmi3SetInt64(instance, &reference(name), 1, &value, 1));
+        }
+        ok(fmi3EnterInitializationMode(instance, 0, 0.0, 0.0, 0, 0.0));
+        ok(fmi3ExitInitializationMode(instance));
+        let (mut value, mut count, mut end) = (0.0, 0, 0.0);
+        drive(inputs, |time, values| {
+            let (n, [mut event, mut terminate, mut early]) = (values.len(), [0; 3]);
+            let statuses = [
+                fmi3SetFloat64(instance, references.as_ptr(), n, values.as_ptr(), n),
+                fmi3DoStep(
+                    instance,
+                    time,
+                    1e-3,
+                    1,
+                    &mut event,
+                    &mut terminate,
+                    &mut early,
+                    &mut end,
+                ),
+                fmi3GetFloat64(instance, &output, 1, &mut value, 1),
+                fmi3GetInt32(instance, &iterations, 1, &mut count, 1),
+            ];
+            statuses.map(|status| status.0)
+        });
+        fmi3FreeInstance(instance);
     }
 }
