@@ -2,7 +2,7 @@
 //! the wheel is elastic, of the rail's material.
 
 // Each benchmark uses a part of this.
-#![allow(dead_code)]
+#![allow(dead_code, unused_imports)]
 
 #[path = "../../tests/fmi/importer/mod.rs"]
 pub mod common;

@@ -120,10 +120,10 @@ fn any_value() -> impl Strategy<Value = f64> {
     prop_oneof![
         4 => -1.0..1.0,
         2 => 0.0..1e5,
-        1 => prop::sample::select(vec![0.0, -0.0, f64::NAN, f64::INFINITY, f64::NEG_INFINITY, f64::MIN_POSITIVE, f64::MAX]),
+        2 => prop::sample::select(vec![0.0, -0.0, f64::NAN, f64::INFINITY, f64::NEG_INFINITY, f64::MIN_POSITIVE, f64::MAX]),
         // All bit patterns, quiet and signalling NaN included.
         2 => any::<u64>().prop_map(f64::from_bits),
-        1 => prop::num::f64::SUBNORMAL | prop::num::f64::INFINITE | prop::num::f64::QUIET_NAN,
+        2 => prop::num::f64::SUBNORMAL | prop::num::f64::INFINITE | prop::num::f64::QUIET_NAN,
     ]
 }
 
@@ -170,7 +170,7 @@ fn shared_call(standard: Standard) -> impl Strategy<Value = Call> {
         1 => Just(Call::Reset),
         3 => vec(any_reference(), 0..4).prop_map(Call::GetReals),
         6 => vec((any_reference(), any_value()), 0..3).prop_map(Call::SetReals),
-        2 => prop::array::uniform4(-5.0..5.0).prop_map(Call::Sideways),
+        4 => prop::array::uniform4(-5.0..5.0).prop_map(Call::Sideways),
         1 => vec(any_reference(), 0..4).prop_map(Call::GetIntegers),
         1 => vec((any_reference(), prop_oneof![-1..9_i32, any::<i32>()]), 0..3).prop_map(Call::SetIntegers),
         1 => any_reference().prop_map(Call::OtherTypes),
@@ -181,11 +181,11 @@ fn shared_call(standard: Standard) -> impl Strategy<Value = Call> {
         1 => (vec(any_reference(), 0..3), vec((any_reference(), any_value()), 0..3))
             .prop_map(|(unknowns, knowns)| Call::Direction(unknowns, knowns)),
         2 => slot.clone().prop_map(Call::Save),
-        8 => slot.clone().prop_map(Call::Restore),
+        18 => slot.clone().prop_map(Call::Restore),
         1 => slot.clone().prop_map(Call::Free),
         1 => any::<usize>().prop_map(Call::Wild),
         1 => (slot, prop::option::of((any::<usize>(), 1..=255_u8))).prop_map(|(slot, flip)| Call::RoundTrip(slot, flip)),
-        1 => vec(any::<u8>(), 0..200).prop_map(Call::Noise),
+        2 => vec(any::<u8>(), 0..200).prop_map(Call::Noise),
         1 => (any::<bool>(), prop::option::of(0..5_usize)).prop_map(|(on, name)| Call::Logging(on, name)),
         1 => (vec(1..=255_u8, 0..20), prop_oneof![0..3, any::<c_int>()], prop::option::of(vec(1..=255_u8, 0..50)), vec(1..=255_u8, 0..50))
             .prop_map(|(name, kind, guid, location)| Call::Instantiate(name, kind, guid, location)),
