@@ -88,10 +88,8 @@ fn enable_traps() {
         fn feenableexcept(exceptions: c_int) -> c_int;
     }
     // SAFETY: the function of the C library, for this thread.
-    assert_ne!(
-        unsafe { feenableexcept((INVALID | DIVISION_BY_ZERO | OVERFLOW) as c_int) },
-        -1
-    );
+    let before = unsafe { feenableexcept((INVALID | DIVISION_BY_ZERO | OVERFLOW) as c_int) };
+    assert_ne!(before, -1);
     let unmasked = Registers::now();
     let masks = (INVALID | DIVISION_BY_ZERO | OVERFLOW) << 7;
     assert_eq!(
