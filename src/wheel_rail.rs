@@ -1,5 +1,6 @@
 //! The stepped model: inputs in, state advanced, outputs out. It knows nothing of FMI.
 
+#[cfg(feature = "verification")]
 use crate::contact::line::fields::Fields;
 use crate::contact::line::rail::Rail;
 #[cfg(feature = "verification")]
@@ -56,6 +57,7 @@ impl State {
     ///
     /// # Errors
     /// [`Error::OtherContactModel`].
+    #[cfg(feature = "verification")]
     pub(crate) fn fields(&self) -> Result<&Fields> {
         Ok(&self.contact.line()?.fields)
     }

@@ -221,6 +221,7 @@ impl ContactState {
     ///
     /// # Errors
     /// [`Error::OtherContactModel`].
+    #[cfg(feature = "verification")]
     pub fn line(&self) -> Result<&LineState> {
         match self {
             ContactState::Line(state) => Ok(state),

@@ -19,6 +19,27 @@ pub enum Blame {
     Library,
 }
 
+/// The number of a status, the same in every version of FMI: OK, warning, discard, error.
+pub const OK: i32 = 0;
+/// Everything but a part without effect was done.
+pub const WARNING: i32 = 1;
+/// Nothing was changed, and the computation may go on.
+pub const DISCARD: i32 = 2;
+/// The computation must not go on as it is.
+pub const ERROR: i32 = 3;
+
+impl Blame {
+    /// The number of the status: a value, or a step that stopped half-way, is discarded; what else cannot be done is an error.
+    pub fn status(blame: Option<Blame>) -> i32 {
+        match blame {
+            None => OK,
+            Some(Blame::Unused) => WARNING,
+            Some(Blame::Value | Blame::PartOfStep) => DISCARD,
+            Some(Blame::Call | Blame::Library) => ERROR,
+        }
+    }
+}
+
 /// Why a call failed, in words that hold for every version of FMI. The message names the variable or argument, its value
 /// and what is allowed; the name of the function is put before it where it is logged.
 #[derive(Debug, thiserror::Error)]

@@ -152,6 +152,19 @@ pub enum Causality {
     Independent,
 }
 
+impl Causality {
+    /// As the standards name it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Causality::Parameter => "parameter",
+            Causality::Input => "input",
+            Causality::Output => "output",
+            Causality::Local => "local",
+            Causality::Independent => "independent",
+        }
+    }
+}
+
 /// When a variable changes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Variability {
@@ -163,6 +176,18 @@ pub enum Variability {
     Discrete,
     /// At all times.
     Continuous,
+}
+
+impl Variability {
+    /// As the standards name it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Variability::Fixed => "fixed",
+            Variability::Tunable => "tunable",
+            Variability::Discrete => "discrete",
+            Variability::Continuous => "continuous",
+        }
+    }
 }
 
 /// How many elements a variable has.

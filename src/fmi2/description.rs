@@ -5,7 +5,7 @@
 use super::schema::{
     CoSimulation, Integer, ModelDescription, ModelStructure, ModelVariables, Real, ScalarVariable, Unknown, Unknowns,
 };
-use super::variables::{Causality, Kind, Variability, Variable, variables};
+use super::variables::{Causality, Kind, Variable, variables};
 use crate::fmi::schema::{self, document, number};
 use crate::fmi::token::hashed;
 use quick_xml::se::SeError;
@@ -100,19 +100,8 @@ fn scalar_variable(variable: Variable) -> ScalarVariable {
         name: variable.name,
         value_reference: variable.reference,
         description: variable.description,
-        causality: match variable.causality {
-            Causality::Parameter => "parameter",
-            Causality::Input => "input",
-            Causality::Output => "output",
-            Causality::Local => "local",
-            Causality::Independent => "independent",
-        },
-        variability: match variable.variability {
-            Variability::Fixed => "fixed",
-            Variability::Tunable => "tunable",
-            Variability::Discrete => "discrete",
-            Variability::Continuous => "continuous",
-        },
+        causality: variable.causality.name(),
+        variability: variable.variability.name(),
         initial: match variable.causality {
             Causality::Parameter => Some("exact"),
             // The standard allows none for these.

@@ -1,6 +1,5 @@
-//! What can go wrong in a call of FMI 2.0, and the status that follows.
+//! What can go wrong in a call of FMI 2.0, and who is to blame.
 
-use super::types::Status;
 use crate::fmi::call::Refusal;
 use crate::fmi::failures::{self, Blame};
 
@@ -46,18 +45,6 @@ impl Refusal for Failure {
             Failure::HigherOrder { .. } => Blame::Unused,
             Failure::Rate { .. } | Failure::StatusKind { .. } => Blame::Value,
             Failure::NoExperiment => Blame::Call,
-        }
-    }
-}
-
-impl Status {
-    /// The status of a call: a value, or a step that stopped half-way, is discarded; what else cannot be done is an error.
-    pub fn of(blame: Option<Blame>) -> Status {
-        match blame {
-            None => Status::OK,
-            Some(Blame::Unused) => Status::WARNING,
-            Some(Blame::Value | Blame::PartOfStep) => Status::DISCARD,
-            Some(Blame::Call | Blame::Library) => Status::ERROR,
         }
     }
 }

@@ -1,5 +1,6 @@
 //! The C types of fmi2TypesPlatform.h and fmi2FunctionTypes.h.
 
+use crate::fmi::failures::{self, Blame};
 use std::ffi::{c_char, c_int, c_uint, c_void};
 
 /// `fmi2Component`, points to an [`super::instance::Instance`].
@@ -43,17 +44,22 @@ pub struct Status(pub c_int);
 
 impl Status {
     /// `fmi2OK`.
-    pub const OK: Status = Status(0);
+    pub const OK: Status = Status(failures::OK);
     /// `fmi2Warning`.
-    pub const WARNING: Status = Status(1);
+    pub const WARNING: Status = Status(failures::WARNING);
     /// `fmi2Discard`.
-    pub const DISCARD: Status = Status(2);
+    pub const DISCARD: Status = Status(failures::DISCARD);
     /// `fmi2Error`.
-    pub const ERROR: Status = Status(3);
+    pub const ERROR: Status = Status(failures::ERROR);
     /// `fmi2Fatal`; never returned.
     pub const FATAL: Status = Status(4);
     /// `fmi2Pending`; never returned, steps are not asynchronous.
     pub const PENDING: Status = Status(5);
+
+    /// The status of a call.
+    pub fn of(blame: Option<Blame>) -> Status {
+        Status(Blame::status(blame))
+    }
 }
 
 /// `fmi2CallbackLogger`: variadic, `message` is a format.

@@ -10,7 +10,7 @@ use super::schema::{
 };
 use crate::fmi::schema::{self, document, number};
 use crate::fmi::token::hashed;
-use crate::fmi::variables::{self as shared, Causality, IntegerVariable, Kind, Shape, ValueReference, Variability};
+use crate::fmi::variables::{self as shared, Causality, IntegerVariable, Kind, Shape, ValueReference};
 use crate::parameters::{INTEGER_PARAMETERS, IntegerKind};
 use crate::signals::{OUTPUTS, OutputKind};
 use quick_xml::se::SeError;
@@ -107,19 +107,8 @@ fn element(value_reference: ValueReference, variable: &shared::Variable) -> Vari
         name: variable.name,
         value_reference,
         description: variable.description,
-        causality: match variable.causality {
-            Causality::Parameter => "parameter",
-            Causality::Input => "input",
-            Causality::Output => "output",
-            Causality::Local => "local",
-            Causality::Independent => "independent",
-        },
-        variability: match variable.variability {
-            Variability::Fixed => "fixed",
-            Variability::Tunable => "tunable",
-            Variability::Discrete => "discrete",
-            Variability::Continuous => "continuous",
-        },
+        causality: variable.causality.name(),
+        variability: variable.variability.name(),
         initial: match variable.causality {
             Causality::Parameter | Causality::Input => Some("exact"),
             Causality::Output | Causality::Local => Some("calculated"),

@@ -1,6 +1,5 @@
-//! What can go wrong in a call of FMI 3.0, and the status that follows.
+//! What can go wrong in a call of FMI 3.0, and who is to blame.
 
-use super::types::Status;
 use crate::error::Error;
 use crate::fmi::call::Refusal;
 use crate::fmi::failures::{self, Blame};
@@ -49,18 +48,6 @@ impl Refusal for Failure {
             Failure::Shared(failure) => failure.blame(),
             Failure::ReturnedEarly { .. } => Blame::Unused,
             Failure::Values { .. } | Failure::Derivatives { .. } => Blame::Call,
-        }
-    }
-}
-
-impl Status {
-    /// The status of a call: a value is discarded; what else cannot be done is an error.
-    pub fn of(blame: Option<Blame>) -> Status {
-        match blame {
-            None => Status::OK,
-            Some(Blame::Unused) => Status::WARNING,
-            Some(Blame::Value | Blame::PartOfStep) => Status::DISCARD,
-            Some(Blame::Call | Blame::Library) => Status::ERROR,
         }
     }
 }

@@ -1,5 +1,6 @@
 //! The C types of fmi3PlatformTypes.h and fmi3FunctionTypes.h.
 
+use crate::fmi::failures::{self, Blame};
 use std::ffi::{c_char, c_int, c_void};
 
 /// `fmi3Instance`, points to an [`super::instance::Instance`].
@@ -45,15 +46,20 @@ pub struct Status(pub c_int);
 
 impl Status {
     /// `fmi3OK`.
-    pub const OK: Status = Status(0);
+    pub const OK: Status = Status(failures::OK);
     /// `fmi3Warning`.
-    pub const WARNING: Status = Status(1);
+    pub const WARNING: Status = Status(failures::WARNING);
     /// `fmi3Discard`.
-    pub const DISCARD: Status = Status(2);
+    pub const DISCARD: Status = Status(failures::DISCARD);
     /// `fmi3Error`.
-    pub const ERROR: Status = Status(3);
+    pub const ERROR: Status = Status(failures::ERROR);
     /// `fmi3Fatal`; never returned.
     pub const FATAL: Status = Status(4);
+
+    /// The status of a call.
+    pub fn of(blame: Option<Blame>) -> Status {
+        Status(Blame::status(blame))
+    }
 }
 
 /// `fmi3LogMessageCallback`.

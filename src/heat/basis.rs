@@ -15,6 +15,7 @@ pub struct DepthBasis {
     /// Modes at the rows, `(row, mode)`, rows × m, the last row (bottom) zero.
     pub modes: DMatrix<f64>,
     /// Values of the modes' stiffness rows at the bottom: heat flux through it per mode, `m^-3/2`.
+    #[cfg(feature = "verification")]
     pub bottom_flux: Vec<f64>,
 }
 
@@ -67,6 +68,7 @@ impl DepthBasis {
             }),
             surface: per_mode(&|mode| modes[(0, mode)]),
             integral: per_mode(&|mode| (0..=m).map(|row| weight[row] * modes[(row, mode)]).sum()),
+            #[cfg(feature = "verification")]
             bottom_flux: per_mode(&|mode| modes[(m - 1, mode)] / (depth[m] - depth[m - 1])),
             modes,
         })

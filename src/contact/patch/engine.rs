@@ -60,6 +60,7 @@ impl Patch {
     }
 
     /// What was computed once.
+    #[cfg(feature = "verification")]
     pub fn rail(&self) -> &PatchRail {
         &self.rail
     }
