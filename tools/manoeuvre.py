@@ -28,6 +28,7 @@ NUDGES = 8
 OF_ROUND_OFF = 100
 # Set in each run, so that their last bits can be moved: of the compliance, the temperature and the window.
 PARAMETERS = ("wheel_radius", "strip_height", "strip_half_length", "thermal_diffusivity", "largest_load")
+FORCES = ("traction_force", "friction_torque", "lateral_force", "spin_moment")
 
 
 @dataclass(frozen=True)
@@ -155,12 +156,17 @@ def compared(reference, other, round_off):
     for manoeuvre in reference:
         for kind in ("outputs", "derivatives"):
             keys = [key for key in relative if key[0] == manoeuvre and (" by " in key[1]) == (kind == "derivatives")]
-            worst = max(keys, key=relative.get)
             within = sum(relative[key] <= TOLERANCE for key in keys)
+            first, second = sorted(keys, key=relative.get)[:-3:-1]
             lines.append(
                 f"{manoeuvre}, {kind}: {within} of {len(keys)} within {TOLERANCE:.0e}, the largest difference "
-                f"{relative[worst]:.1e} of {worst[1]} (round-off makes {round_off[worst]:.1e})"
+                f"{relative[first]:.1e} of {first[1]} (round-off makes {round_off[first]:.1e}), the next "
+                f"{relative[second]:.1e} of {second[1]} ({round_off[second]:.1e})"
             )
+        forces = max(relative[key] for key in relative if key[0] == manoeuvre and key[1] in FORCES)
+        lines.append(f"{manoeuvre}, forces and moments: within {forces:.1e}")
+    ratio = max(difference / max(TOLERANCE, round_off[key]) for key, difference in relative.items())
+    lines.append(f"at most {ratio:.1f} times what round-off makes, or {TOLERANCE:.0e}")
     wrong = [
         f"{key[0]}: {key[1]} differs by {difference:.1e}, round-off makes {round_off[key]:.1e}"
         for key, difference in relative.items()
