@@ -356,11 +356,11 @@ mod tests {
         }
     }
 
-    /// The numbers and names of a choice as its row's description has them, `2 piecewise_linear`.
-    fn numbered<T: std::fmt::Debug>(values: &[T]) -> Vec<String> {
-        let lower = |name: String| {
+    /// The names of a choice in the way of Rust, `PiecewiseLinear`, in that of FMI: `piecewise_linear`.
+    fn lower<T: std::fmt::Debug>(values: &[T]) -> Vec<String> {
+        let name = |value: &T| {
             let mut words = String::new();
-            for (place, letter) in name.char_indices() {
+            for (place, letter) in format!("{value:?}").char_indices() {
                 if letter.is_uppercase() && place > 0 {
                     words.push('_');
                 }
@@ -368,37 +368,35 @@ mod tests {
             }
             words
         };
-        let names = values.iter().map(|value| lower(format!("{value:?}")));
-        (1..)
-            .zip(names)
-            .map(|(number, name)| format!("{number} {name}"))
-            .collect()
+        values.iter().map(name).collect()
     }
 
     #[test]
     fn every_choice_is_in_the_description_of_its_row() {
-        let choices = [
-            ("contact_model", numbered(ContactModel::ALL)),
-            ("control", numbered(Control::ALL)),
-            ("slip_source", numbered(SlipSource::ALL)),
-            ("normal_solver", numbered(NormalSolver::ALL)),
-            ("mesh", numbered(MeshKind::ALL)),
-            ("friction_law", numbered(FrictionLaw::ALL)),
-            ("wheel", numbered(Wheel::ALL)),
-            ("wheel_heating", numbered(WheelHeating::ALL)),
-        ];
-        // Counts begin above 1.
-        for row in INTEGER_PARAMETERS.iter().filter(|row| row.minimum == 1) {
-            let choice = choices.iter().find(|choice| choice.0 == row.name);
-            let (_, values) = choice.unwrap_or_else(|| panic!("add {} to the list of this test", row.name));
-            for value in values {
-                assert!(
-                    row.description.contains(value.as_str()),
-                    "src/parameters/table.rs: the description of {} lacks \"{value}\"",
-                    row.name
-                );
+        for row in INTEGER_PARAMETERS {
+            if let IntegerKind::Choice(names) = row.kind {
+                for (number, name) in (1..).zip(names) {
+                    let value = format!("{number} {name}");
+                    assert!(
+                        row.description.contains(&value),
+                        "src/parameters/table.rs: the description of {} lacks \"{value}\"",
+                        row.name
+                    );
+                }
             }
         }
+    }
+
+    #[test]
+    fn choices_have_the_same_names_in_rust_and_in_fmi() {
+        assert_eq!(lower(ContactModel::ALL), ContactModel::NAMES);
+        assert_eq!(lower(Control::ALL), Control::NAMES);
+        assert_eq!(lower(SlipSource::ALL), SlipSource::NAMES);
+        assert_eq!(lower(NormalSolver::ALL), NormalSolver::NAMES);
+        assert_eq!(lower(MeshKind::ALL), MeshKind::NAMES);
+        assert_eq!(lower(FrictionLaw::ALL), FrictionLaw::NAMES);
+        assert_eq!(lower(Wheel::ALL), Wheel::NAMES);
+        assert_eq!(lower(WheelHeating::ALL), WheelHeating::NAMES);
     }
 
     #[test]

@@ -180,8 +180,9 @@ impl Pack {
     fn libraries(&self, guid: &str, xml: &[u8]) -> Result<Libraries, Error> {
         let mut libraries = Libraries::new(self.fmi);
         let own = (self.fmi.own_platform(), self.library.clone());
-        for (platform, path) in std::iter::once(&own).chain(&self.binary) {
-            let platform = libraries.platform(platform, path)?;
+        let named = std::iter::once(&own).chain(&self.binary);
+        let named = named.map(|(platform, path)| Ok((libraries.platform(platform, path)?, path)));
+        for (platform, path) in named.collect::<Result<Vec<_>, Error>>()? {
             let library = read(path)?;
             if !library.windows(guid.len()).any(|window| window == guid.as_bytes()) {
                 return Err(Error::StaleLibrary {
