@@ -55,18 +55,19 @@ def test_only_what_passed_with_these_sources_is_packed(monkeypatch, tmp_path, ca
 
 def test_the_manoeuvre_is_compared_series_by_series():
     """Round-off passes, a defect, a value that is not finite and one that should be 0 do not."""
-    series = {"line": {"force": [1.0, -100.0], "force by load": [2.0, 4.0], "lateral": [0.0, 0.0]}}
-    round_off = {("line", "force"): 1e-16, ("line", "force by load"): 1e-9, ("line", "lateral"): 0.0}
+    force, slope = "traction_force", "traction_force by normal_load"
+    series = {"line": {force: [1.0, -100.0], slope: [2.0, 4.0], "lateral_force": [0.0, 0.0]}}
+    round_off = {("line", force): 1e-16, ("line", slope): 1e-9, ("line", "lateral_force"): 0.0}
 
-    def wrong(**changed):
-        other = {"line": series["line"] | {name.replace("_", " "): values for name, values in changed.items()}}
-        lines, wrong = manoeuvre.compared(series, other, round_off)
-        assert len(lines) == 2
+    def wrong(changed):
+        lines, wrong = manoeuvre.compared(series, {"line": series["line"] | changed}, round_off)
+        # Of outputs and of derivatives, of the forces, and the largest ratio.
+        assert len(lines) == 4
         return [line.split(" differs")[0] for line in wrong]
 
-    assert wrong() == []
-    assert wrong(force=[1.0, -100.0 * (1 + 5e-13)], force_by_load=[2.0, 4.0 * (1 + 9e-8)]) == []
-    assert wrong(force=[1.0 + 1e-9, -100.0]) == ["line: force"]
-    assert wrong(force_by_load=[2.0, 4.0 * (1 + 2e-7)]) == ["line: force by load"]
-    assert wrong(force=[math.nan, -100.0]) == ["line: force"]
-    assert wrong(lateral=[0.0, 1e-300]) == ["line: lateral"]
+    assert wrong({}) == []
+    assert wrong({force: [1.0, -100.0 * (1 + 5e-13)], slope: [2.0, 4.0 * (1 + 9e-8)]}) == []
+    assert wrong({force: [1.0 + 1e-9, -100.0]}) == [f"line: {force}"]
+    assert wrong({slope: [2.0, 4.0 * (1 + 2e-7)]}) == [f"line: {slope}"]
+    assert wrong({force: [math.nan, -100.0]}) == [f"line: {force}"]
+    assert wrong({"lateral_force": [0.0, 1e-300]}) == ["line: lateral_force"]

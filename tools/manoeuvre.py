@@ -157,11 +157,13 @@ def compared(reference, other, round_off):
         for kind in ("outputs", "derivatives"):
             keys = [key for key in relative if key[0] == manoeuvre and (" by " in key[1]) == (kind == "derivatives")]
             within = sum(relative[key] <= TOLERANCE for key in keys)
-            first, second = sorted(keys, key=relative.get)[:-3:-1]
+            largest = [
+                f"{relative[key]:.1e} of {key[1]} (round-off makes {round_off[key]:.1e})"
+                for key in sorted(keys, key=relative.get, reverse=True)[:2]
+            ]
             lines.append(
-                f"{manoeuvre}, {kind}: {within} of {len(keys)} within {TOLERANCE:.0e}, the largest difference "
-                f"{relative[first]:.1e} of {first[1]} (round-off makes {round_off[first]:.1e}), the next "
-                f"{relative[second]:.1e} of {second[1]} ({round_off[second]:.1e})"
+                f"{manoeuvre}, {kind}: {within} of {len(keys)} within {TOLERANCE:.0e}, the largest differences "
+                + ", ".join(largest)
             )
         forces = max(relative[key] for key in relative if key[0] == manoeuvre and key[1] in FORCES)
         lines.append(f"{manoeuvre}, forces and moments: within {forces:.1e}")
