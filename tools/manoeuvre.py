@@ -23,8 +23,8 @@ TOLERANCE = 1e-12
 # Inputs and parameters are moved by so much of themselves, up or down, in so many runs ...
 ROUND_OFF = 1e-15
 NUDGES = 8
-# ... and platforms may differ by so many times what that makes of a series. Measured: 3 on win64, whose sums are those
-# of linux64, 42 on aarch64, on the patch: its iterations end elsewhere within their tolerance.
+# ... and platforms may differ by so many times what that makes of a series: where sums run in another order, the
+# iterations of the patch end elsewhere within their tolerance. What a run comes to is printed as the largest ratio.
 OF_ROUND_OFF = 100
 # Set in each run, so that their last bits can be moved: of the compliance, the temperature and the window.
 PARAMETERS = ("wheel_radius", "strip_height", "strip_half_length", "thermal_diffusivity", "largest_load")
