@@ -66,11 +66,13 @@ units! {
     "1/m" [m -1];
     "m2" [m 2] "mm2" = 1e6;
     "m/s" [m 1 s -1] "km/h" = 3.6;
+    "s/m" [s 1 m -1];
     "rad/s" [rad 1 s -1] "rpm" = 30.0 / std::f64::consts::PI;
     "N" [kg 1 m 1 s -2] "kN" = 1e-3;
     "N.m" [kg 1 m 2 s -2] "kN.m" = 1e-3;
     "Pa" [kg 1 m -1 s -2] "MPa" = 1e-6, "GPa" = 1e-9;
     "1/Pa" [kg -1 m 1 s 2];
+    "m/Pa" [kg -1 m 2 s 2];
     "J" [kg 1 m 2 s -2] "kJ" = 1e-3;
     "W" [kg 1 m 2 s -3] "kW" = 1e-3;
     "W/m" [kg 1 m 1 s -3] "kW/m" = 1e-3;

@@ -1,6 +1,9 @@
-//! Friction: the laws of the coefficient μ(θ) here, Coulomb's law in [`coulomb`].
+//! Friction: the laws of the coefficient μ(θ) here, with slip and memory in [`path`] and [`memory`], Coulomb's law in [`coulomb`].
 
 pub mod coulomb;
+pub mod memory;
+mod passage;
+pub mod path;
 
 use crate::parameters::{FrictionLaw, Parameters};
 
@@ -96,6 +99,29 @@ impl FrictionState<'_> {
     pub fn coefficient_tangent(&self, rise: f64, [rise_change, ambient_change, scale_change]: [f64; 3]) -> f64 {
         let (mu, slope) = coefficient(self.parameters, self.ambient + rise);
         self.scale * slope * (rise_change + ambient_change) + scale_change * mu
+    }
+}
+
+/// μ of a point as a function of its temperature at given slip and history: `base` + `share` μ(θ).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PointLaw {
+    /// What does not depend on the temperature.
+    pub base: f64,
+    /// Share of μ(θ).
+    pub share: f64,
+}
+
+impl PointLaw {
+    /// μ, and its derivative, from those of μ(θ).
+    pub fn of(&self, (mu, slope): (f64, f64)) -> (f64, f64) {
+        (self.base + self.share * mu, self.share * slope)
+    }
+}
+
+impl Default for PointLaw {
+    /// μ(θ).
+    fn default() -> PointLaw {
+        PointLaw { base: 0.0, share: 1.0 }
     }
 }
 

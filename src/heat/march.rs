@@ -362,6 +362,7 @@ mod tests {
                             power: 0.012,
                         },
                         wheel_rise: 4.0,
+                        coefficient: 0.0,
                     };
                     SurfaceExchange::tangent(&parameters, pressure(node, 0.0), sliding(node, 0.0), 20.0, &change)
                 })

@@ -2,7 +2,7 @@
 
 use crate::error::{Error, Result};
 use crate::friction::coulomb::Sliding;
-use crate::friction::{self, FrictionState};
+use crate::friction::{self, FrictionState, PointLaw};
 use crate::parameters::Parameters;
 use crate::settings::HeatSettings;
 
@@ -18,6 +18,8 @@ pub struct SurfaceExchange {
     pub conduction: f64,
     /// S: heat conducted from a wheel at θ_w into rail at ambient, `W/m²`.
     pub wheel: f64,
+    /// μ(θ) at the column's slip and history.
+    pub law: PointLaw,
 }
 
 /// Change of pressure, slip speed and the wheel's temperature at one column.
@@ -29,6 +31,8 @@ pub struct ExchangeChange {
     pub sliding: Sliding,
     /// dθ_w, `K`.
     pub wheel_rise: f64,
+    /// dμ at an unchanged temperature.
+    pub coefficient: f64,
 }
 
 /// What [`SurfaceExchange`] changes by.
@@ -42,10 +46,13 @@ pub struct ExchangeTangent {
     pub conduction: f64,
     /// The two parts of dS: by the conduction, and by the wheel's temperature, `W/m²`.
     pub wheel: [f64; 2],
+    /// dμ at an unchanged temperature.
+    pub coefficient: f64,
 }
 
 impl SurfaceExchange {
-    /// The exchange under pressure `pressure` `Pa` and sliding with a wheel at `wheel_rise` `K` over the ambient.
+    /// The exchange under pressure `pressure` `Pa` and sliding with a wheel at `wheel_rise` `K` over the ambient. Friction depends on the
+    /// temperature alone, unless its law is replaced.
     pub fn new(parameters: &Parameters, pressure: f64, sliding: Sliding, wheel_rise: f64) -> SurfaceExchange {
         if pressure == 0.0 {
             return SurfaceExchange::default();
@@ -56,6 +63,7 @@ impl SurfaceExchange {
             debris: parameters.wear_coefficient * parameters.volumetric_heat_capacity() * sliding.speed * pressure,
             conduction,
             wheel: conduction * wheel_rise,
+            law: PointLaw::default(),
         }
     }
 
@@ -78,6 +86,7 @@ impl SurfaceExchange {
                 conduction * wheel_rise,
                 pressure / parameters.contact_thermal_resistance * change.wheel_rise,
             ],
+            coefficient: change.coefficient,
         }
     }
 
@@ -131,14 +140,17 @@ impl SurfaceCondition<'_> {
         let damping = 1.0 + gain * loss;
         let unheated = unheated + gain * exchange.wheel;
         // Without friction θ is unheated / damping, with the largest μ it is the upper end.
-        let largest = self.friction.scale * friction::largest_coefficient(parameters);
+        let largest = exchange
+            .law
+            .of((self.friction.scale * friction::largest_coefficient(parameters), 0.0))
+            .0;
         let mut low = unheated / damping;
         let mut high = low + gain * largest * exchange.friction / damping;
         let tolerance = self.settings.surface_tolerance * (low.abs() + high.abs() + 1.0);
         let mut theta = if low < guess && guess < high { guess } else { high };
         let mut residual = f64::INFINITY;
         for _ in 0..self.settings.surface_newton_steps {
-            let (mu, slope) = self.friction.coefficient(theta);
+            let (mu, slope) = exchange.law.of(self.friction.coefficient(theta));
             residual = damping * theta - unheated - gain * mu * exchange.friction;
             if residual.abs() <= tolerance * damping || high - low <= tolerance {
                 return Ok(parameters.heat_partition * (mu * exchange.friction + exchange.wheel - loss * theta));
@@ -172,8 +184,9 @@ impl SurfaceCondition<'_> {
         (rise, unheated, response): (f64, f64, f64),
     ) -> f64 {
         let parameters = self.friction.parameters;
-        let (mu, slope) = self.friction.coefficient(rise);
-        let scale = common.friction_scale * friction::coefficient(parameters, self.friction.ambient + rise).0;
+        let (mu, slope) = exchange.law.of(self.friction.coefficient(rise));
+        let by_scale = friction::coefficient(parameters, self.friction.ambient + rise).0;
+        let scale = exchange.law.share * common.friction_scale * by_scale + tangent.coefficient;
         let loss = exchange.loss();
         let partition = parameters.heat_partition;
         let source =
@@ -243,23 +256,25 @@ mod tests {
             power in 1e-3..1.0,
             wheel_rise in -20.0..200.0,
             unheated in 40.0..80.0,
-            changes in prop::array::uniform7(-1.0..1.0_f64),
+            changes in prop::array::uniform8(-1.0..1.0_f64),
         ) {
             let parameters = parameters(100.0);
             let response = 1e-7;
-            let [dp, ds, dq, dw, du, ambient, friction_scale] = changes;
+            let [dp, ds, dq, dw, du, ambient, friction_scale, coefficient] = changes;
+            let law = |h: f64| PointLaw { base: 0.05 + h * coefficient, share: 0.8 };
             let sliding = Sliding { speed, power };
             let change = ExchangeChange {
                 pressure: 1e7 * dp,
                 sliding: Sliding { speed: 1e-2 * ds, power: 1e-2 * dq },
                 wheel_rise: dw,
+                coefficient,
             };
             let common = CommonChange { ambient, friction_scale };
             let at = |h: f64| {
                 let mut condition = condition(&parameters);
                 condition.friction.ambient += h * ambient;
                 condition.friction.scale += h * friction_scale;
-                let exchange = SurfaceExchange::new(
+                let mut exchange = SurfaceExchange::new(
                     &parameters,
                     pressure + h * change.pressure,
                     Sliding {
@@ -268,6 +283,7 @@ mod tests {
                     },
                     wheel_rise + h * change.wheel_rise,
                 );
+                exchange.law = law(h);
                 let flux = condition.flux(&exchange, (unheated + h * du, response), f64::INFINITY, 0.0).unwrap();
                 let rise = unheated + h * du + response * flux;
                 (flux, friction::coefficient(&parameters, condition.friction.ambient + rise).1)
@@ -276,7 +292,8 @@ mod tests {
             let (here, ahead, behind) = (at(0.0), at(h), at(-h));
             // Not across a corner of the friction law.
             prop_assume!(ahead.1 == behind.1);
-            let exchange = SurfaceExchange::new(&parameters, pressure, sliding, wheel_rise);
+            let mut exchange = SurfaceExchange::new(&parameters, pressure, sliding, wheel_rise);
+            exchange.law = law(0.0);
             let tangent = SurfaceExchange::tangent(&parameters, pressure, sliding, wheel_rise, &change);
             let rise = unheated + response * here.0;
             let exact = condition(&parameters).flux_tangent(&exchange, &tangent, &common, (rise, du, response));

@@ -300,6 +300,7 @@ mod tests {
                     debris: 0.0,
                     conduction: 0.0,
                     wheel: 0.0,
+                    ..SurfaceExchange::default()
                 })
                 .collect();
             let march = HeatMarch {

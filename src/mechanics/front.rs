@@ -3,7 +3,10 @@
 //! **The strain of the leading node.** The difference to the node ahead contains the jump of u₁ out of the contact, as the
 //! difference of the gaps does: where pressure and shear leave the edge in a fixed ratio, both with the root of the distance,
 //! both jumps are in that ratio, too. The jump of the gap is known: the separation w of the node ahead. So w τ/p of the
-//! leading node is taken off its strain.
+//! leading node is taken off its strain. A layer between wheel and rail is sheared from the edge on, not from the node ahead: what it
+//! adds to the strain is cτ over the distance d to the edge, in place of that to the node ahead. Where the pressure leaves the edge with the
+//! root of the distance, the separation goes with its power 3/2, γ = w E*/(2 Δx p) = ⅔ (1 − q)^{3/2}/√q with q = d/Δx, and
+//! 1/q − 1 is 3 γ within a sixth for q between ¼ and ¾.
 //!
 //! **The slip that is smaller than a cell.** Unlike bodies (Dundurs) have τ/p that grows towards the leading edge with the
 //! logarithm of the distance from it, until the edge slips, on less than a cell. The strain between the nodes contains that slip,
@@ -22,6 +25,8 @@ use crate::body::half_plane::HalfPlanes;
 
 /// Separation, pressures and shears below this multiple of the unit pressure are not divided by.
 const LEAST_PRESSURE: f64 = 1e-12;
+/// (1/q − 1)/γ.
+pub const LAYER_OPENING: f64 = 3.0;
 /// S at ω = 0 and 1, and its rise towards ω = ½ over ω(1 − ω).
 const SHARE: [f64; 2] = [0.21, 0.57];
 
@@ -32,6 +37,8 @@ pub struct NearField {
     pub direct: f64,
     /// β Δx: (1 − 2ν)/(2γ) of the rail less that of the wheel, times Δx.
     pub coupling: f64,
+    /// Strain of the leading node that belongs to the cell ahead, per w τ/p: 1 without a layer.
+    pub opening: f64,
 }
 
 /// The leading edge of one contact.
@@ -93,6 +100,15 @@ impl NearField {
         NearField {
             direct: half_planes.direct * cell,
             coupling: half_planes.coupling * cell,
+            opening: 1.0,
+        }
+    }
+
+    /// The same with a layer of this compliance between the bodies, scaled.
+    pub fn with_layer(self, compliance: f64) -> NearField {
+        NearField {
+            opening: 1.0 + LAYER_OPENING * compliance / self.direct,
+            ..self
         }
     }
 }
@@ -109,7 +125,7 @@ impl Front {
         let ratio = open / edge.pressure[0];
         let ratio_by_gap = opens / edge.pressure[0];
         let ratio_by_pressure = -ratio / edge.pressure[0];
-        let speed = self.strain_speed;
+        let speed = self.strain_speed * self.near_field.opening;
         rows[0].slip = speed * ratio * edge.shear[0];
         rows[0].by_shear[0] = speed * ratio;
         rows[0].by_gap = speed * ratio_by_gap * edge.shear[0];
@@ -128,7 +144,7 @@ impl Front {
         (ratio, ratio_by_gap, ratio_by_pressure): (f64, f64, f64),
         rows: &mut [Added; 2],
     ) {
-        let NearField { direct, coupling } = self.near_field;
+        let NearField { direct, coupling, .. } = self.near_field;
         // Sign of the shear at an edge that slips: + on a rail softer than the wheel that is travelled along +x₁. A harder rail
         // turns it, and so does travel along −x₁.
         let sign = if (coupling > 0.0) == self.forward { 1.0 } else { -1.0 };
@@ -190,6 +206,7 @@ mod tests {
         near_field: NearField {
             direct: 0.04,
             coupling: 0.012,
+            opening: 1.7,
         },
         resolved: true,
         forward: true,
@@ -290,7 +307,7 @@ mod tests {
             gap: 0.01,
         };
         let [first, second] = front.added(&edge);
-        assert!((first.slip - 20.0 * 0.01 / 0.1 * 0.03).abs() < 1e-15);
+        assert!((first.slip - 1.7 * 20.0 * 0.01 / 0.1 * 0.03).abs() < 1e-15);
         assert_eq!(second, Added::default());
     }
 }

@@ -4,6 +4,8 @@ use super::front::NearField;
 use super::normal::problem::Constraint;
 use super::transient::Transient;
 use crate::body::compliance::Compliance;
+use crate::friction::memory::Path;
+use crate::friction::path::PathLaw;
 use crate::parameters::NormalSolver;
 use nalgebra::DMatrix;
 
@@ -20,8 +22,10 @@ pub struct MechanicsProblem<'a> {
     pub displacement: &'a [f64],
     /// Displacement along x₁ at the end of the step before, n.
     pub displacement_before: &'a [f64],
-    /// μ, n.
+    /// μ, n; where it depends on more than the temperature, that without slip.
     pub friction: &'a [f64],
+    /// How it depends on slip and on what was before; none where it does not.
+    pub path: Option<(PathLaw, Path<'a>)>,
     /// Load or penetration.
     pub constraint: Constraint,
     /// Method for the normal problem.
@@ -45,8 +49,10 @@ pub struct ProblemTangent<'a> {
     pub profile: &'a [f64],
     /// Of the displacement along x₁.
     pub displacement: &'a [f64],
-    /// Of μ.
+    /// Of μ without slip.
     pub friction: &'a [f64],
+    /// Of μ at unchanged slip: the same where it does not depend on slip.
+    pub friction_of_slip: &'a [f64],
     /// Of Σp; without effect where the penetration is given.
     pub total: f64,
     /// Of ω r₀ − V, `m/s`.
@@ -67,6 +73,12 @@ pub struct Tractions<'a> {
     pub slip: &'a mut [f64],
     /// Share −τ/(μ p) of Coulomb's bound, with the sign of the slip: between −1 and 1.
     pub saturation: &'a mut [f64],
+    /// μ.
+    pub friction: &'a mut [f64],
+    /// Where μ depends on slip: the magnitude of the law's slip velocity, `m/s`, 0 outside the contact.
+    pub speed: &'a mut [f64],
+    /// And its derivative by the μ without slip.
+    pub share: &'a mut [f64],
     /// Penetration, scaled.
     pub penetration: &'a mut f64,
 }

@@ -13,6 +13,7 @@ use super::problem::{MechanicsProblem, Tractions, node_ahead, under_pressure};
 use super::response::Response;
 use super::tangential::{LeadingEdge, Tangential, TangentialProblem};
 use crate::error::{Error, Result};
+use crate::friction::path::PathNode;
 use crate::numerics::dense;
 use crate::parameters::NormalSolver;
 use crate::settings::{MechanicsSettings, Settings};
@@ -47,7 +48,7 @@ pub struct Mechanics {
     pub(super) tangential: Tangential,
     pub(super) response: Response,
     /// ∂s/∂τ on the nodes under pressure, without what the leading edge adds, m × m, and the weights it was made with.
-    slip_response: Vec<f64>,
+    pub(super) slip_response: Vec<f64>,
     slip_weights: (f64, f64),
     /// Of the normal problem, with the upward displacement of the shear, n.
     pub(super) profile: Vec<f64>,
@@ -72,6 +73,7 @@ pub(super) struct Local {
     pub(super) slip: Vec<f64>,
     pub(super) saturation: Vec<f64>,
     pub(super) friction: Vec<f64>,
+    path: Vec<PathNode>,
     /// Change of the profile.
     pub(super) profile: Vec<f64>,
     /// What follows a change of the shear.
@@ -103,6 +105,7 @@ impl Mechanics {
                 slip: vector(),
                 saturation: vector(),
                 friction: vector(),
+                path: vec![PathNode::default(); nodes],
                 profile: vector(),
                 following: vector(),
             },
@@ -249,16 +252,25 @@ impl Mechanics {
         // swamp those of this one.
         let mut clamped = 0.0_f64;
         for (node, shear) in tractions.shear.iter_mut().enumerate() {
-            let bound = problem.friction[node] * tractions.pressure[node];
+            let friction = match problem.path {
+                None => problem.friction[node],
+                // Rail that cools remembers less than it would have at rest, rail that warms more.
+                Some(_) => problem.friction[node].max(tractions.friction[node]),
+            };
+            let bound = friction * tractions.pressure[node];
             let within = shear.clamp(-bound, bound);
             clamped = clamped.max((*shear - within).abs());
             *shear = within;
         }
         let m = self.nodes.len();
         // Nothing touches: a penetration that is given need not reach the rail.
+        tractions.friction.copy_from_slice(problem.friction);
         if m == 0 {
             tractions.slip.fill(0.0);
             tractions.saturation.fill(0.0);
+            if problem.path.is_some() {
+                tractions.speed.fill(0.0);
+            }
             return Ok(clamped);
         }
         self.displacement.copy_from_slice(problem.displacement);
@@ -273,6 +285,7 @@ impl Mechanics {
             self.local.saturation[row] = tractions.saturation[node];
             self.local.slip[row] = law_slip(problem, &self.displacement, node);
         }
+        self.prepare_path(problem);
         let mut shear = std::mem::take(&mut self.local.shear);
         let tangential = tangential_problem(
             problem,
@@ -304,7 +317,31 @@ impl Mechanics {
             tractions.saturation[node] = point.saturation[row];
             tractions.pressure[node] = point.pressure[row];
         }
+        if problem.path.is_some() {
+            tractions.speed.fill(0.0);
+            for (row, &node) in self.nodes.iter().enumerate() {
+                tractions.friction[node] = point.friction[row];
+                tractions.speed[node] = point.slip[row].abs();
+                tractions.share[node] = point.of_slip[row].share;
+            }
+        }
         Ok(change.max(clamped))
+    }
+
+    /// The friction law of the nodes under pressure, at what their particles bring along.
+    fn prepare_path(&mut self, problem: &MechanicsProblem) {
+        let Some((law, path)) = &problem.path else {
+            return;
+        };
+        let nodes = &self.nodes;
+        let (forward, m) = (law.is_forward(), nodes.len());
+        let own = &mut self.local.path;
+        let mut given = 0;
+        let touches = |node: usize| nodes.binary_search(&node).is_ok();
+        law.prepare(path, problem.friction, touches, |_, node| {
+            own[if forward { m - 1 - given } else { given }] = node;
+            given += 1;
+        });
     }
 }
 
@@ -363,6 +400,7 @@ fn tangential_problem<'a>(
         pressure_response: response.pressure(),
         slip_response,
         friction: &local.friction[..m],
+        path: problem.path.as_ref().map(|(law, _)| (*law, &local.path[..m])),
         edge: leading_edge(problem, response, nodes, gap),
         regularisation: problem.regularisation,
         tolerance,
@@ -412,6 +450,9 @@ mod tests {
         shear: Vec<f64>,
         slip: Vec<f64>,
         saturation: Vec<f64>,
+        friction: Vec<f64>,
+        speed: Vec<f64>,
+        share: Vec<f64>,
         penetration: f64,
     }
 
@@ -422,6 +463,9 @@ mod tests {
                 shear: vec![0.0; NODES],
                 slip: vec![0.0; NODES],
                 saturation: vec![0.0; NODES],
+                friction: vec![0.0; NODES],
+                speed: vec![0.0; NODES],
+                share: vec![0.0; NODES],
                 penetration: 0.0,
             }
         }
@@ -432,6 +476,9 @@ mod tests {
                 shear: &mut self.shear,
                 slip: &mut self.slip,
                 saturation: &mut self.saturation,
+                friction: &mut self.friction,
+                speed: &mut self.speed,
+                share: &mut self.share,
                 penetration: &mut self.penetration,
             }
         }
@@ -486,6 +533,7 @@ mod tests {
                 displacement: &self.displacement,
                 displacement_before: &BEFORE,
                 friction: &self.friction,
+                path: None,
                 constraint: Constraint::Total(self.total),
                 normal_solver,
                 rigid_slip: self.rigid_slip,
@@ -645,6 +693,7 @@ mod tests {
                     profile: &change.profile,
                     displacement: &change.displacement,
                     friction: &change.friction,
+                    friction_of_slip: &change.friction,
                     total: change.total,
                     rigid_slip: change.rigid_slip,
                     strain_speed: sign * change.strain_speed,

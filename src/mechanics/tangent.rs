@@ -55,9 +55,12 @@ impl Mechanics {
             tractions.shear[node] = local.shear[row];
         }
         self.displacement_tangent(problem, change, tractions);
-        for (row, &node) in self.nodes.iter().enumerate() {
+        for &node in &self.nodes {
             tractions.slip[node] = self.mean_slip_tangent(problem, change, node);
-            tractions.saturation[node] = self.saturation_tangent(problem, change, row);
+        }
+        self.friction_tangent(problem, change, tractions.friction);
+        for (row, &node) in self.nodes.iter().enumerate() {
+            tractions.saturation[node] = self.saturation_tangent(problem, tractions.friction, row);
         }
         // δ from any closed node: dδ = (C dp − db) there.
         *tractions.penetration = match self.nodes.first() {
@@ -142,13 +145,46 @@ impl Mechanics {
             let per_speed = if speed > 0.0 { added.slip / speed } else { 0.0 };
             self.local.slip[row] += added.change(&edge_change) + change.strain_speed * per_speed;
         }
-        let laws = self.tangential.rows().iter().zip(&self.nodes);
-        for (row, (law, &node)) in laws.enumerate() {
-            self.local.shear[row] = -(law.by_friction * change.friction[node]
+        for (row, &node) in self.nodes.iter().enumerate() {
+            self.local.friction[row] = change.friction_of_slip[node];
+        }
+        if let Some((law, _)) = &problem.path {
+            let local = &mut self.local;
+            local.following[..m].copy_from_slice(&local.slip[..m]);
+            self.tangential.friction_tangent(law, &mut local.following[..m]);
+            dense::add_multiple(&local.following[..m], 1.0, &mut local.friction[..m]);
+        }
+        for (row, law) in self.tangential.rows()[..m].iter().enumerate() {
+            self.local.shear[row] = -(law.by_friction * self.local.friction[row]
                 + law.by_pressure * self.local.pressure[row]
                 + law.by_slip * self.local.slip[row]);
         }
         self.tangential.solve_linear(&mut self.local.shear[..m]);
+    }
+
+    /// dμ, with the law's slip under the change of the shear.
+    fn friction_tangent(&mut self, problem: &MechanicsProblem, change: &ProblemTangent, friction: &mut [f64]) {
+        friction.copy_from_slice(change.friction_of_slip);
+        let Some((law, _)) = &problem.path else {
+            return;
+        };
+        let m = self.nodes.len();
+        // That at unchanged shear is still there.
+        let mut slip = std::mem::take(&mut self.local.slip);
+        dense::multiply_columns(&self.slip_response, m, &self.local.shear[..m], &mut slip);
+        let edge = self.leading_edge(problem);
+        let added = self.tangential.point(m).added;
+        for (column, shear) in self.local.shear[..m].iter().enumerate() {
+            let response = edge.response(added, self.response.pressure(), column);
+            for (response, row) in response.iter().zip(edge.rows) {
+                slip[row] += response * shear;
+            }
+        }
+        self.tangential.friction_tangent(law, &mut slip[..m]);
+        for (&node, slip) in self.nodes.iter().zip(&slip) {
+            friction[node] += slip;
+        }
+        self.local.slip = slip;
     }
 
     /// du₁ of the changes of pressure and shear, n.
@@ -187,15 +223,15 @@ impl Mechanics {
     }
 
     /// dφ of φ = −τ/(μ p); none where a node slips by Coulomb's law.
-    fn saturation_tangent(&self, problem: &MechanicsProblem, change: &ProblemTangent, row: usize) -> f64 {
+    fn saturation_tangent(&self, problem: &MechanicsProblem, friction: &[f64], row: usize) -> f64 {
         let point = self.tangential.point(self.nodes.len());
         let node = self.nodes[row];
-        let (mu, pressure, phi) = (problem.friction[node], point.pressure[row], point.saturation[row]);
+        let (mu, pressure, phi) = (point.friction[row], point.pressure[row], point.saturation[row]);
         let slips = problem.regularisation == 0.0 && phi.abs() == 1.0;
         if slips || mu * pressure == 0.0 {
             return 0.0;
         }
-        let bound = change.friction[node] * pressure + mu * self.local.pressure[row];
+        let bound = friction[node] * pressure + mu * self.local.pressure[row];
         -(self.local.shear[row] + phi * bound) / (mu * pressure)
     }
 }

@@ -223,6 +223,18 @@ parameters! {
     patch_nodes: usize = length { 34, 8, 201 }
     /// Number of strips across the contact window, used where contact_model is patch
     patch_strips: usize = length { 21, 3, 101 }
+    /// Share of the friction coefficient that is left at large slip velocity s: it is multiplied by
+    /// friction_slip_share + (1 - friction_slip_share)*exp(-friction_slip_decay*s); 1 switches the law of slip off
+    friction_slip_share "A": f64 = real { "1", 1.0, 0.0, 1.0, tunable }
+    /// Decay of the friction coefficient with the slip velocity; 0 switches the law of slip off
+    friction_slip_decay "B": f64 = real { "s/m", 0.0, 0.0, 1e3, tunable }
+    /// Way of slip on which the friction coefficient follows temperature and slip velocity; 0 is at once
+    friction_memory_distance "d_c": f64 = real { "m" shown in "µm", 0.0, 0.0, 1e-2, tunable }
+    /// Least slip velocity with which the friction coefficient follows, used where friction_memory_distance is not 0
+    friction_memory_speed "s₀": f64 = real { "m/s", 1e-3, 1e-9, 1.0, tunable }
+    /// Tangential displacement per shear traction of the layer between wheel and rail, its thickness over its shear
+    /// modulus; 0 is no layer
+    layer_compliance "h/G₃": f64 = real { "m/Pa", 0.0, 0.0, 1e-9 }
 }
 
 /// The start values of the friction table: the default piecewise linear law, its hot end repeated.

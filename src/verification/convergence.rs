@@ -273,6 +273,7 @@ fn temperature_error(contact_nodes: usize, cells: usize, speed: f64) -> Result<f
                 debris,
                 conduction,
                 wheel,
+                ..SurfaceExchange::default()
             }
         })
         .collect();

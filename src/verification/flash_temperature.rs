@@ -149,6 +149,7 @@ fn march(parameters: &Parameters, centre: f64) -> Result<Vec<Point>> {
                 debris: 0.0,
                 conduction: 0.0,
                 wheel: 0.0,
+                ..SurfaceExchange::default()
             }
         })
         .collect();

@@ -80,6 +80,15 @@ fn scenarios() -> Vec<Scenario> {
     };
     scenarios.push((stick, rolling));
     scenarios.extend(patches());
+    // Friction that falls with slip and remembers it, and a layer.
+    let falling = Parameters {
+        friction_slip_share: 0.5,
+        friction_slip_decay: 0.7,
+        friction_memory_distance: 3e-6,
+        layer_compliance: 1e-13,
+        ..parameters(FrictionLaw::PiecewiseLinear)
+    };
+    scenarios.push((falling, inputs));
     scenarios
 }
 
@@ -90,9 +99,13 @@ fn outputs((parameters, held): &Scenario, inputs: &Inputs) -> Outputs {
     *run.hold(inputs, 5e-3, 4).unwrap()
 }
 
-/// Slightly more than a value, or a small one for 0.
+/// Slightly more than a value, less than one at its end, or a small one for 0.
 fn more(value: f64, maximum: f64) -> f64 {
-    if value == 0.0 { 1e-3 * maximum } else { 1.01 * value }
+    match value {
+        0.0 => 1e-3 * maximum,
+        value if 1.01 * value > maximum => 0.99 * value,
+        value => 1.01 * value,
+    }
 }
 
 #[test]

@@ -4,6 +4,7 @@ mod bad_input;
 mod by_speeds;
 mod defaults;
 mod effects;
+mod falling_friction;
 mod lift_off;
 mod paper_mesh;
 mod robustness;

@@ -100,7 +100,7 @@ fn difference(
 }
 
 /// Compares all derivatives of a step of `step` `s` where the outputs are smooth. Returns their number; an error is that of a step.
-fn check(parameters: Parameters, inputs: Inputs, step: f64) -> Result<usize, Error> {
+pub fn check(parameters: Parameters, inputs: Inputs, step: f64) -> Result<usize, Error> {
     // Tighter than the default: a split that rests early would leave its own error in the difference quotient.
     let mut settings = Settings::default();
     // A step that is divided has the derivatives of its last part only.
@@ -265,7 +265,7 @@ fn slopes_at_creepage_0_are_those_of_a_step() {
 }
 
 /// A small patch that heats, wears and swells, under a thin rim in good contact with it.
-fn patch(slip_source: SlipSource, wheel: Wheel) -> Parameters {
+pub fn patch(slip_source: SlipSource, wheel: Wheel) -> Parameters {
     Parameters {
         contact_model: ContactModel::Patch,
         slip_source,
@@ -284,7 +284,7 @@ fn patch(slip_source: SlipSource, wheel: Wheel) -> Parameters {
 }
 
 /// Rolling at V with all three creepages, by the creepages and by the speeds.
-fn rolling(speed: f64, [creepage, lateral, spin]: [f64; 3]) -> Inputs {
+pub fn rolling(speed: f64, [creepage, lateral, spin]: [f64; 3]) -> Inputs {
     Inputs {
         wheel_speed: speed * (1.0 + creepage) / Parameters::default().wheel_radius,
         vehicle_speed: speed,

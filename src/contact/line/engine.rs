@@ -159,7 +159,9 @@ impl Line {
                 .zip(expected)
                 .all(|(own, expected)| own.len() == expected.len() && own.iter().all(|value| value.is_finite()))
         };
-        same(&state.fields.vectors(), &Fields::new(&self.rail).vectors())
+        let fields = Fields::new(&self.rail);
+        same(&state.fields.vectors(), &fields.vectors())
+            && same(&state.fields.memory.vectors(), &fields.memory.vectors())
             && same(&state.trend.vectors(), &Trend::new(&self.rail).vectors())
             && state.fields.penetration.is_finite()
             && state.fields.relaxation_length.is_finite()

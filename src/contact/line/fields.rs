@@ -1,6 +1,8 @@
 //! The fields of the contact, all that a step changes, and their trend from step to step.
 
 use crate::contact::line::rail::Rail;
+use crate::friction::PointLaw;
+use crate::friction::memory::Memory;
 use crate::numerics::dense;
 use serde::{Deserialize, Serialize};
 
@@ -34,6 +36,8 @@ pub struct Fields {
     pub displacement: Vec<f64>,
     /// Its change over the last step, n.
     pub displacement_change: Vec<f64>,
+    /// What friction remembers, n.
+    pub memory: Memory,
     /// The way of rolling on which the last step took the displacement to be forgotten, `m`.
     pub relaxation_length: f64,
     /// Penetration δ, scaled; 0 when lifted.
@@ -60,6 +64,7 @@ impl Fields {
             heat_flux: vec![0.0; n],
             displacement: vec![0.0; n],
             displacement_change: vec![0.0; n],
+            memory: Memory::new(n),
             relaxation_length: rail.relaxation.length(rail.relaxation.half_length),
             penetration: 0.0,
             wheel_temperature: 0.0,
@@ -132,6 +137,7 @@ impl Fields {
         for (own, other) in self.vectors_mut().into_iter().zip(other.vectors()).skip(1) {
             own.copy_from_slice(other);
         }
+        self.memory.copy_from(&other.memory);
         self.relaxation_length = other.relaxation_length;
         self.penetration = other.penetration;
         self.wheel_temperature = other.wheel_temperature;
@@ -144,6 +150,15 @@ impl Fields {
         }
         self.penetration += factor * other.penetration;
         self.wheel_temperature += factor * other.wheel_temperature;
+    }
+
+    /// μ of a node in contact as a function of its temperature.
+    pub fn point_law(&self, node: usize) -> PointLaw {
+        let share = self.memory.share[node];
+        PointLaw {
+            base: self.friction[node] - share * self.memory.now.resting[node],
+            share,
+        }
     }
 
     /// Modal amplitudes of one column.

@@ -8,6 +8,7 @@ use crate::contact::rim::HeatedNode;
 use crate::contact::task::Conditions;
 use crate::friction::FrictionState;
 use crate::friction::coulomb::Sliding;
+use crate::friction::path::{PathLaw, PathStep};
 use crate::heat::march::HeatMarch;
 use crate::heat::surface::{SurfaceCondition, SurfaceExchange};
 use crate::mechanics::normal::problem::Constraint;
@@ -41,6 +42,8 @@ pub struct MechanicsData {
     displacement: Vec<f64>,
     /// Displacement along x₁ at the end of the step before, n.
     displacement_before: Vec<f64>,
+    /// μ without slip, n.
+    friction: Vec<f64>,
 }
 
 impl MechanicsData {
@@ -50,7 +53,13 @@ impl MechanicsData {
             profile: vec![0.0; nodes],
             displacement: vec![0.0; nodes],
             displacement_before: vec![0.0; nodes],
+            friction: vec![0.0; nodes],
         }
+    }
+
+    /// μ without slip, n.
+    pub fn friction(&self) -> &[f64] {
+        &self.friction
     }
 
     /// Takes the displacement at the end of the step before from the fields then.
@@ -87,6 +96,21 @@ impl<'a> Problem<'a> {
             ambient: self.conditions.inputs.ambient_temperature,
             scale: self.conditions.inputs.friction_scale,
         }
+    }
+
+    /// How friction depends on slip and on what was before; none where it does not.
+    pub fn path_law(&self) -> Option<PathLaw> {
+        let rail = self.rail;
+        PathLaw::new(
+            self.parameters,
+            &PathStep {
+                duration: self.conditions.duration,
+                spacing: rail.mesh.contact_spacing(),
+                speed: self.conditions.motion.rolling_speed,
+                displacement: rail.near_field.direct * rail.scales.displacement
+                    + self.parameters.layer_compliance * rail.scales.pressure,
+            },
+        )
     }
 
     /// Load or penetration, scaled.
@@ -204,10 +228,14 @@ impl<'a> Problem<'a> {
 
     /// What heats and cools the surface at the contact nodes with the wheel at θ_w.
     pub fn exchange(&self, fields: &Fields, wheel_rise: f64, exchange: &mut [SurfaceExchange]) {
+        let of_slip = self.path_law().is_some();
         for (node, exchange) in exchange.iter_mut().enumerate() {
             let pressure = fields.pressure[node] * self.rail.scales.pressure;
             let sliding = Sliding::new(fields.slip[node], fields.saturation[node]);
             *exchange = SurfaceExchange::new(self.parameters, pressure, sliding, wheel_rise);
+            if of_slip && pressure > 0.0 {
+                exchange.law = fields.point_law(node);
+            }
         }
     }
 
@@ -215,7 +243,7 @@ impl<'a> Problem<'a> {
     /// inertia is that of the fields' tractions, those of the iteration before: it rests where the split does.
     pub fn update_mechanics_data(&self, coupling: &Coupling, fields: &mut Fields, data: &mut MechanicsData) {
         let friction = self.friction();
-        for (mu, temperature) in fields.friction.iter_mut().zip(coupling.temperature()) {
+        for (mu, temperature) in data.friction.iter_mut().zip(coupling.temperature()) {
             *mu = friction.coefficient(temperature).0;
         }
         data.displacement.copy_from_slice(coupling.along());
@@ -269,7 +297,10 @@ impl<'a> Problem<'a> {
             profile: &data.profile,
             displacement: &data.displacement,
             displacement_before: &data.displacement_before,
-            friction: &fields.friction,
+            friction: &data.friction,
+            path: self
+                .path_law()
+                .map(|law| (law, fields.memory.before.path(0..data.friction.len()))),
             constraint: self.constraint(),
             normal_solver: self.parameters.normal_solver,
             rigid_slip: motion.rigid_slip,
@@ -283,6 +314,9 @@ impl<'a> Problem<'a> {
             shear: &mut fields.shear,
             slip: &mut fields.slip,
             saturation: &mut fields.saturation,
+            friction: &mut fields.friction,
+            speed: &mut fields.memory.now.speed,
+            share: &mut fields.memory.share,
             penetration: &mut fields.penetration,
         };
         (problem, tractions)

@@ -37,10 +37,18 @@ impl Rail {
     pub fn new(parameters: &Parameters) -> Result<Rail> {
         let mesh = Mesh::new(parameters);
         let scales = Scales::new(parameters);
-        let (compliance, thermal) = pair::build(&mesh, parameters, &scales)?;
+        let (mut compliance, thermal) = pair::build(&mesh, parameters, &scales)?;
         let heat = Heat::new(&mesh, &thermal, parameters)?;
         let near_field = NearField::new(&HalfPlanes::of_pair(parameters), mesh.contact_spacing(), &scales);
-        let relaxation = Relaxation::new(parameters, &mesh, &compliance.at_rest, near_field);
+        let layer = scales.compliance(parameters.layer_compliance);
+        let relaxation = Relaxation::new(parameters, &mesh, (&compliance.at_rest, layer), near_field);
+        let near_field = near_field.with_layer(layer);
+        if layer > 0.0 {
+            // A node's own shear alone moves the layer over it.
+            for node in 0..mesh.contact_nodes {
+                compliance.at_rest.tangential_tangential[(node, node)] += layer;
+            }
+        }
         let r0 = parameters.wheel_radius;
         let profile = (0..mesh.contact_nodes)
             .map(|i| {

@@ -5,7 +5,9 @@
 //! has not moved, so that the change decays as exp(−x/ℓ). Kalker's transients have ℓ ≈ a/2 ... a for the contact alone; the
 //! body's compliance is in series with it, and lengthens ℓ with the logarithm of its size over that of the contact:
 //! ℓ = ¾ a Λ. The factor was fitted to transients with short steps, after jumps of the creepage up to saturation, with both
-//! kinds of wheel. How far from them it keeps steps of any length is the verification's "Jump of the creepage".
+//! kinds of wheel. A layer between wheel and rail adds to the displacement, and to what a creepage needs of it: of compliance c it
+//! adds g = π c/(2 a direct) to Λ in units of direct/π, and lowers the slope of the creep curve, π a/direct, by 1 + g, so that
+//! ℓ = ¾ a (Λ + g)/(1 + g). How far from them it keeps steps of any length is the verification's "Jump of the creepage".
 
 use crate::body::compliance::Compliance;
 use crate::body::mesh::Mesh;
@@ -24,11 +26,18 @@ pub struct Relaxation {
     /// Λ at the largest load: mean displacement along x₁ in the contact under a shear that is elliptic, per force and width, in
     /// units of direct/π.
     compliance: f64,
+    /// g a, `m`.
+    layer: f64,
 }
 
 impl Relaxation {
-    /// Of a pair's compliance.
-    pub fn new(parameters: &Parameters, mesh: &Mesh, compliance: &Compliance, near_field: NearField) -> Relaxation {
+    /// Of a pair's compliance, with a layer of the given one, scaled, besides.
+    pub fn new(
+        parameters: &Parameters,
+        mesh: &Mesh,
+        (compliance, layer): (&Compliance, f64),
+        near_field: NearField,
+    ) -> Relaxation {
         let half_length = parameters.hertz_half_length(parameters.largest_load);
         let shear: Vec<f64> = (0..mesh.contact_nodes)
             .map(|node| {
@@ -49,12 +58,15 @@ impl Relaxation {
         Relaxation {
             half_length,
             compliance: PI * mean / (force * near_field.direct),
+            layer: layer * mesh.contact_spacing() * 0.5 * PI / near_field.direct,
         }
     }
 
     /// ℓ of a contact of this half-length, `m`. A shorter contact is more compliant by the logarithm of the ratio.
     pub fn length(&self, half_length: f64) -> f64 {
-        SHARE * half_length * (self.compliance + (self.half_length / half_length).ln())
+        let layer = self.layer / half_length;
+        let body = self.compliance + (self.half_length / half_length).ln();
+        SHARE * half_length * ((body + layer) / (1.0 + layer))
     }
 }
 
@@ -72,7 +84,7 @@ mod tests {
         let displacement = half_planes.surface_displacement(mesh.contact_nodes, mesh.contact_spacing());
         let compliance = Compliance::from_blocks(&(displacement * scales.compliance(1.0)), true);
         let near_field = NearField::new(&half_planes, mesh.contact_spacing(), &scales);
-        Relaxation::new(parameters, &mesh, &compliance, near_field)
+        Relaxation::new(parameters, &mesh, (&compliance, 0.0), near_field)
     }
 
     /// An elliptic shear of force Q per width on a half-plane displaces by direct/π Q (ln(2/a) + ½ − x²/a²) (Johnson, Contact

@@ -140,8 +140,21 @@ impl<'a> Linearisation<'a> {
         let law = problem.friction();
         let common = [direction.inputs.ambient_temperature, direction.inputs.friction_scale];
         let rises = &fields.surface_temperature[window];
-        for ((mu, &rise), change) in tangent.friction.iter_mut().zip(rises).zip(iterate.temperature()) {
+        let resting = &mut tangent.memory.now.resting;
+        for ((mu, &rise), change) in resting.iter_mut().zip(rises).zip(iterate.temperature()) {
             *mu = law.coefficient_tangent(rise, [change, common[0], common[1]]);
+        }
+        let mut friction_of_slip = resting.clone();
+        if let Some(path_law) = problem.path_law() {
+            let nodes = 0..fields.pressure.len();
+            let (before, now) = (fields.memory.before.path(nodes.clone()), fields.memory.now.path(nodes));
+            let touches = |node: usize| fields.pressure[node] > 0.0;
+            path_law.tangent(
+                (&before, &now),
+                touches,
+                (direction.speed, resting),
+                &mut friction_of_slip,
+            );
         }
         let mut along = iterate.along().to_vec();
         let lifts = iterate.upward().iter().zip(iterate.wear());
@@ -160,7 +173,8 @@ impl<'a> Linearisation<'a> {
         let change = ProblemTangent {
             profile: &upward,
             displacement: &along,
-            friction: &tangent.friction,
+            friction: &tangent.memory.now.resting,
+            friction_of_slip: &friction_of_slip,
             total: problem
                 .rail
                 .scaled_load(problem.parameters, direction.inputs.normal_load),
@@ -173,6 +187,9 @@ impl<'a> Linearisation<'a> {
             shear: &mut tangent.shear,
             slip: &mut tangent.slip,
             saturation: &mut tangent.saturation,
+            friction: &mut tangent.friction,
+            speed: &mut tangent.memory.now.speed,
+            share: &mut tangent.memory.share,
             penetration: &mut tangent.penetration,
         };
         let Scratch {
@@ -212,6 +229,7 @@ impl<'a> Linearisation<'a> {
         };
         let mut exchange = vec![SurfaceExchange::default(); fields.pressure.len()];
         problem.exchange(fields, wheel_rise, &mut exchange);
+        let of_slip = problem.path_law().is_some();
         let exchange_tangent: Vec<ExchangeTangent> = (0..fields.pressure.len())
             .map(|node| {
                 let (slip, saturation) = (fields.slip[node], fields.saturation[node]);
@@ -219,6 +237,11 @@ impl<'a> Linearisation<'a> {
                     pressure: tangent.pressure[node] * scale,
                     sliding: Sliding::tangent((slip, saturation), (tangent.slip[node], tangent.saturation[node])),
                     wheel_rise: wheel_rise_tangent,
+                    coefficient: if of_slip && fields.pressure[node] > 0.0 {
+                        tangent.friction[node] - fields.memory.share[node] * tangent.memory.now.resting[node]
+                    } else {
+                        0.0
+                    },
                 };
                 let pressure = fields.pressure[node] * scale;
                 SurfaceExchange::tangent(

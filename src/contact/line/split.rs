@@ -83,6 +83,7 @@ pub fn solve(problem: &Problem, before: &Fields, fields: &mut Fields, scratch: &
     let settings = problem.settings.split;
     fields.relaxation_length = problem.relaxation_length(before);
     scratch.data.start_from(before);
+    remember(problem, before, fields);
     start(problem, fields, scratch);
     replace_inflow(problem, before, fields);
     let mut rest = Rest::new(settings);
@@ -104,6 +105,7 @@ pub fn solve(problem: &Problem, before: &Fields, fields: &mut Fields, scratch: &
         if rest.is_reached(change.max(unmapped), &sweep) {
             let fills_window = fills_window(problem, fields, scratch)?;
             close_friction(problem, fields);
+            close_memory(problem, fields);
             problem.close_displacement(&scratch.iterate, fields, &scratch.data);
             warm_wheel(problem, before, fields);
             return Ok(Convergence {
@@ -137,6 +139,7 @@ pub fn solve(problem: &Problem, before: &Fields, fields: &mut Fields, scratch: &
 pub fn solve_mechanics(problem: &Problem, fields: &mut Fields, scratch: &mut Scratch) -> Result<()> {
     let settings = problem.settings.split;
     let tolerance = settings.mechanics_alone_tolerance;
+    fields.memory.start_steady();
     start(problem, fields, scratch);
     let mut residual = f64::INFINITY;
     for _ in 0..settings.iterations {
@@ -146,6 +149,7 @@ pub fn solve_mechanics(problem: &Problem, fields: &mut Fields, scratch: &mut Scr
             problem.close_displacement(&scratch.iterate, fields, &scratch.data);
             // There was no step before it.
             fields.displacement_change.fill(0.0);
+            close_memory(problem, fields);
             return fills_window(problem, fields, scratch).map(|_| ());
         }
     }
@@ -191,11 +195,52 @@ fn solve_tractions(problem: &Problem, fields: &mut Fields, scratch: &mut Scratch
         fields.slip.fill(0.0);
         fields.saturation.fill(0.0);
         fields.penetration = 0.0;
+        fields.memory.now.speed.fill(0.0);
         return Ok(Sweep::NONE);
     }
     problem.update_mechanics_data(&scratch.iterate, fields, &mut scratch.data);
     let (mechanics_problem, mut tractions) = problem.mechanics(fields, &scratch.data, &scratch.softening);
-    scratch.mechanics.sweep(&mechanics_problem, &mut tractions, tolerance)
+    let of_slip = mechanics_problem.path.is_some();
+    let sweep = scratch.mechanics.sweep(&mechanics_problem, &mut tractions, tolerance)?;
+    if of_slip {
+        fields.memory.now.resting.copy_from_slice(scratch.data.friction());
+    }
+    Ok(sweep)
+}
+
+/// What the rail brings along from the step before.
+fn remember(problem: &Problem, before: &Fields, fields: &mut Fields) {
+    let remembers = problem.parameters.friction_memory_distance > 0.0;
+    fields.memory.remembers = remembers;
+    if remembers {
+        let (law, first) = (problem.friction(), problem.rail.mesh.first_contact);
+        let resting = |node: usize| law.coefficient(before.surface_temperature[first + node]).0;
+        fields.memory.start_from(&before.memory, resting);
+    }
+}
+
+/// What the rail takes along into the next step.
+fn close_memory(problem: &Problem, fields: &mut Fields) {
+    fields.memory.remembers = problem.parameters.friction_memory_distance > 0.0;
+    let (Some(path_law), true) = (problem.path_law(), fields.memory.remembers) else {
+        return;
+    };
+    let (law, first) = (problem.friction(), problem.rail.mesh.first_contact);
+    let nodes = fields.pressure.len();
+    let Fields {
+        memory,
+        pressure,
+        friction,
+        surface_temperature,
+        ..
+    } = fields;
+    for (resting, temperature) in memory.now.resting.iter_mut().zip(&surface_temperature[first..]) {
+        *resting = law.coefficient(*temperature).0;
+    }
+    let touches = |node: usize| pressure[node] > 0.0;
+    let now = &mut memory.now;
+    now.friction.copy_from_slice(friction);
+    path_law.close(&memory.before.path(0..nodes), &now.resting, touches, &mut now.friction);
 }
 
 /// Adapts the normal compliance to the wear of the step.
@@ -330,8 +375,14 @@ fn map_displacement(problem: &Problem, fields: &mut Fields, scratch: &mut Scratc
 fn close_friction(problem: &Problem, fields: &mut Fields) {
     let law = problem.friction();
     let first = problem.rail.mesh.first_contact;
+    let of_slip = problem.path_law().is_some();
     for node in 0..fields.pressure.len() {
-        let mu = law.coefficient(fields.surface_temperature[first + node]).0;
+        let resting = law.coefficient(fields.surface_temperature[first + node]).0;
+        let mut mu = resting;
+        if of_slip && fields.pressure[node] > 0.0 {
+            mu = fields.point_law(node).of((resting, 0.0)).0;
+            fields.memory.now.resting[node] = resting;
+        }
         fields.friction[node] = mu;
         if fields.pressure[node] > 0.0 {
             fields.shear[node] = -mu * fields.pressure[node] * fields.saturation[node];

@@ -1,6 +1,8 @@
 //! The fields of a patch, all that a step changes, and their trend from step to step.
 
 use super::rail::PatchRail;
+use crate::friction::PointLaw;
+use crate::friction::memory::Memory;
 use crate::heat::strips::StripTemperature;
 use crate::wear::strips::StripWear;
 use serde::{Deserialize, Serialize};
@@ -24,6 +26,8 @@ pub struct PatchFields {
     pub displacement: [Vec<f64>; 2],
     /// Its change over the last step.
     pub displacement_change: [Vec<f64>; 2],
+    /// What friction remembers, of the cells, strip by strip.
+    pub memory: Memory,
     /// The way of rolling on which the last step took the displacement to be forgotten, `m`.
     pub relaxation_length: f64,
     /// Penetration δ, scaled; 0 when lifted.
@@ -46,6 +50,7 @@ impl PatchFields {
             friction: on_grid(),
             displacement: vectors(),
             displacement_change: vectors(),
+            memory: Memory::new(rail.grid.strips * rail.grid.cells),
             relaxation_length: rail.relaxation_length,
             penetration: 0.0,
             wheel_temperature: 0.0,
@@ -134,7 +139,16 @@ impl PatchFields {
     /// All vectors.
     pub fn vectors(&self) -> impl Iterator<Item = &Vec<f64>> {
         let rail = self.heat.vectors().into_iter().chain(self.wear.vectors());
-        rail.chain(self.on_grid())
+        rail.chain(self.on_grid()).chain(self.memory.vectors())
+    }
+
+    /// μ of a cell in contact, by its place on the grid and its index, as a function of its temperature.
+    pub fn point_law(&self, place: usize, index: usize) -> PointLaw {
+        let share = self.memory.share[index];
+        PointLaw {
+            base: self.friction[place] - share * self.memory.now.resting[index],
+            share,
+        }
     }
 
     /// The numbers.
@@ -153,6 +167,7 @@ impl PatchFields {
         for (own, other) in self.on_grid_mut().into_iter().zip(other.on_grid()) {
             own.copy_from_slice(other);
         }
+        self.memory.copy_from(&other.memory);
         self.relaxation_length = other.relaxation_length;
         self.penetration = other.penetration;
         self.wheel_temperature = other.wheel_temperature;

@@ -10,6 +10,7 @@ pub mod engine;
 pub mod expansion;
 pub mod extent;
 pub mod fields;
+mod memory;
 pub mod problem;
 pub mod profiles;
 pub mod rail;

@@ -6,6 +6,7 @@ use crate::contact::rim::HeatedNode;
 use crate::contact::task::Conditions;
 use crate::friction::FrictionState;
 use crate::friction::coulomb::Sliding;
+use crate::friction::path::{PathLaw, PathStep};
 use crate::heat::strips::StripHeatMarch;
 use crate::heat::surface::{SurfaceCondition, SurfaceExchange};
 use crate::mechanics::normal::problem::Constraint;
@@ -70,6 +71,21 @@ impl<'a> Problem<'a> {
             ambient: self.conditions.inputs.ambient_temperature,
             scale: self.conditions.inputs.friction_scale,
         }
+    }
+
+    /// How friction depends on slip and on what was before; none where it does not.
+    pub fn path_law(&self) -> Option<PathLaw> {
+        let rail = self.rail;
+        let origin = rail.grid.stride();
+        PathLaw::new(
+            self.parameters,
+            &PathStep {
+                duration: self.conditions.duration,
+                spacing: rail.grid.length,
+                speed: self.conditions.motion.rolling_speed,
+                displacement: rail.scales.displacement * rail.own[0][origin],
+            },
+        )
     }
 
     /// Load or penetration, scaled.
@@ -252,14 +268,18 @@ impl<'a> Problem<'a> {
     /// What heats and cools the surface of the cells, strip by strip, with the wheel at θ_w.
     pub fn exchange(&self, fields: &PatchFields, wheel_rise: f64, exchange: &mut [SurfaceExchange]) {
         let grid = &self.rail.grid;
+        let of_slip = self.path_law().is_some();
         for (strip, exchange) in exchange.chunks_exact_mut(grid.cells).enumerate() {
-            for (place, exchange) in grid.row(strip).zip(exchange) {
+            for (cell, (place, exchange)) in grid.row(strip).zip(exchange).enumerate() {
                 let pressure = fields.pressure[place] * self.rail.scales.pressure;
                 *exchange = if pressure > 0.0 {
                     SurfaceExchange::new(self.parameters, pressure, self.sliding(fields, place), wheel_rise)
                 } else {
                     SurfaceExchange::default()
                 };
+                if of_slip && pressure > 0.0 {
+                    exchange.law = fields.point_law(place, strip * grid.cells + cell);
+                }
             }
         }
     }

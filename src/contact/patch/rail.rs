@@ -9,6 +9,7 @@ use crate::body::mesh::Mesh;
 use crate::error::Result;
 use crate::heat::basis::DepthBasis;
 use crate::heat::incoming::Incoming;
+use crate::mechanics::front::LAYER_OPENING;
 use crate::mechanics::patch::normal::Approach;
 use crate::parameters::Parameters;
 use crate::transport::strips::Strips;
@@ -96,13 +97,16 @@ impl PatchRail {
             let (x, y) = place(lag);
             unit * pair.normal() * rectangle.inverse(x, y)
         };
+        // A cell's own shear alone moves the layer over it.
+        let layer = unit * parameters.layer_compliance;
+        let own_layer = |lag| if lag == (0, 0) { layer } else { 0.0 };
         let along = |lag| {
             let (x, y) = place(lag);
-            normal(lag) + unit * pair.lateral * rectangle.xx(x, y)
+            normal(lag) + unit * pair.lateral * rectangle.xx(x, y) + own_layer(lag)
         };
         let across = |lag| {
             let (x, y) = place(lag);
-            normal(lag) + unit * pair.lateral * rectangle.yy(x, y)
+            normal(lag) + unit * pair.lateral * rectangle.yy(x, y) + own_layer(lag)
         };
         let mixed = |lag| {
             let (x, y) = place(lag);
@@ -163,13 +167,17 @@ impl PatchRail {
                 parameters.strip_half_length,
                 scales.displacement,
             ),
-            opening: [1.0, pair.direct / pair.normal()],
+            opening: {
+                // Of the strips' edges, which are nearly straight: the pressure of a cell displaces half-planes by 2Δ/E*, 1/E* = π normal.
+                let edge = LAYER_OPENING * layer / (2.0 * PI * pair.normal() * unit * grid.length);
+                [1.0 + edge, pair.direct / pair.normal() + edge]
+            },
             gap,
             strips: Strips::new(&mesh.x, (mesh.first_contact, grid.cells), grid.strips, grid.breadth),
             incoming: Incoming::new(&mesh.depth, &basis, parameters.skin_depth),
             depth: mesh.depth,
             basis,
-            relaxation_length: relaxation_length(&pair, (ellipse.along, ellipse.across)),
+            relaxation_length: relaxation_length(&pair, parameters.layer_compliance, (ellipse.along, ellipse.across)),
             transform,
             grid,
             scales,
@@ -192,10 +200,16 @@ impl PatchRail {
 
 /// The way of rolling on which a patch forgets a change of its shear force F. With C the displacement per force and K the force per
 /// creepage of steady rolling, a contact of one displacement C F has C dF/dt + |V| F/K = |V| ξ: it forgets within C K. The
-/// displacement is not one, but grows from the leading edge to the trailing one, and slip changes it: ℓ is a share of C K. K = G a b C₁₁, C₁₁ = 3.3 (1 + a/(4b)), which is within a few per cent of Kalker's table.
-fn relaxation_length(pair: &HalfSpaces, (a, b): (f64, f64)) -> f64 {
+/// displacement is not one, but grows from the leading edge to the trailing one, and slip changes it: ℓ is a share of C K. K = G a b C₁₁, C₁₁ = 3.3 (1 + a/(4b)), which is within a few per cent of Kalker's table. A layer of
+/// compliance c adds c/(π a b) to C and 3c/(8a²b), that of a brush, to 1/K.
+fn relaxation_length(pair: &HalfSpaces, layer: f64, (a, b): (f64, f64)) -> f64 {
     let stiffness = a * b * 3.3 * (1.0 + 0.25 * a / b) / (PI * pair.direct);
-    RELAXATION_SHARE * compliance(pair, (a * b).sqrt()) * stiffness
+    let displacement = compliance(pair, (a * b).sqrt());
+    if layer == 0.0 {
+        return RELAXATION_SHARE * displacement * stiffness;
+    }
+    let with_layer = displacement + layer / (PI * a * b);
+    RELAXATION_SHARE * with_layer / (1.0 / stiffness + 0.375 * layer / (a * a * b))
 }
 
 /// Mean displacement of a circle along an elliptic shear τ ∝ √(1 − r²/c²) on it, per force, `m/N`. Of one half-space u_x =

@@ -6,6 +6,7 @@ use super::problem::SlipWeights;
 use super::rail::PatchRail;
 use super::response;
 use crate::body::influence;
+use crate::friction::path::PathNode;
 use crate::heat::strips::StripHeatScratch;
 use crate::heat::surface::SurfaceExchange;
 use crate::mechanics::patch::contact::Contact;
@@ -47,6 +48,29 @@ pub struct Scratch {
     /// Of the cells under pressure.
     pub(super) bound: Vec<f64>,
     pub(super) edge: Vec<[f64; 2]>,
+    /// Where friction depends on slip: the law of the cells under pressure, and their pressure.
+    pub(super) path: PathScratch,
+}
+
+/// The friction of the cells under pressure, where it depends on slip.
+pub struct PathScratch {
+    /// Their law.
+    pub nodes: Vec<PathNode>,
+    /// Their pressure, scaled.
+    pub pressure: Vec<f64>,
+    /// Of all cells, strip by strip, their number among those under pressure.
+    pub index: Vec<Option<usize>>,
+}
+
+impl PathScratch {
+    /// For a number of cells.
+    pub fn new(cells: usize) -> PathScratch {
+        PathScratch {
+            nodes: vec![PathNode::default(); cells],
+            pressure: vec![0.0; cells],
+            index: vec![None; cells],
+        }
+    }
 }
 
 impl Scratch {
@@ -84,6 +108,7 @@ impl Scratch {
             shear_before: vectors(),
             bound: on_grid(),
             edge: vec![[0.0; 2]; grid.len()],
+            path: PathScratch::new(cells),
         }
     }
 }

@@ -295,12 +295,19 @@ impl<'a> Linearisation<'a> {
             WheelHeating::Off => 0.0,
             WheelHeating::On => iterate.wheel_temperature() - direction.inputs.ambient_temperature,
         };
+        let of_slip = problem.path_law().is_some();
         for (strip, changes) in exchange_change.chunks_exact_mut(grid.cells).enumerate() {
-            for (exchange_change, place) in changes.iter_mut().zip(grid.row(strip)) {
+            for (cell, (exchange_change, place)) in changes.iter_mut().zip(grid.row(strip)).enumerate() {
                 let change = ExchangeChange {
                     pressure: tangent.pressure[place] * scale,
                     sliding: problem.sliding_tangent(fields, tangent, place),
                     wheel_rise: rise_change,
+                    coefficient: if of_slip && fields.pressure[place] > 0.0 {
+                        let index = strip * grid.cells + cell;
+                        tangent.friction[place] - fields.memory.share[index] * tangent.memory.now.resting[index]
+                    } else {
+                        0.0
+                    },
                 };
                 let (pressure, sliding) = (fields.pressure[place] * scale, problem.sliding(fields, place));
                 *exchange_change = SurfaceExchange::tangent(parameters, pressure, sliding, rise, &change);

@@ -6,6 +6,7 @@
 //! window, the displacement.
 
 use super::fields::{PatchFields, PatchTrend};
+use super::memory;
 use super::problem::Problem;
 use super::scratch::Scratch;
 use super::tractions;
@@ -37,6 +38,7 @@ pub fn solve(
     for component in 0..2 {
         scratch.before[component].copy_from_slice(&before.displacement[component]);
     }
+    memory::remember(problem, before, fields);
     start(problem, fields, scratch);
     let inputs = &problem.conditions.inputs;
     let rise = inputs.incoming_temperature - inputs.ambient_temperature;
@@ -83,6 +85,7 @@ pub fn solve(
 /// # Errors
 /// As [`solve`].
 pub fn solve_mechanics(problem: &Problem, fields: &mut PatchFields, scratch: &mut Scratch) -> Result<()> {
+    fields.memory.start_steady();
     start(problem, fields, scratch);
     for component in 0..2 {
         scratch.before[component].fill(0.0);
@@ -97,6 +100,7 @@ pub fn solve_mechanics(problem: &Problem, fields: &mut PatchFields, scratch: &mu
         if sweep.rests(tolerance) {
             fills_window(problem, fields, scratch)?;
             close_displacement(problem, fields, scratch);
+            memory::close(problem, fields);
             for component in &mut fields.displacement_change {
                 component.fill(0.0);
             }
@@ -229,11 +233,16 @@ fn warm_wheel(problem: &Problem, before: &PatchFields, fields: &mut PatchFields)
 fn close_friction(problem: &Problem, fields: &mut PatchFields, contact: &Contact) {
     let grid = &problem.rail.grid;
     let law = problem.friction();
+    let of_slip = problem.path_law().is_some();
     for run in contact.runs() {
         for (k, place) in run.places(grid).enumerate() {
-            let mu = law
-                .coefficient(fields.heat.surface[run.strip * grid.cells + run.first + k])
-                .0;
+            let index = run.strip * grid.cells + run.first + k;
+            let resting = law.coefficient(fields.heat.surface[index]).0;
+            let mut mu = resting;
+            if of_slip {
+                mu = fields.point_law(place, index).of((resting, 0.0)).0;
+                fields.memory.now.resting[index] = resting;
+            }
             let ratio = if fields.friction[place] > 0.0 {
                 mu / fields.friction[place]
             } else {
@@ -250,6 +259,7 @@ fn close_friction(problem: &Problem, fields: &mut PatchFields, contact: &Contact
 /// What acts on nothing any more within the step.
 fn finish(problem: &Problem, before: &PatchFields, fields: &mut PatchFields, scratch: &mut Scratch) -> Result<()> {
     close_friction(problem, fields, &scratch.contact);
+    memory::close(problem, fields);
     close_displacement(problem, fields, scratch);
     let breadth = problem.breadth(fields);
     problem

@@ -7,14 +7,19 @@
 use super::coupling::Coupling;
 use super::expansion;
 use super::fields::PatchFields;
+use super::memory;
 use super::problem::{Problem, SlipWeights, rigid_slip};
 use super::rail::PatchRail;
 use super::response;
+use super::scratch::PathScratch;
 use crate::body::influence::{self, Window};
 use crate::error::Result;
+use crate::friction::path::PathLaw;
 use crate::mechanics::normal::problem::Constraint;
 use crate::mechanics::patch::contact::Contact;
-use crate::mechanics::patch::friction::{Friction, FrictionChange, FrictionProblem, LEAST_CHANGE, SlipResponse};
+use crate::mechanics::patch::friction::{
+    Friction, FrictionChange, FrictionProblem, LEAST_CHANGE, PathOfCells, SlipResponse,
+};
 use crate::mechanics::patch::law::Vector;
 use crate::mechanics::patch::normal::{Normal, NormalProblem};
 use crate::numerics::dense::{add_multiple, largest};
@@ -63,6 +68,10 @@ pub struct Tangent {
     edge_change: Vec<Vector>,
     expansion: expansion::Scratch,
     nothing: Vec<f64>,
+    /// Where friction depends on slip: its law, that of the cells under pressure, the change of μ of all cells at unchanged slip.
+    path_law: Option<PathLaw>,
+    path: PathScratch,
+    friction_change: Vec<f64>,
 }
 
 impl Tangent {
@@ -98,6 +107,9 @@ impl Tangent {
             edge_change: vec![[0.0; 2]; grid.len()],
             expansion: expansion::Scratch::new(grid, transform),
             nothing: on_grid(),
+            path_law: None,
+            path: PathScratch::new(grid.strips * grid.cells),
+            friction_change: vec![0.0; grid.strips * grid.cells],
         }
     }
 
@@ -152,10 +164,15 @@ impl Tangent {
             let noise = problem.settings.patch.noise * own * largest(&fields.pressure);
             [1.0 / own, noise, problem.parameters.slip_regularisation]
         };
+        self.path_law = problem.path_law();
+        if let Some(law) = &self.path_law {
+            let contact = (&self.contact, &fields.pressure[..]);
+            memory::prepare(problem, law, contact, fields, &mut self.path);
+        }
         let law = friction_problem(
             problem,
             (&self.contact, &self.response, self.scheme),
-            (&self.edge, &self.bound),
+            (&self.edge, &self.bound, path_of_cells(self.path_law, &self.path)),
             &self.slip,
         );
         self.friction.linearise(&law, &fields.shear)
@@ -225,7 +242,8 @@ impl Tangent {
             for (cell, place) in grid.row(strip).enumerate() {
                 let index = strip * grid.cells + cell;
                 self.gap[place] = iterate.wear()[index] - iterate.lift()[index];
-                tangent.friction[place] = if fields.pressure[place] > 0.0 {
+                let touches = fields.pressure[place] > 0.0;
+                let resting = if touches || self.path_law.is_some() {
                     let changes = [
                         iterate.temperature(index),
                         direction.inputs.ambient_temperature,
@@ -235,6 +253,17 @@ impl Tangent {
                 } else {
                     0.0
                 };
+                tangent.memory.now.resting[index] = resting;
+                tangent.friction[place] = if touches { resting } else { 0.0 };
+            }
+        }
+        if let Some(path_law) = &self.path_law {
+            let resting = &tangent.memory.now.resting;
+            let change = &mut self.friction_change;
+            memory::tangent(problem, path_law, fields, (direction.speed, resting), change);
+            for run in self.contact.runs() {
+                let own = &self.friction_change[run.strip * grid.cells + run.first..];
+                tangent.friction[run.places(grid)].copy_from_slice(&own[..run.cells]);
             }
         }
         let total = direction.inputs.normal_load / rail.unit_force();
@@ -256,10 +285,11 @@ impl Tangent {
                 tangent.friction[place] * fields.pressure[place] + fields.friction[place] * tangent.pressure[place];
         }
         self.free_slip(problem, fields, (direction, iterate), &tangent.pressure);
+        let path = path_of_cells(self.path_law, &self.path);
         let law = friction_problem(
             problem,
             (&self.contact, &self.response, self.scheme),
-            (&self.edge, &self.bound),
+            (&self.edge, &self.bound, path),
             &self.slip,
         );
         let change = FrictionChange {
@@ -271,6 +301,12 @@ impl Tangent {
         };
         self.friction
             .tangent(&law, &fields.shear, &change, &mut tangent.shear)?;
+        if let Some(path) = &path {
+            let places: Vec<usize> = self.contact.places(grid).collect();
+            self.friction.friction_changes(path, places.len(), |index, friction| {
+                tangent.friction[places[index]] += friction;
+            });
+        }
         self.mean_slip(problem, fields, tangent);
         Ok(())
     }
@@ -397,10 +433,18 @@ fn normal_problem<'a>(
     }
 }
 
+fn path_of_cells(law: Option<PathLaw>, scratch: &PathScratch) -> Option<PathOfCells<'_>> {
+    law.map(|law| PathOfCells {
+        law,
+        nodes: &scratch.nodes,
+        pressure: &scratch.pressure,
+    })
+}
+
 fn friction_problem<'a>(
     problem: &Problem<'a>,
     (contact, response, [scale, noise, regularisation]): (&'a Contact, &'a SlipResponse, [f64; 3]),
-    (edge, bound): (&'a [Vector], &'a [f64]),
+    (edge, bound, path): (&'a [Vector], &'a [f64], Option<PathOfCells<'a>>),
     slip: &'a [Vec<f64>; 2],
 ) -> FrictionProblem<'a> {
     FrictionProblem {
@@ -411,6 +455,7 @@ fn friction_problem<'a>(
         edge,
         free_slip: [&slip[0], &slip[1]],
         bound,
+        path,
         scale,
         noise,
         regularisation,

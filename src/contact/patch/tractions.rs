@@ -2,6 +2,7 @@
 //! for that pressure.
 
 use super::fields::PatchFields;
+use super::memory;
 use super::problem::{Problem, SlipWeights};
 use super::response;
 use super::scratch::Scratch;
@@ -11,7 +12,7 @@ use crate::error::Result;
 use crate::friction::coulomb;
 use crate::mechanics::normal::problem::Constraint;
 use crate::mechanics::patch::contact::Contact;
-use crate::mechanics::patch::friction::FrictionProblem;
+use crate::mechanics::patch::friction::{FrictionProblem, PathOfCells};
 use crate::mechanics::patch::normal::NormalProblem;
 use crate::mechanics::sweep::Sweep;
 use crate::numerics::dense::{add_multiple, largest, largest_change};
@@ -66,6 +67,7 @@ fn lift(problem: &Problem, fields: &mut PatchFields, scratch: &mut Scratch) {
     for vectors in [&mut fields.shear, &mut fields.slip] {
         vectors.iter_mut().for_each(|component| component.fill(0.0));
     }
+    fields.memory.now.speed.fill(0.0);
     fields.penetration = 0.0;
     given_displacement(problem, fields, scratch);
 }
@@ -124,15 +126,29 @@ fn solve_friction(problem: &Problem, fields: &mut PatchFields, scratch: &mut Scr
     let forward = problem.is_forward();
     let ahead: isize = if forward { 1 } else { -1 };
     let law = problem.friction();
+    let path_law = problem.path_law();
+    if let Some(path_law) = &path_law {
+        for (index, resting) in fields.memory.now.resting.iter_mut().enumerate() {
+            *resting = law.coefficient(scratch.iterate.temperature(index)).0;
+        }
+        let contact = (&scratch.contact, &fields.pressure[..]);
+        memory::prepare(problem, path_law, contact, fields, &mut scratch.path);
+    }
     // Coulomb's bound, and what the leading edge adds: the opening ahead is that of the gap in the ratio of the tractions.
-    fields.friction.fill(0.0);
+    if path_law.is_none() {
+        fields.friction.fill(0.0);
+    }
     for run in scratch.contact.runs() {
         let leading = if forward { run.cells - 1 } else { 0 };
         for (k, place) in run.places(grid).enumerate() {
             let index = run.offset + k;
             let cell = run.first + k;
             let temperature = scratch.iterate.temperature(run.strip * grid.cells + cell);
-            let mu = law.coefficient(temperature).0;
+            let mut mu = law.coefficient(temperature).0;
+            if path_law.is_some() {
+                // The bound of the first guess. Rail that cools remembers less than it would have at rest, rail that warms more.
+                mu = mu.max(fields.friction[place]);
+            }
             fields.friction[place] = mu;
             scratch.bound[index] = mu * fields.pressure[place];
             scratch.edge[index] = if k == leading {
@@ -148,8 +164,18 @@ fn solve_friction(problem: &Problem, fields: &mut PatchFields, scratch: &mut Scr
     free_slip(problem, &weights, fields, scratch);
     let own = f64::from(scratch.response.own[0][scratch.response.origin]);
     let peak = largest(&fields.pressure);
+    let path = path_law.map(|law| PathOfCells {
+        law,
+        nodes: &scratch.path.nodes,
+        pressure: &scratch.path.pressure,
+    });
     if own == 0.0 {
-        slide_on_the_spot(problem, fields, scratch);
+        slide_on_the_spot(
+            problem,
+            path.as_ref(),
+            (&scratch.contact, &mut scratch.bound, &scratch.free_slip),
+            fields,
+        );
     } else {
         let friction_problem = FrictionProblem {
             grid,
@@ -159,12 +185,26 @@ fn solve_friction(problem: &Problem, fields: &mut PatchFields, scratch: &mut Scr
             edge: &scratch.edge,
             free_slip: [&scratch.free_slip[0], &scratch.free_slip[1]],
             bound: &scratch.bound,
+            path,
             scale: 1.0 / own,
             noise: problem.settings.patch.noise * own * peak,
             regularisation: problem.parameters.slip_regularisation,
             tolerance: peak * tolerance.max(problem.settings.patch.least_tolerance),
         };
         scratch.friction.solve(&friction_problem, &mut fields.shear)?;
+        if path.is_some() {
+            let (of_slip, speeds) = scratch.friction.of_slip();
+            fields.friction.fill(0.0);
+            fields.memory.now.speed.fill(0.0);
+            for run in scratch.contact.runs() {
+                for (k, (index, place)) in run.own().zip(run.places(grid)).enumerate() {
+                    let cell = run.strip * grid.cells + run.first + k;
+                    fields.friction[place] = of_slip[index].coefficient;
+                    fields.memory.share[cell] = of_slip[index].share;
+                    fields.memory.now.speed[cell] = speeds[index];
+                }
+            }
+        }
     }
     mean_slip(problem, fields, scratch);
     Ok(())
@@ -239,13 +279,26 @@ fn given_displacement(problem: &Problem, fields: &PatchFields, scratch: &mut Scr
 }
 
 /// At rest, where the slip is the wheel's alone: the law gives the shear, and there is none without slip.
-fn slide_on_the_spot(problem: &Problem, fields: &mut PatchFields, scratch: &mut Scratch) {
+fn slide_on_the_spot(
+    problem: &Problem,
+    path: Option<&PathOfCells>,
+    (contact, bound, free_slip): (&Contact, &mut [f64], &[Vec<f64>; 2]),
+    fields: &mut PatchFields,
+) {
     let grid = &problem.rail.grid;
     let epsilon = problem.parameters.slip_regularisation;
-    for run in scratch.contact.runs() {
-        for (index, place) in run.own().zip(run.places(grid)) {
-            let slip = [scratch.free_slip[0][place], scratch.free_slip[1][place]];
+    for run in contact.runs() {
+        for (k, (index, place)) in run.own().zip(run.places(grid)).enumerate() {
+            let slip = [free_slip[0][place], free_slip[1][place]];
             let speed = coulomb::magnitude(slip);
+            if let Some(path) = path {
+                // At rest particles come from nowhere.
+                let friction = path.law.friction(&path.nodes[index], (0.0, 0.0), speed);
+                let cell = run.strip * grid.cells + run.first + k;
+                (fields.friction[place], fields.memory.share[cell]) = (friction.coefficient, friction.share);
+                fields.memory.now.speed[cell] = speed;
+                bound[index] = friction.coefficient * path.pressure[index];
+            }
             let saturation = if epsilon > 0.0 {
                 coulomb::saturation(speed, epsilon)
             } else {
@@ -253,7 +306,7 @@ fn slide_on_the_spot(problem: &Problem, fields: &mut PatchFields, scratch: &mut 
             };
             for (slip, shear) in slip.into_iter().zip(&mut fields.shear) {
                 shear[place] = if speed > 0.0 {
-                    -scratch.bound[index] * saturation * slip / speed
+                    -bound[index] * saturation * slip / speed
                 } else {
                     0.0
                 };

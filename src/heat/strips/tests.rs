@@ -383,6 +383,7 @@ fn the_tangent_is_the_derivative() {
                     power: 0.012,
                 },
                 wheel_rise: 4.0,
+                coefficient: 0.0,
             };
             let sliding = Sliding {
                 speed: 0.1,

@@ -5,8 +5,10 @@
 //! what the leading edge adds to its cells. Residuals are in double precision, corrections in single: a correction is needed
 //! to a few digits only, because the next residual shows what it missed.
 
+mod on_path;
 mod tangent;
 
+pub use on_path::{Linked, PathOfCells};
 pub use tangent::{FrictionChange, LEAST_CHANGE};
 
 use super::blocks::{Blocks, OwnResponse};
@@ -15,8 +17,10 @@ use super::law::{Cell, Row, Scheme, Vector};
 use crate::body::grid::Grid;
 use crate::body::influence::{self, Tables, Transform, Window};
 use crate::error::{Error, Result};
+use crate::friction::path::NodeFriction;
 use crate::numerics::gmres::Gmres;
 use crate::settings::PatchSettings;
+use on_path::OnPath;
 
 /// How the slip responds to the shear: of the cells ahead.
 #[derive(Debug, Clone)]
@@ -50,6 +54,8 @@ pub struct FrictionProblem<'a> {
     pub free_slip: [&'a [f64]; 2],
     /// μp, cells.
     pub bound: &'a [f64],
+    /// How μ depends on slip, then in place of the bound; none where it does not.
+    pub path: Option<PathOfCells<'a>>,
     /// r, shear per slip.
     pub scale: f64,
     /// w.
@@ -79,6 +85,8 @@ pub struct Friction {
     /// Of the cells.
     rows: Vec<Row>,
     step: Vec<f32>,
+    /// Where μ depends on slip.
+    on_path: OnPath,
 }
 
 impl Friction {
@@ -102,6 +110,7 @@ impl Friction {
             scratch_single: transform.scratch(),
             rows: vec![Row::default(); total],
             step: vec![0.0; 2 * total],
+            on_path: OnPath::new(total),
         }
     }
 
@@ -270,10 +279,18 @@ impl Friction {
 
     /// The law of all cells after `length` of the correction. Returns the length of the residual.
     fn update_rows(&mut self, problem: &FrictionProblem, scheme: &Scheme, shear: &[Vec<f64>; 2], length: f64) -> f64 {
+        self.on_path.start();
         let mut sum = 0.0;
         let behind = if problem.response.forward { -1 } else { 1 };
-        for run in problem.contact.runs() {
-            for (index, place) in run.own().zip(run.places(problem.grid)) {
+        let backward = problem.path.is_some() && problem.response.forward;
+        let runs = problem.contact.runs();
+        for r in 0..runs.len() {
+            let run = &runs[if backward { runs.len() - 1 - r } else { r }];
+            let places = run.places(problem.grid);
+            for k in 0..run.cells {
+                // A particle's friction follows from that of the cell before.
+                let k = if backward { run.cells - 1 - k } else { k };
+                let (index, place) = (run.offset + k, places.start + k);
                 let moved = |values: &[Vec<f64>; 2], changes: &[Vec<f64>; 2], place: usize| -> Vector {
                     [0, 1].map(|component: usize| values[component][place] + length * changes[component][place])
                 };
@@ -293,12 +310,17 @@ impl Friction {
                 let mut ahead = slip(place);
                 ahead[0] += edge[0] * own[0];
                 ahead[1] += edge[1] * own[1];
-                let row = scheme.at_edge(edge).row(&Cell {
+                let cell = Cell {
                     shear: own,
                     ahead,
                     behind: slip(place.wrapping_add_signed(behind)),
                     bound: problem.bound[index],
-                });
+                };
+                let scheme = scheme.at_edge(edge);
+                let row = match &problem.path {
+                    None => scheme.row(&cell),
+                    Some(path) => self.on_path.row(path, &scheme, index, cell),
+                };
                 sum += row.residual[0] * row.residual[0] + row.residual[1] * row.residual[1];
                 self.rows[index] = row;
             }
@@ -315,8 +337,9 @@ impl Friction {
             behind: if response.forward { -1 } else { 1 },
         };
         let n = problem.contact.cells();
+        let path = problem.path.as_ref().and_then(|path| self.on_path.linked(path));
         self.blocks
-            .factorise(problem.contact, &self.rows[..n], problem.edge, &own)
+            .factorise(problem.contact, &self.rows[..n], problem.edge, &own, path)
     }
 
     /// The correction of the shear on the grid. Returns the iterations that it took.
@@ -335,6 +358,7 @@ impl Friction {
             response_single,
             scratch_single,
             settings,
+            on_path,
             ..
         } = self;
         let tolerance = needed.clamp(settings.least_forcing, settings.largest_forcing);
@@ -377,7 +401,17 @@ impl Friction {
                     };
                     out_along[index] = line(0) as f32;
                     out_across[index] = line(1) as f32;
+                    if let Some(path) = &problem.path {
+                        on_path.felt(path, index, (ahead, behind));
+                    }
                 }
+            }
+            if let Some(path) = &problem.path {
+                on_path.follow(path, n, |index, friction| {
+                    let by_friction = path.pressure[index] * friction;
+                    out_along[index] += (rows[index].by_bound[0] * by_friction) as f32;
+                    out_across[index] += (rows[index].by_bound[1] * by_friction) as f32;
+                });
             }
         };
         let solved = gmres.solve(&mut step[..2 * n], tolerance, multiply, |values| blocks.solve(values));
@@ -388,6 +422,11 @@ impl Friction {
             }
         }
         solved.iterations
+    }
+
+    /// μ of the cells of the last solve, where it depends on slip, and the magnitude of the law's slip velocity, `m/s`.
+    pub fn of_slip(&self) -> (&[NodeFriction], &[f64]) {
+        (&self.on_path.friction, &self.on_path.speed)
     }
 
     /// The slip of the last solve at a cell's place: ahead of it, without what the leading edge adds.

@@ -65,11 +65,11 @@ pub struct Row {
 }
 
 /// a bᵀ.
-fn outer(a: Vector, b: Vector) -> Matrix {
+pub fn outer(a: Vector, b: Vector) -> Matrix {
     [[a[0] * b[0], a[0] * b[1]], [a[1] * b[0], a[1] * b[1]]]
 }
 
-fn dot(a: Vector, b: Vector) -> f64 {
+pub fn dot(a: Vector, b: Vector) -> f64 {
     a[0] * b[0] + a[1] * b[1]
 }
 
@@ -94,7 +94,7 @@ pub fn multiply(m: Matrix, v: Vector) -> Vector {
 
 impl Scheme {
     /// The slip of the law, and its derivatives by S, by B and by w.
-    fn slip(&self, cell: &Cell) -> (Vector, Matrix, Matrix, Vector) {
+    pub fn slip(&self, cell: &Cell) -> (Vector, Matrix, Matrix, Vector) {
         let half = [
             0.5 * (cell.ahead[0] - cell.behind[0]),
             0.5 * (cell.ahead[1] - cell.behind[1]),

@@ -22,7 +22,7 @@ impl Tangential {
         let (mut exchanges, mut last_length) = (0, f64::INFINITY);
         for steps in 1..=settings.newton_steps {
             self.set_coulomb_rows(problem);
-            self.set_residual(problem, shear);
+            self.set_residual(shear);
             let fresh = !self.factored;
             if fresh && !self.factorise(problem) {
                 return Ended::Stalled(steps);
@@ -48,7 +48,7 @@ impl Tangential {
                 self.contraction = (length / last_length).max(settings.least_contraction);
             }
             if length.min(length * self.contraction) <= tolerance {
-                self.set_saturation(problem, shear);
+                self.set_saturation(shear);
                 return Ended::Converged(steps);
             }
             // What the leading edge adds is not linear: with a matrix that no longer fits the steps do not get shorter.
@@ -62,7 +62,7 @@ impl Tangential {
 
     /// The derivatives of τ + μ p φ where a node slips; where it sticks those of s, as a shear.
     pub(super) fn set_coulomb_rows(&mut self, problem: &TangentialProblem) {
-        for (i, mu) in problem.friction.iter().enumerate() {
+        for (i, mu) in self.friction[..problem.friction.len()].iter().enumerate() {
             let phi = self.sliding[i];
             self.rows[i] = if phi == 0.0 {
                 let compliance = self.own_slip(problem, i);
@@ -88,14 +88,14 @@ impl Tangential {
         problem.slip_response[node * problem.pressure.len() + node]
     }
 
-    fn set_residual(&mut self, problem: &TangentialProblem, shear: &[f64]) {
+    fn set_residual(&mut self, shear: &[f64]) {
         for (i, shear) in shear.iter().enumerate() {
             let row = &self.rows[i];
             let tau = shear + self.change[i];
             self.residual[i] = if self.sliding[i] == 0.0 {
                 row.by_shear * tau + row.by_slip * self.slip[i]
             } else {
-                tau + problem.friction[i] * self.pressure[i] * self.sliding[i]
+                tau + self.friction[i] * self.pressure[i] * self.sliding[i]
             };
         }
     }
@@ -103,7 +103,8 @@ impl Tangential {
     /// Moves the nodes that break their condition to the other set. Returns whether there were any.
     fn exchange(&mut self, problem: &TangentialProblem, shear: &[f64]) -> bool {
         let m = shear.len();
-        let bound = |i: usize, pressure: &[f64]| problem.friction[i] * pressure[i];
+        let friction = &self.friction;
+        let bound = |i: usize, pressure: &[f64]| friction[i] * pressure[i];
         let largest_bound = (0..m).fold(0.0, |largest: f64, i| largest.max(bound(i, &self.pressure)));
         let round_off = self.settings.round_off * largest_bound;
         let mut changed = false;
@@ -130,11 +131,11 @@ impl Tangential {
     }
 
     /// φ = −τ/(μ p).
-    fn set_saturation(&mut self, problem: &TangentialProblem, shear: &[f64]) {
+    fn set_saturation(&mut self, shear: &[f64]) {
         // The largest number below 1: ±1 is slip.
         let stick = 1.0 - f64::EPSILON;
         for (i, shear) in shear.iter().enumerate() {
-            let bound = problem.friction[i] * self.pressure[i];
+            let bound = self.friction[i] * self.pressure[i];
             self.saturation[i] = if self.sliding[i] != 0.0 {
                 self.sliding[i]
             } else if bound > 0.0 {

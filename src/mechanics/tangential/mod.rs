@@ -18,6 +18,7 @@ mod path;
 
 use super::front::{Added, Edge, Front};
 use crate::error::{Error, Result};
+use crate::friction::path::{NodeFriction, PathLaw, PathNode};
 use crate::numerics::dense::{self, largest};
 use crate::settings::TangentialSettings;
 use path::Path;
@@ -33,8 +34,10 @@ pub struct TangentialProblem<'a> {
     pub pressure_response: &'a [f64],
     /// ∂s/∂τ without the leading edge, `m/s`, m × m.
     pub slip_response: &'a [f64],
-    /// μ, m.
+    /// μ, m; where it depends on slip, that without slip.
     pub friction: &'a [f64],
+    /// How it depends on slip, m nodes; none where it does not.
+    pub path: Option<(PathLaw, &'a [PathNode])>,
     /// The leading edge.
     pub edge: LeadingEdge<'a>,
     /// ε, `m/s`; 0 is Coulomb's law.
@@ -58,7 +61,7 @@ pub struct LeadingEdge<'a> {
 
 impl LeadingEdge<'_> {
     /// The change of what is added to the slip of the first two rows with the shear on node `column`.
-    fn response(&self, added: &[Added; 2], pressure_response: &[f64], column: usize) -> [f64; 2] {
+    pub fn response(&self, added: &[Added; 2], pressure_response: &[f64], column: usize) -> [f64; 2] {
         let m = self.gap_response.len();
         let mut change = Edge {
             pressure: self.rows.map(|row| pressure_response[column * m + row]),
@@ -83,6 +86,12 @@ pub struct Point<'a> {
     pub added: &'a [Added; 2],
     /// Change of the shear since the start of the solve.
     pub change: &'a [f64],
+    /// The law's slip velocity, `m/s`.
+    pub slip: &'a [f64],
+    /// μ.
+    pub friction: &'a [f64],
+    /// Its derivatives, where it depends on slip.
+    pub of_slip: &'a [NodeFriction],
 }
 
 /// How an iteration ended, with the number of steps it took.
@@ -124,6 +133,11 @@ pub struct Tangential {
     pressure: Vec<f64>,
     slip: Vec<f64>,
     added: [Added; 2],
+    /// μ, and where it depends on slip its derivatives.
+    friction: Vec<f64>,
+    of_slip: Vec<NodeFriction>,
+    /// The slip's response to the shear on one node.
+    responded: Vec<f64>,
     /// φ.
     saturation: Vec<f64>,
     /// Coulomb's law: φ = ±1 of the nodes that slip, 0 of those that stick.
@@ -153,6 +167,9 @@ impl Tangential {
             pressure: vector(),
             slip: vector(),
             added: Default::default(),
+            friction: vector(),
+            of_slip: vec![NodeFriction::default(); nodes],
+            responded: vector(),
             saturation: vector(),
             sliding: vector(),
             residual: vector(),
@@ -180,6 +197,9 @@ impl Tangential {
             saturation: &self.saturation[..m],
             added: &self.added,
             change: &self.change[..m],
+            slip: &self.slip[..m],
+            friction: &self.friction[..m],
+            of_slip: &self.of_slip[..m],
         }
     }
 
@@ -250,6 +270,28 @@ impl Tangential {
         for (added, row) in self.added.iter().zip(edge.rows) {
             self.slip[row] += added.slip;
         }
+        self.update_friction(problem);
+    }
+
+    /// μ at the present slip.
+    fn update_friction(&mut self, problem: &TangentialProblem) {
+        let m = problem.friction.len();
+        let Some((law, nodes)) = &problem.path else {
+            self.friction[..m].copy_from_slice(problem.friction);
+            return;
+        };
+        let mut before = (0.0, 0.0);
+        for row in law.order(m) {
+            let speed = self.slip[row].abs();
+            self.of_slip[row] = law.friction(&nodes[row], before, speed);
+            self.friction[row] = self.of_slip[row].coefficient;
+            before = (self.friction[row], speed);
+        }
+    }
+
+    /// Changes of the slip to those of μ by them, in place, at the point of the last solve.
+    pub fn friction_tangent(&self, law: &PathLaw, slip: &mut [f64]) {
+        follow(law, (&self.of_slip, &self.slip), slip);
     }
 
     /// Factorises the law's rows at the present point. False where the matrix is singular.
@@ -269,6 +311,17 @@ impl Tangential {
             for (added, row) in added.iter().zip(problem.edge.rows) {
                 factor[row] += rows[row].by_slip * added;
             }
+            if let Some((law, _)) = &problem.path {
+                let friction = &mut self.responded[..m];
+                friction.copy_from_slice(slip);
+                for (added, row) in added.iter().zip(problem.edge.rows) {
+                    friction[row] += added;
+                }
+                follow(law, (&self.of_slip, &self.slip), friction);
+                for ((entry, row), friction) in factor.iter_mut().zip(rows).zip(friction) {
+                    *entry += row.by_friction * *friction;
+                }
+            }
         }
         self.factored = dense::lu(&mut self.factor[..m * m], m, &mut self.pivots);
         self.contraction = self.settings.fresh_contraction;
@@ -281,6 +334,16 @@ impl Tangential {
             *step = -residual;
         }
         dense::lu_solve(&self.factor, m, &self.pivots, &mut self.step[..m]);
+    }
+}
+
+/// Changes of the slip to those of μ by them, in place.
+fn follow(law: &PathLaw, (of_slip, slip): (&[NodeFriction], &[f64]), change: &mut [f64]) {
+    let mut before = (0.0, 0.0);
+    for row in law.order(change.len()) {
+        let (of_slip, speed) = (&of_slip[row], slip[row].signum() * change[row]);
+        change[row] = of_slip.by_before * before.0 + of_slip.by_speed_before * before.1 + of_slip.by_speed * speed;
+        before = (change[row], speed);
     }
 }
 
@@ -300,6 +363,7 @@ mod tests {
                 near_field: NearField {
                     direct: 1.0,
                     coupling: 0.0,
+                    opening: 1.0,
                 },
                 resolved: false,
                 forward: true,
@@ -319,6 +383,7 @@ mod tests {
             pressure_response: zero,
             slip_response: zero,
             friction,
+            path: None,
             edge: no_edge(&zero[..pressure.len()]),
             regularisation: 1e-3,
             tolerance: 1e-12,
@@ -402,6 +467,7 @@ mod tests {
                 pressure_response: &follows,
                 slip_response: &response,
                 friction: &friction,
+                path: None,
                 edge: no_edge(&zero),
                 regularisation,
                 tolerance: 1e-12,
@@ -440,6 +506,7 @@ mod tests {
                 pressure_response: &follows,
                 slip_response: &response,
                 friction: &friction,
+                path: None,
                 edge: no_edge(&zero),
                 regularisation: 0.0,
                 tolerance: 1e-12,

@@ -98,7 +98,7 @@ impl Tangential {
         saturations(&self.slip[..m], regularisation, &mut self.saturation);
         let mut square = 0.0;
         for (i, shear) in shear.iter().enumerate() {
-            let bound = problem.friction[i] * self.pressure[i];
+            let bound = self.friction[i] * self.pressure[i];
             self.residual[i] = shear + self.change[i] + bound * self.saturation[i];
             square += self.residual[i] * self.residual[i];
         }
@@ -107,7 +107,7 @@ impl Tangential {
 
     /// The derivatives of τ + μ p φ(s).
     pub(super) fn set_regularised_rows(&mut self, problem: &TangentialProblem, regularisation: f64) {
-        for (i, mu) in problem.friction.iter().enumerate() {
+        for (i, mu) in self.friction[..problem.friction.len()].iter().enumerate() {
             let (pressure, phi) = (self.pressure[i], self.saturation[i]);
             self.rows[i] = LawRow {
                 by_shear: 1.0,

@@ -3,7 +3,8 @@
 //! With the leading edge linearised, slip and pressure are affine in the shear. A deviation d of the slip is chosen such that the
 //! present nodes in stick and slip are the solution for s + λ d at λ = 1. As λ falls to 0 the solution moves along
 //! straight lines, and where a node reaches its bound, or its slip comes to rest, that node changes sides. The slip's
-//! response to the shear is a P-matrix, so that the path is unique and has an end.
+//! response to the shear is a P-matrix, so that the path is unique and has an end. A μ that depends on slip is held as it is
+//! on the way.
 
 use super::{Tangential, TangentialProblem};
 use crate::numerics::dense;
@@ -53,7 +54,7 @@ impl Tangential {
             if !self.solve_on_path(problem, shear) {
                 return false;
             }
-            let Some((node, at, phi)) = self.next_exchange(problem, shear, lambda, last) else {
+            let Some((node, at, phi)) = self.next_exchange(shear, lambda, last) else {
                 self.change[..m].copy_from_slice(&self.path.change_on[0][..m]);
                 self.update_point(problem, shear);
                 return true;
@@ -86,7 +87,7 @@ impl Tangential {
     fn start_path(&mut self, problem: &TangentialProblem, shear: &[f64]) -> bool {
         let m = shear.len();
         for (i, shear) in shear.iter().enumerate() {
-            let bound = problem.friction[i] * self.pressure[i];
+            let bound = self.friction[i] * self.pressure[i];
             let tau = shear + self.change[i];
             self.sliding[i] = if tau.abs() >= bound { -tau.signum() } else { 0.0 };
         }
@@ -94,7 +95,7 @@ impl Tangential {
         for column in 0..m {
             for row in 0..m {
                 let unit = if row == column { 1.0 } else { 0.0 };
-                let follows = problem.friction[row] * self.sliding[row] * problem.pressure_response[column * m + row];
+                let follows = self.friction[row] * self.sliding[row] * problem.pressure_response[column * m + row];
                 self.factor[column * m + row] = unit + follows;
             }
         }
@@ -104,7 +105,7 @@ impl Tangential {
         }
         for (i, shear) in shear.iter().enumerate() {
             if self.sliding[i] != 0.0 {
-                self.change[i] = -shear - problem.friction[i] * self.sliding[i] * problem.pressure[i];
+                self.change[i] = -shear - self.friction[i] * self.sliding[i] * problem.pressure[i];
             }
         }
         dense::lu_solve(&self.factor, m, &self.pivots, &mut self.change[..m]);
@@ -181,13 +182,7 @@ impl Tangential {
 
     /// The node that changes sides next as λ falls, the λ at which it does, and its φ after it; None where λ = 0 is reached
     /// first. The node exchanged `last` is at its corner and stays.
-    fn next_exchange(
-        &self,
-        problem: &TangentialProblem,
-        shear: &[f64],
-        lambda: f64,
-        last: usize,
-    ) -> Option<(usize, f64, f64)> {
+    fn next_exchange(&self, shear: &[f64], lambda: f64, last: usize) -> Option<(usize, f64, f64)> {
         let Path {
             change_on: [change, change_slope],
             slip_on: [slip, slip_slope],
@@ -209,7 +204,7 @@ impl Tangential {
             if phi != 0.0 {
                 consider(i, phi * slip[i], phi * slip_slope[i], 0.0);
             } else {
-                let mu = problem.friction[i];
+                let mu = self.friction[i];
                 for phi in [1.0, -1.0] {
                     // Distance of τ from −μ p φ.
                     let margin = mu * pressure[i] + phi * (shear[i] + change[i]);

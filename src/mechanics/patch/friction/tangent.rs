@@ -1,7 +1,7 @@
 //! The change of the shear with slip, bound and leading edge: the law's rows at the solution as one linear system, solved as a correction of
 //! Newton's method is, and refined until the residual in double precision is small.
 
-use super::{Friction, FrictionProblem};
+use super::{Friction, FrictionProblem, PathOfCells};
 use crate::error::{Error, Result};
 use crate::mechanics::patch::law::{Matrix, Row, Scheme, Vector, multiply};
 
@@ -27,6 +27,11 @@ pub const LEAST_CHANGE: f64 = 1e-100;
 const UNIT: Matrix = [[1.0, 0.0], [0.0, 1.0]];
 
 impl Friction {
+    /// The changes of μ by those of the slip in the last [`Friction::tangent`], cell by cell.
+    pub fn friction_changes(&self, path: &PathOfCells, n: usize, take: impl FnMut(usize, f64)) {
+        self.on_path.changes(path, n, take);
+    }
+
     /// Linearises at the solution `shear`. Here S₀ of the problem is all of the slip but for the leading edge's share, so that the response
     /// to the shear is in it.
     ///
@@ -123,7 +128,27 @@ impl Friction {
                         multiply(row.by_behind, at(&self.response, place.wrapping_add_signed(behind))),
                         [0.0; 2],
                     ]);
+                    if problem.path.is_some() {
+                        let (edge, shear) = (change.edge[index], at(shear, place));
+                        let free = |place: usize, i: usize| change.free_slip[i][place];
+                        let last = place.wrapping_add_signed(behind);
+                        let after = at(&self.response, last);
+                        let slips = (
+                            [0, 1].map(|i: usize| free(place, i) + edge[i] * shear[i] + ahead[i]),
+                            [0, 1].map(|i: usize| free(last, i) + after[i]),
+                        );
+                        self.on_path.keep(index, slips);
+                    }
                 }
+            }
+            if let Some(path) = &problem.path {
+                let rows = &mut self.rows;
+                self.on_path.follow(path, n, |index, friction| {
+                    let row = &mut rows[index];
+                    for (residual, by_bound) in row.residual.iter_mut().zip(row.by_bound) {
+                        *residual += by_bound * path.pressure[index] * friction;
+                    }
+                });
             }
             residual = self.largest_residual(n);
             size = cause.max(largest(

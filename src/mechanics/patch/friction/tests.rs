@@ -113,6 +113,7 @@ impl Case {
             edge: &self.edge,
             free_slip: [&self.free_slip[0], &self.free_slip[1]],
             bound: &self.bound,
+            path: None,
             scale: 1.0 / self.own,
             noise: self.noise(),
             regularisation,

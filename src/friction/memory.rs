@@ -1,0 +1,123 @@
+//! What the rail remembers of the friction that it has felt: the state of [`super::path`].
+
+use serde::{Deserialize, Serialize};
+
+/// What a particle brings along, or a change of it; values of nodes.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct Brought {
+    /// μ.
+    pub friction: Vec<f64>,
+    /// s, the magnitude of the law's slip velocity, `m/s`, 0 outside the contact.
+    pub speed: Vec<f64>,
+    /// μ(θ), the coefficient at this temperature and no slip.
+    pub resting: Vec<f64>,
+}
+
+impl Brought {
+    fn new(nodes: usize) -> Brought {
+        Brought {
+            friction: vec![0.0; nodes],
+            speed: vec![0.0; nodes],
+            resting: vec![0.0; nodes],
+        }
+    }
+
+    fn copy_from(&mut self, other: &Brought) {
+        self.friction.copy_from_slice(&other.friction);
+        self.speed.copy_from_slice(&other.speed);
+        self.resting.copy_from_slice(&other.resting);
+    }
+}
+
+/// What the nodes of a window remember.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Memory {
+    /// Whether the step before has remembered.
+    pub remembers: bool,
+    /// At the end of the step.
+    pub now: Brought,
+    /// At its beginning. The derivatives of the step need it.
+    pub before: Brought,
+    /// dμ by μ(θ) at the node's temperature.
+    pub share: Vec<f64>,
+}
+
+impl Memory {
+    /// None, of so many nodes.
+    pub fn new(nodes: usize) -> Memory {
+        Memory {
+            remembers: false,
+            now: Brought::new(nodes),
+            before: Brought::new(nodes),
+            share: vec![1.0; nodes],
+        }
+    }
+
+    /// The vectors.
+    pub fn vectors(&self) -> [&Vec<f64>; 7] {
+        let (now, before) = (&self.now, &self.before);
+        [
+            &now.friction,
+            &now.speed,
+            &now.resting,
+            &before.friction,
+            &before.speed,
+            &before.resting,
+            &self.share,
+        ]
+    }
+
+    /// Overwrites it with another of the same size, without allocating.
+    pub fn copy_from(&mut self, other: &Memory) {
+        self.remembers = other.remembers;
+        self.now.copy_from(&other.now);
+        self.before.copy_from(&other.before);
+        self.share.copy_from_slice(&other.share);
+    }
+
+    /// Begins a step from the memory at its beginning. Rail that has remembered nothing yet has rested, at μ(θ) of the nodes then.
+    pub fn start_from(&mut self, last: &Memory, resting: impl Fn(usize) -> f64) {
+        if last.remembers {
+            self.before.copy_from(&last.now);
+            return;
+        }
+        self.before.speed.fill(0.0);
+        for node in 0..self.before.resting.len() {
+            self.before.resting[node] = resting(node);
+        }
+        self.before.friction.copy_from_slice(&self.before.resting);
+    }
+
+    /// Begins without a step before.
+    pub fn start_steady(&mut self) {
+        for values in [
+            &mut self.before.friction,
+            &mut self.before.speed,
+            &mut self.before.resting,
+        ] {
+            values.fill(0.0);
+        }
+    }
+}
+
+/// What the particles on one path bring along: of the nodes of a window, or of one of its strips.
+#[derive(Debug, Clone, Copy)]
+pub struct Path<'a> {
+    /// μ.
+    pub friction: &'a [f64],
+    /// s, `m/s`.
+    pub speed: &'a [f64],
+    /// μ(θ).
+    pub resting: &'a [f64],
+}
+
+impl Brought {
+    /// Over some of the nodes.
+    pub fn path(&self, nodes: std::ops::Range<usize>) -> Path<'_> {
+        Path {
+            friction: &self.friction[nodes.clone()],
+            speed: &self.speed[nodes.clone()],
+            resting: &self.resting[nodes],
+        }
+    }
+}

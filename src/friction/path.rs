@@ -1,0 +1,346 @@
+//! Friction that falls with slip, and that remembers, along the path of the rail's particles through the contact.
+//!
+//! The coefficient is a law of temperature times a law of slip, μ(θ) f(s), s the magnitude of the slip velocity, with
+//!
+//! f(s) = A + (1 − A) exp(−B s)
+//!
+//! (Polach, Wear 258 (2005) 992). With a memory it reaches that only on a way of slip (Vollebregt and Schuttelaars, Wear 286 (2012) 43):
+//! along the path of a particle
+//!
+//! dμ/dt = −max(s, s₀) (μ − μ(θ) f(s))/d_c.
+//!
+//! Without it a point that slides faster carries less, and so slides faster still: where the coefficient falls steeply with slip or with the
+//! temperature that slip makes, the same inputs have several solutions.
+//!
+//! A particle comes to a node (O) through the cell upstream of it. Where it was at the beginning of its way through that cell follows from
+//! the Courant number C = |V| Δt/Δ: with C ≥ 1 at the node upstream (U), between the beginning and the end of the step, else between the
+//! two nodes at the beginning of the step. A value a that it brings from there is T a,
+//!
+//! C ≥ 1: T a = (1 − 1/C) a_U + a_Uⁿ/C,  C < 1: T a = C a_Uⁿ + (1 − C) a_Oⁿ,
+//!
+//! and on its way of t = min(Δ/|V|, Δt) the law is solved exactly, for any d_c:
+//!
+//! μ_O = M f(ŝ) + (T μ − M f(ŝ)) exp(−max(ŝ, s₀) t/d_c).
+//!
+//! M = μ(θ) is that of the node. The node's slip is that of the cell upstream of it, and ŝ its mean with the slip at the beginning of the way,
+//! ŝ = β s_O + (1 − β) T s: β is 1 where d_c is longer than twice the elastic displacement of a cell at its bound, and on a coarser mesh the
+//! ratio of the two. With more of its own slip the shear of a cell would fall faster than its elasticity follows, and the discrete problem
+//! would have the several solutions that the memory is there to prevent.
+
+use super::largest_coefficient;
+use super::memory::Path;
+use super::passage::Passage;
+use crate::parameters::Parameters;
+
+/// f(s).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SlipLaw {
+    share: f64,
+    decay: f64,
+}
+
+impl SlipLaw {
+    /// That of the parameters.
+    pub fn new(parameters: &Parameters) -> SlipLaw {
+        SlipLaw {
+            share: parameters.friction_slip_share,
+            decay: parameters.friction_slip_decay,
+        }
+    }
+
+    /// f at a slip velocity of this magnitude, `m/s`, and df/ds, `s/m`.
+    pub fn factor(&self, speed: f64) -> (f64, f64) {
+        let falling = (1.0 - self.share) * (-self.decay * speed).exp();
+        (self.share + falling, -self.decay * falling)
+    }
+
+    fn is_constant(&self) -> bool {
+        self.share == 1.0 || self.decay == 0.0
+    }
+}
+
+/// The law at a node for given temperature, all that the slip in the step does not change.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct PathNode {
+    /// M.
+    steady: f64,
+    /// T μ without the share of the node before it.
+    arrived: f64,
+    /// Share of the μ of the node before it.
+    carry: f64,
+    /// T s without the share of the node before it, `m/s`.
+    speed: f64,
+    /// Share of the slip velocity of the node before it.
+    speed_carry: f64,
+}
+
+/// μ at a node, and its derivatives.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct NodeFriction {
+    /// μ.
+    pub coefficient: f64,
+    /// By μ(θ) at the node's temperature.
+    pub share: f64,
+    /// By the μ of the node before it.
+    pub by_before: f64,
+    /// By the magnitude of the slip velocity of the node before it, `s/m`.
+    pub by_speed_before: f64,
+    /// By that of its own, `s/m`.
+    pub by_speed: f64,
+}
+
+/// The law of all nodes in a step.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PathLaw {
+    slip: SlipLaw,
+    /// s₀, `m/s`.
+    least_speed: f64,
+    /// β.
+    own: f64,
+    passage: Passage,
+    /// Its change with |V|.
+    passage_tangent: Passage,
+    /// Whether particles come from high indices.
+    forward: bool,
+}
+
+/// A step as the particles see it.
+#[derive(Debug, Clone, Copy)]
+pub struct PathStep {
+    /// Δt, `s`; infinite or 0 for steady rolling.
+    pub duration: f64,
+    /// Δ, `m`.
+    pub spacing: f64,
+    /// V, `m/s`; 0 counts as forward.
+    pub speed: f64,
+    /// Elastic displacement of a cell under a shear of the size of the largest pressure, `m`.
+    pub displacement: f64,
+}
+
+impl PathLaw {
+    /// That of the parameters; none where friction knows nothing but the temperature.
+    pub fn new(parameters: &Parameters, step: &PathStep) -> Option<PathLaw> {
+        let slip = SlipLaw::new(parameters);
+        let distance = parameters.friction_memory_distance;
+        if slip.is_constant() && distance == 0.0 {
+            return None;
+        }
+        let passage = Passage::new(step.duration, step.spacing, step.speed.abs(), distance);
+        let displacement = 2.0 * largest_coefficient(parameters) * step.displacement;
+        Some(PathLaw {
+            slip,
+            least_speed: parameters.friction_memory_speed,
+            own: if passage.exposure.is_infinite() || distance >= displacement {
+                1.0
+            } else {
+                distance / displacement
+            },
+            passage,
+            passage_tangent: passage.tangent(step.duration, step.spacing, step.speed.abs()),
+            forward: step.speed >= 0.0,
+        })
+    }
+
+    /// Whether what a node does depends on the nodes before it.
+    pub fn remembers(&self) -> bool {
+        self.passage.exposure.is_finite()
+    }
+
+    /// Whether particles come from high indices.
+    pub fn is_forward(&self) -> bool {
+        self.forward
+    }
+
+    /// exp(−max(s, s₀) t/d_c) and its derivative by s.
+    fn fade(&self, speed: f64) -> (f64, f64) {
+        if !self.remembers() {
+            return (0.0, 0.0);
+        }
+        let fade = (-self.passage.exposure * speed.max(self.least_speed)).exp();
+        let slope = if speed > self.least_speed {
+            -self.passage.exposure * fade
+        } else {
+            0.0
+        };
+        (fade, slope)
+    }
+
+    /// ŝ.
+    fn felt(&self, node: &PathNode, speed_before: f64, speed: f64) -> f64 {
+        self.own * speed + (1.0 - self.own) * (node.speed + node.speed_carry * speed_before)
+    }
+
+    /// μ at a node with this slip velocity `m/s`, after a node with this μ and slip velocity.
+    pub fn friction(&self, node: &PathNode, (before, speed_before): (f64, f64), speed: f64) -> NodeFriction {
+        let felt = self.felt(node, speed_before, speed);
+        let (factor, factor_slope) = self.slip.factor(felt);
+        let (fade, fade_slope) = self.fade(felt);
+        let steady = node.steady * factor;
+        let more = node.arrived + node.carry * before - steady;
+        let by_felt = (1.0 - fade) * node.steady * factor_slope + fade_slope * more;
+        NodeFriction {
+            coefficient: steady + fade * more,
+            share: (1.0 - fade) * factor,
+            by_before: fade * node.carry,
+            by_speed_before: by_felt * (1.0 - self.own) * node.speed_carry,
+            by_speed: by_felt * self.own,
+        }
+    }
+
+    /// The places 0 to n − 1 in the order in which particles come to them.
+    pub fn order(&self, n: usize) -> impl Iterator<Item = usize> + use<> {
+        let forward = self.forward;
+        (0..n).map(move |k| if forward { n - 1 - k } else { k })
+    }
+
+    /// A node and the one upstream of it, with μ(θ) of all.
+    fn node(&self, path: &Path, resting: &[f64], node: usize, upstream: usize) -> PathNode {
+        let start = |values: &[f64]| self.passage.start(values[upstream], values[node]);
+        PathNode {
+            steady: resting[node],
+            arrived: start(path.friction),
+            carry: self.passage.upstream,
+            speed: start(path.speed),
+            speed_carry: self.passage.upstream,
+        }
+    }
+
+    /// μ of a node outside the contact, where nothing slips, after one with the given μ.
+    fn idle(&self, node: &PathNode, before: f64) -> f64 {
+        let (fade, _) = self.fade(0.0);
+        node.steady + fade * (node.arrived + node.carry * before - node.steady)
+    }
+
+    /// Gives the nodes in contact their law, in the order of the particles, with μ(θ) of all nodes. What lies between two of them is
+    /// taken together: the node before is the one in contact that was given before.
+    pub fn prepare(
+        &self,
+        path: &Path,
+        resting: &[f64],
+        in_contact: impl Fn(usize) -> bool,
+        mut give: impl FnMut(usize, PathNode),
+    ) {
+        if !self.remembers() {
+            for node in self.order(resting.len()).filter(|&node| in_contact(node)) {
+                let steady = resting[node];
+                give(
+                    node,
+                    PathNode {
+                        steady,
+                        ..PathNode::default()
+                    },
+                );
+            }
+            return;
+        }
+        // μ upstream is a constant and a share of that of the last node in contact.
+        let mut order = self.order(resting.len());
+        let Some(mut upstream) = order.next() else {
+            return;
+        };
+        let (mut constant, mut share) = (resting[upstream], 0.0);
+        let mut touched = in_contact(upstream);
+        if touched {
+            let entering = PathNode {
+                steady: constant,
+                arrived: constant,
+                ..PathNode::default()
+            };
+            give(upstream, entering);
+            (constant, share) = (0.0, 1.0);
+        }
+        for node in order {
+            let own = self.node(path, resting, node, upstream);
+            let touches = in_contact(node);
+            if touches {
+                give(
+                    node,
+                    PathNode {
+                        arrived: own.arrived + own.carry * constant,
+                        carry: own.carry * share,
+                        speed_carry: if touched { own.speed_carry } else { 0.0 },
+                        ..own
+                    },
+                );
+                (constant, share) = (0.0, 1.0);
+            } else {
+                constant = self.idle(&own, constant);
+                share *= self.fade(0.0).0 * own.carry;
+            }
+            (upstream, touched) = (node, touches);
+        }
+    }
+
+    /// μ of the nodes outside the contact at the end of the step, where `friction` and `resting` hold all the rest.
+    pub fn close(&self, path: &Path, resting: &[f64], in_contact: impl Fn(usize) -> bool, friction: &mut [f64]) {
+        let mut order = self.order(resting.len());
+        let Some(mut upstream) = order.next() else {
+            return;
+        };
+        if !in_contact(upstream) {
+            friction[upstream] = resting[upstream];
+        }
+        for node in order {
+            if !in_contact(node) {
+                let own = self.node(path, resting, node, upstream);
+                friction[node] = self.idle(&own, friction[upstream]);
+            }
+            upstream = node;
+        }
+    }
+
+    /// Change of μ of all nodes at unchanged slip, with that of |V| by `speed` `m/s` and with that of μ(θ), `resting`; `now` is the
+    /// solution.
+    pub fn tangent(
+        &self,
+        (path, now): (&Path, &Path),
+        in_contact: impl Fn(usize) -> bool,
+        (speed, resting): (f64, &[f64]),
+        friction: &mut [f64],
+    ) {
+        if !self.remembers() {
+            for (node, friction) in friction.iter_mut().enumerate() {
+                let slides = if in_contact(node) { now.speed[node] } else { 0.0 };
+                *friction = self.slip.factor(slides).0 * resting[node];
+            }
+            return;
+        }
+        let mut order = self.order(resting.len());
+        let Some(mut upstream) = order.next() else {
+            return;
+        };
+        friction[upstream] = resting[upstream];
+        let (passage, change) = (&self.passage, &self.passage_tangent);
+        for node in order {
+            let own = self.node(path, now.resting, node, upstream);
+            let moved = |now: &[f64], before: &[f64]| {
+                speed * (change.upstream * now[upstream] + change.start(before[upstream], before[node]))
+            };
+            let arrived_change = passage.upstream * friction[upstream] + moved(now.friction, path.friction);
+            let contact = in_contact(node);
+            let felt = if contact {
+                self.felt(&own, now.speed[upstream], now.speed[node])
+            } else {
+                0.0
+            };
+            let (factor, factor_slope) = self.slip.factor(felt);
+            let (fade, fade_slope) = self.fade(felt);
+            let more = own.arrived + own.carry * now.friction[upstream] - own.steady * factor;
+            let slid = if contact {
+                (1.0 - self.own) * moved(now.speed, path.speed)
+            } else {
+                0.0
+            };
+            let by_felt = (1.0 - fade) * own.steady * factor_slope + fade_slope * more;
+            let by_exposure = -felt.max(self.least_speed) * fade * more;
+            friction[node] = (1.0 - fade) * factor * resting[node]
+                + fade * arrived_change
+                + by_felt * slid
+                + by_exposure * speed * change.exposure;
+            upstream = node;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

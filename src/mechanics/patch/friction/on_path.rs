@@ -1,0 +1,160 @@
+//! Friction that depends on slip in the law of the cells: the bound of a cell follows from its slip, and where friction remembers, from
+//! that of the cells that its particles have come through.
+
+use crate::friction::path::{NodeFriction, PathLaw, PathNode};
+use crate::mechanics::patch::law::{Cell, Row, Scheme, Vector, dot, outer};
+use std::ops::Range;
+
+/// The law of μ of all cells.
+#[derive(Clone, Copy)]
+pub struct PathOfCells<'a> {
+    /// What the cells have in common.
+    pub law: PathLaw,
+    /// The cells under pressure, strip by strip; the first in contact on a path takes nothing from another.
+    pub nodes: &'a [PathNode],
+    /// Their pressure, scaled.
+    pub pressure: &'a [f64],
+}
+
+/// μ of the cells, and how it and their slip velocity change.
+pub struct OnPath {
+    pub(super) friction: Vec<NodeFriction>,
+    /// The magnitude of the law's slip, `m/s`.
+    pub(super) speed: Vec<f64>,
+    /// Its derivatives by the slip ahead and behind.
+    by_slip: Vec<[Vector; 2]>,
+    /// Change of the magnitude.
+    change: Vec<f64>,
+    /// The cell before, of those that [`OnPath::row`] has gone through.
+    before: (f64, f64),
+}
+
+impl OnPath {
+    pub(super) fn new(cells: usize) -> OnPath {
+        OnPath {
+            friction: vec![NodeFriction::default(); cells],
+            speed: vec![0.0; cells],
+            by_slip: vec![[[0.0; 2]; 2]; cells],
+            change: vec![0.0; cells],
+            before: (0.0, 0.0),
+        }
+    }
+
+    /// Begins a round over the cells.
+    pub(super) fn start(&mut self) {
+        self.before = (0.0, 0.0);
+    }
+
+    /// The law of a cell, in the order in which particles come to the cells of a run. Its bound follows from its slip; what it has of the
+    /// slip of cells before is not in the row.
+    pub(super) fn row(&mut self, path: &PathOfCells, scheme: &Scheme, index: usize, mut cell: Cell) -> Row {
+        let (slip, by_ahead, by_behind, _) = scheme.slip(&cell);
+        let speed = dot(slip, slip).sqrt();
+        // sᵀ/|s| times the slip's derivatives.
+        let along = |matrix: [Vector; 2]| {
+            [0, 1].map(|column: usize| {
+                if speed > 0.0 {
+                    (slip[0] * matrix[0][column] + slip[1] * matrix[1][column]) / speed
+                } else {
+                    0.0
+                }
+            })
+        };
+        let by_slip = [along(by_ahead), along(by_behind)];
+        let friction = path.law.friction(&path.nodes[index], self.before, speed);
+        self.before = (friction.coefficient, speed);
+        (self.friction[index], self.speed[index], self.by_slip[index]) = (friction, speed, by_slip);
+        let pressure = path.pressure[index];
+        cell.bound = friction.coefficient * pressure;
+        let mut row = scheme.row(&cell);
+        let own = row.by_bound.map(|by_bound| by_bound * pressure * friction.by_speed);
+        for (matrix, by_slip) in [&mut row.by_ahead, &mut row.by_behind].into_iter().zip(by_slip) {
+            for (line, added) in matrix.iter_mut().zip(outer(own, by_slip)) {
+                line[0] += added[0];
+                line[1] += added[1];
+            }
+        }
+        row
+    }
+
+    /// Keeps the change of a cell's slip velocity with that of the slip ahead and behind.
+    pub(super) fn felt(&mut self, path: &PathOfCells, index: usize, (ahead, behind): (Vector, Vector)) {
+        if path.law.remembers() {
+            let [by_ahead, by_behind] = self.by_slip[index];
+            self.change[index] = dot(by_ahead, ahead) + dot(by_behind, behind);
+        }
+    }
+
+    /// The changes of μ of n cells by the slip of the cells before them, those of the slip velocities being kept.
+    pub(super) fn follow(&self, path: &PathOfCells, n: usize, mut take: impl FnMut(usize, f64)) {
+        if !path.law.remembers() {
+            return;
+        }
+        let mut before = (0.0, 0.0);
+        for index in path.law.order(n) {
+            let friction = &self.friction[index];
+            let by_before = friction.by_before * before.0 + friction.by_speed_before * before.1;
+            take(index, by_before);
+            before = (by_before + friction.by_speed * self.change[index], self.change[index]);
+        }
+    }
+
+    /// The changes of μ of n cells with the kept ones of their slip velocities, and those of the slip velocities.
+    pub(super) fn changes(&self, path: &PathOfCells, n: usize, mut take: impl FnMut(usize, f64)) {
+        let mut before = (0.0, 0.0);
+        for index in path.law.order(n) {
+            let (friction, speed) = (&self.friction[index], self.change[index]);
+            let change =
+                friction.by_before * before.0 + friction.by_speed_before * before.1 + friction.by_speed * speed;
+            take(index, change);
+            before = (change, speed);
+        }
+    }
+
+    /// Keeps the change of a cell's slip velocity, whether or not friction remembers.
+    pub(super) fn keep(&mut self, index: usize, (ahead, behind): (Vector, Vector)) {
+        let [by_ahead, by_behind] = self.by_slip[index];
+        self.change[index] = dot(by_ahead, ahead) + dot(by_behind, behind);
+    }
+
+    /// What links the cells of a strip; none where μ does not remember.
+    pub(super) fn linked<'a>(&'a self, path: &PathOfCells<'a>) -> Option<Linked<'a>> {
+        path.law.remembers().then_some(Linked {
+            law: path.law,
+            pressure: path.pressure,
+            friction: &self.friction,
+            by_slip: &self.by_slip,
+        })
+    }
+}
+
+/// How μ of the cells of a strip follows from the slip of those before them.
+#[derive(Clone, Copy)]
+pub struct Linked<'a> {
+    law: PathLaw,
+    pressure: &'a [f64],
+    friction: &'a [NodeFriction],
+    by_slip: &'a [[Vector; 2]],
+}
+
+impl Linked<'_> {
+    /// The changes of the bounds of a run's cells by the slip of the cells before them, from the change of the slip of a cell: its component,
+    /// ahead and behind.
+    pub fn follow(
+        &self,
+        run: Range<usize>,
+        slip: impl Fn(usize) -> (usize, f64, f64),
+        mut take: impl FnMut(usize, f64),
+    ) {
+        let mut before = (0.0, 0.0);
+        for line in self.law.order(run.len()) {
+            let index = run.start + line;
+            let (friction, [by_ahead, by_behind]) = (&self.friction[index], self.by_slip[index]);
+            let (component, ahead, behind) = slip(line);
+            let speed = by_ahead[component] * ahead + by_behind[component] * behind;
+            let by_before = friction.by_before * before.0 + friction.by_speed_before * before.1;
+            take(line, self.pressure[index] * by_before);
+            before = (by_before + friction.by_speed * speed, speed);
+        }
+    }
+}
