@@ -13,10 +13,12 @@ pub mod creepage_jump;
 pub mod elastic_wheel;
 pub mod energy;
 pub mod explicit_master;
+pub mod falling_friction;
 pub mod flash_temperature;
 pub mod groove;
 pub mod hertz;
 pub mod kalker;
+pub mod layer;
 pub mod locked_wheel;
 pub mod mirrored;
 pub mod paper_cases;
@@ -206,6 +208,14 @@ pub const CHECKS: &[Check] = &[
     Check {
         name: "Patch: mirrored motion",
         rows: patch_mirrored::rows,
+    },
+    Check {
+        name: "Friction that falls and remembers",
+        rows: falling_friction::rows,
+    },
+    Check {
+        name: "Layer between wheel and rail",
+        rows: layer::rows,
     },
 ];
 
