@@ -94,10 +94,11 @@ fn draw(random: &mut Random) -> Parameters {
     }
     table(random, &mut parameters);
     tune(random, &mut parameters);
+    falling(random, &mut parameters);
     parameters
 }
 
-/// What a patch has besides: transverse curvatures, of hollow wheels among them, cells and strips.
+/// What a patch has besides: transverse curvatures, of hollow wheels among them, a layer, cells and strips.
 fn patch(random: &mut Random, parameters: &mut Parameters) {
     parameters.contact_model = ContactModel::Patch;
     // B/A, from a contact four times as long as broad to one seven times as broad as long.
@@ -108,6 +109,9 @@ fn patch(random: &mut Random, parameters: &mut Parameters) {
         _ => -random.decades(0.1, 10.0),
     };
     parameters.rail_transverse_curvature = sum - parameters.wheel_transverse_curvature;
+    if random.chance(0.3) {
+        parameters.layer_compliance = random.decades(1e-14, 1e-12);
+    }
     // Few cells more often than many: they are the hard ones, and fast.
     (parameters.patch_nodes, parameters.patch_strips) = match random.count(0, 5) {
         0 => (Parameters::default().patch_nodes, Parameters::default().patch_strips),
@@ -137,6 +141,18 @@ fn table(random: &mut Random, parameters: &mut Parameters) {
         }
         *point = temperature;
         before = Some(*coefficient);
+    }
+}
+
+/// Friction that falls with slip, then with a memory: without one a contact has several solutions where it falls fast.
+fn falling(random: &mut Random, parameters: &mut Parameters) {
+    if random.chance(0.5) {
+        return;
+    }
+    parameters.friction_memory_distance = random.decades(1e-6, 1e-4);
+    if random.chance(0.7) {
+        parameters.friction_slip_share = random.between(0.2, 1.0);
+        parameters.friction_slip_decay = random.decades(0.05, 5.0);
     }
 }
 

@@ -32,8 +32,13 @@ impl Tangential {
             if !length.is_finite() {
                 return Ended::Stalled(steps);
             }
+            // The corners of a law of slip and memory may send Newton's method to and fro between two points: half a step ends that.
+            let damping = match problem.path {
+                Some(_) if steps > settings.newton_steps / 3 => 0.5,
+                _ => 1.0,
+            };
             for (change, step) in self.change.iter_mut().zip(&self.step[..m]) {
-                *change += step;
+                *change += damping * step;
             }
             self.update_point(problem, shear);
             if self.exchange(problem, shear) {
@@ -47,12 +52,17 @@ impl Tangential {
             if !fresh && last_length.is_finite() {
                 self.contraction = (length / last_length).max(settings.least_contraction);
             }
-            if length.min(length * self.contraction) <= tolerance {
+            let left = if damping < 1.0 {
+                length
+            } else {
+                length * self.contraction
+            };
+            if length.min(left) <= tolerance {
                 self.set_saturation(shear);
                 return Ended::Converged(steps);
             }
             // What the leading edge adds is not linear: with a matrix that no longer fits the steps do not get shorter.
-            if length > settings.slow_contraction * last_length {
+            if length > settings.slow_contraction * last_length || damping < 1.0 {
                 self.forget();
             }
             last_length = length;
