@@ -138,6 +138,8 @@ pub struct Tangential {
     of_slip: Vec<NodeFriction>,
     /// The slip's response to the shear on one node.
     responded: Vec<f64>,
+    /// The law's derivatives by the slip, with what μ of a node follows from its own.
+    by_slip: Vec<f64>,
     /// φ.
     saturation: Vec<f64>,
     /// Coulomb's law: φ = ±1 of the nodes that slip, 0 of those that stick.
@@ -170,6 +172,7 @@ impl Tangential {
             friction: vector(),
             of_slip: vec![NodeFriction::default(); nodes],
             responded: vector(),
+            by_slip: vector(),
             saturation: vector(),
             sliding: vector(),
             residual: vector(),
@@ -298,28 +301,40 @@ impl Tangential {
     fn factorise(&mut self, problem: &TangentialProblem) -> bool {
         let m = problem.pressure.len();
         let rows = &self.rows[..m];
+        let by_slip = &mut self.by_slip[..m];
+        for (row, (by_slip, law)) in by_slip.iter_mut().zip(rows).enumerate() {
+            *by_slip = law.by_slip;
+            if problem.path.is_some() {
+                *by_slip += law.by_friction * self.of_slip[row].by_speed * self.slip[row].signum();
+            }
+        }
+        let linked = problem.path.as_ref().filter(|(law, _)| law.remembers());
         for column in 0..m {
             let range = column * m..(column + 1) * m;
             let slip = &problem.slip_response[range.clone()];
             let pressure = &problem.pressure_response[range.clone()];
             let factor = &mut self.factor[range];
-            for (((entry, row), slip), pressure) in factor.iter_mut().zip(rows).zip(slip).zip(pressure) {
-                *entry = row.by_slip * slip + row.by_pressure * pressure;
+            let laws = rows.iter().zip(&*by_slip);
+            for (((entry, (row, by_slip)), slip), pressure) in factor.iter_mut().zip(laws).zip(slip).zip(pressure) {
+                *entry = by_slip * slip + row.by_pressure * pressure;
             }
             factor[column] += rows[column].by_shear;
             let added = problem.edge.response(&self.added, problem.pressure_response, column);
             for (added, row) in added.iter().zip(problem.edge.rows) {
-                factor[row] += rows[row].by_slip * added;
+                factor[row] += by_slip[row] * added;
             }
-            if let Some((law, _)) = &problem.path {
+            if let Some((law, _)) = linked {
                 let friction = &mut self.responded[..m];
                 friction.copy_from_slice(slip);
                 for (added, row) in added.iter().zip(problem.edge.rows) {
                     friction[row] += added;
                 }
-                follow(law, (&self.of_slip, &self.slip), friction);
-                for ((entry, row), friction) in factor.iter_mut().zip(rows).zip(friction) {
-                    *entry += row.by_friction * *friction;
+                let mut before = (0.0, 0.0);
+                for row in law.order(m) {
+                    let (of_slip, speed) = (&self.of_slip[row], self.slip[row].signum() * friction[row]);
+                    let linked = of_slip.by_before * before.0 + of_slip.by_speed_before * before.1;
+                    factor[row] += rows[row].by_friction * linked;
+                    before = (linked + of_slip.by_speed * speed, speed);
                 }
             }
         }
