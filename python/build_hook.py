@@ -1,4 +1,4 @@
-"""What a wheel takes along from outside of python/: the FMUs that are built, and a table of inputs to begin with."""
+"""What a wheel takes along from outside of python/: the FMUs that are built, a table of inputs, named parameters."""
 
 from pathlib import Path
 
@@ -16,3 +16,5 @@ class Files(BuildHookInterface):
             raise FileNotFoundError("target/WheelRailContact.fmu is not there: run `make fmu` first")
         build_data["force_include"] |= {str(path): f"wheelrail/fmu/{path.name}" for path in built}
         build_data["force_include"][str(root / "examples" / "braking.csv")] = "wheelrail/data/braking.csv"
+        for path in sorted((root / "presets").glob("*.toml")):
+            build_data["force_include"][str(path)] = f"wheelrail/presets/{path.name}"

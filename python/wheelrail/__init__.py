@@ -3,6 +3,7 @@
 - `fmu_path`: where the FMU is, for any other importer.
 - `simulate`: a table of inputs in, a table of outputs out, with units; parameters by name.
 - `creep_curves`: steady forces over longitudinal, lateral and spin creepage.
+- `preset`: a named set of parameters, for a wet rail for example.
 - `Instance`: the component step by step, for a master written by hand.
 - `variables`: what there is to set and to read.
 - `wheelrail.plots`: pictures of a braking manoeuvre, of the patch in plan view, of creep curves.
@@ -13,7 +14,7 @@ All quantities are in SI units, angles in radians, temperatures absolute.
 from importlib import import_module, metadata
 from typing import TYPE_CHECKING, Any
 
-from .archive import example, fmu_path
+from .archive import example, fmu_path, preset
 from .creep import creep_curves
 from .instance import Instance, SimulationError
 from .simulation import simulate
@@ -30,6 +31,7 @@ __all__ = [
     "example",
     "fmu_path",
     "plots",
+    "preset",
     "read_table",
     "simulate",
     "variables",

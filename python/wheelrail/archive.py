@@ -3,10 +3,11 @@
 import atexit
 import shutil
 import tempfile
+import tomllib
 from functools import cache
 from os import PathLike, fspath
 from pathlib import Path
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 import fmpy
 from fmpy.model_description import ModelDescription
@@ -55,6 +56,26 @@ def example(name: str = "braking") -> Path:
         there = sorted(file.stem for file in path.parent.glob("*.csv"))
         raise FileNotFoundError(f"{path} is not there; tables in this package: {', '.join(there) or 'none'}")
     return path
+
+
+def preset(name: str) -> dict[str, Any]:
+    """A named set of parameters: `simulate(table, **preset("wet"))`.
+
+    Parameters
+    ----------
+    name
+        "dry", "wet" or "contaminated"; where each value comes from is in presets/NAME.toml of the package.
+    """
+    folder = PACKAGE / "presets"
+    if not folder.exists():
+        # A package that runs from the repository.
+        folder = PACKAGE.parent.parent / "presets"
+    path = folder / f"{name}.toml"
+    if not path.exists():
+        there = sorted(file.stem for file in folder.glob("*.toml"))
+        raise FileNotFoundError(f"preset {name!r}: there is none of this name; presets: {', '.join(there) or 'none'}")
+    parameters: dict[str, Any] = tomllib.loads(path.read_text(encoding="utf-8"))["parameters"]
+    return parameters
 
 
 def description(fmu: AnyPath) -> ModelDescription:

@@ -309,7 +309,8 @@ impl Parameters {
         fixed
     }
 
-    /// Sets a parameter, or an element of an array, by its name from text, as `--set name=value` on the command line does.
+    /// Sets a parameter, or an element of an array, by its name from text, as `--set name=value` on the command line does; a choice by its
+    /// number or by its name.
     ///
     /// # Errors
     /// [`Error::UnknownParameter`], [`Error::NotANumber`] or [`Error::OutOfRange`].
@@ -324,7 +325,15 @@ impl Parameters {
             return Ok(());
         }
         if let Some(entry) = INTEGER_PARAMETERS.iter().find(|entry| entry.name == name) {
-            let value = parse(entry.name, text, "an integer")?;
+            let names: &[&str] = match entry.kind {
+                IntegerKind::Choice(names) => names,
+                IntegerKind::Switch => &["off", "on"],
+                IntegerKind::Count | IntegerKind::Length => &[],
+            };
+            let value = match names.iter().position(|name| *name == text.trim()) {
+                Some(place) => place as i32 + 1,
+                None => parse(entry.name, text, "an integer")?,
+            };
             entry.check(value)?;
             (entry.set)(self, value);
             return Ok(());

@@ -3,6 +3,7 @@
 mod fmu_runner;
 mod images;
 mod pack;
+mod presets;
 mod simulate;
 
 use std::env::{consts, current_exe};

@@ -4,6 +4,7 @@ mod binary;
 mod describe;
 mod fields;
 mod pack;
+mod preset;
 mod simulate;
 mod standard;
 mod table;
@@ -36,6 +37,8 @@ enum Command {
     /// Fields are written for one instant, the last one: place, pressure, shear on the rail, slip of the rail relative to
     /// the wheel, the share of Coulomb's bound, absolute temperature and wear depth.
     Simulate(simulate::Simulate),
+    /// List the named sets of parameters, or print one.
+    Presets(preset::Presets),
     /// Compare the model with closed forms, identities and published figures.
     Verify(verify::Verify),
     /// Drive wheels with random parameters at random: what fails, and which steps are slow.
@@ -47,6 +50,7 @@ fn main() -> ExitCode {
         Command::Pack(command) => command.run().map_err(Into::into),
         Command::Describe(command) => command.run().map_err(Into::into),
         Command::Simulate(command) => command.run().map_err(Into::into),
+        Command::Presets(command) => command.run().map_err(Into::into),
         Command::Verify(command) => command.run().map_err(Into::into),
         Command::Torture(command) => command.run().map_err(Into::into),
     };

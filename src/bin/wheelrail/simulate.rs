@@ -1,7 +1,7 @@
 //! `wheelrail simulate`: a scenario from CSV through the model, without FMI.
 
-use crate::fields;
 use crate::table::{self, Table};
+use crate::{fields, preset};
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
 use std::fs::{self, File};
@@ -26,7 +26,10 @@ pub struct Simulate {
     /// Communication step, `s`.
     #[arg(long, value_name = "SECONDS", default_value_t = 1e-3)]
     step: f64,
-    /// A parameter, as thermal_expansion=0; `wheelrail describe` lists them. Repeatable.
+    /// Named parameters: one of `wheelrail presets`, or a file of that kind. Repeatable; a later one has precedence.
+    #[arg(long, value_name = "NAME|FILE.toml")]
+    preset: Vec<String>,
+    /// A parameter, as thermal_expansion=0; `wheelrail describe` lists them. Repeatable, and before any preset.
     #[arg(long = "set", value_name = "NAME=VALUE")]
     set: Vec<String>,
 }
@@ -121,6 +124,9 @@ pub enum Error {
         /// What was given.
         text: String,
     },
+    /// A named set of parameters that does not serve.
+    #[error("--preset: {0}")]
+    Preset(#[from] preset::Error),
     /// A parameter that cannot be.
     #[error("{0}")]
     Parameter(ModelError),
@@ -196,6 +202,10 @@ impl Simulate {
 
     fn parameters(&self) -> Result<Parameters, Error> {
         let mut parameters = Parameters::default();
+        for name in &self.preset {
+            let title = preset::set(&mut parameters, name)?;
+            eprintln!("preset {name}: {title}");
+        }
         for text in &self.set {
             let (name, value) = text
                 .split_once('=')
