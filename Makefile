@@ -5,6 +5,7 @@
 #   make platforms  win64 in the same archive, and aarch64 Linux: built where there is a compiler, run under wine and qemu
 #   make wheel   dist/wheelrail-*.whl: a Python package with the FMUs in it
 #   make demo    the paper's cases, a braking manoeuvre and the patch: results/
+#   make measurements  fits to measured creep curves, a twin disc, wear: results/ and docs/measurements.md
 #   make couplings  the component in vehicle models, masters and sweeps: results/, one page each in docs/couplings/
 #   make test    formatting, lints, order of the modules, documentation, all Rust tests, `wheelrail verify`, all Python tests
 #   make description  the XML files in modelDescription/, after a change of a variable
@@ -46,7 +47,7 @@ install = $(PY) -m uv pip install --quiet --python $(PY) -r $(1) \
 COUPLINGS := longitudinal stiff multibody train sweep hunting
 WHEELSET := target/Wheelset.fmu
 
-.PHONY: fmu fmu3 platforms wheel demo test docs site bench clean lint rust-test verify python-test hosts library command couplings packages
+.PHONY: fmu fmu3 platforms wheel demo measurements measurements-docs test docs site bench clean lint rust-test verify python-test hosts library command couplings packages
 .PHONY: pytest couplings-set-up couplings-docs sweep-scaling description $(addprefix coupling-,$(COUPLINGS))
 
 # ---- set-up -------------------------------------------------------------------------------------------------------
@@ -137,6 +138,18 @@ demo:
 	@cp $(FMU) results/
 	$(call say,Written)
 	@ls -l results/*.fmu results/*.csv results/*.png | awk '{ print $$NF, "(" $$5, "bytes)" }'
+
+# SciPy comes with the packages of the couplings.
+measurements: fmu $(VENV)/couplings
+	$(call say,The Eurosprinter: friction and layer fitted to a measured creep curve)
+	@$(PY) examples/eurosprinter.py
+	$(call say,A twin disc: friction - temperatures - wear)
+	@$(PY) examples/twin_disc.py
+
+# The pictures and tables of docs/measurements.md; commit what changes.
+measurements-docs: measurements
+	@$(PY) tools/update_docs.py measurements
+	@cp results/eurosprinter.png results/twin_disc.png results/wear_branches.png docs/measurements/
 
 # ---- couplings: `make couplings` or one of them, `make coupling-stiff` for example --------------------------------
 

@@ -5,8 +5,8 @@
 - the accuracy of the patch, from results/patch_accuracy.csv, which examples/patch_creep_curves.py writes;
 - the figures of the verification, from target/verification.txt, which `make verify` writes.
 
-With the argument `couplings` (`make couplings-docs`) the tables of docs/couplings/stiff.md and hunting.md, from those
-in results/.
+With the argument `couplings` (`make couplings-docs`) the tables of docs/couplings/stiff.md and hunting.md, with
+`measurements` (`make measurements-docs`) those of docs/measurements.md, from those in results/.
 """
 
 import csv
@@ -25,6 +25,8 @@ PAGE = REPOSITORY / "modelDescription" / "documentation" / "index.html"
 VERIFICATION = REPOSITORY / "target" / "verification.txt"
 STIFF = REPOSITORY / "docs" / "couplings" / "stiff.md"
 COUPLING_PAGES = (STIFF, REPOSITORY / "docs" / "couplings" / "hunting.md")
+MEASUREMENTS = REPOSITORY / "docs" / "measurements.md"
+MEASURED = ("measurements_eurosprinter.md", "measurements_twin_disc.md")
 PAPER_CASES = REPOSITORY / "results" / "paper_cases.csv"
 PATCH = REPOSITORY / "docs" / "patch.md"
 PATCH_ACCURACY = REPOSITORY / "results" / "patch_accuracy.csv"
@@ -184,6 +186,10 @@ def main():
     if sys.argv[1:] == ["couplings"]:
         for page in COUPLING_PAGES:
             write(page, blocks((REPOSITORY / "results" / page.name).read_text()))
+        return
+    if sys.argv[1:] == ["measurements"]:
+        for name in MEASURED:
+            write(MEASUREMENTS, blocks((REPOSITORY / "results" / name).read_text()))
         return
     write(README, {"first variables": first_variables_markdown()})
     write(VARIABLES, {"wheelrail describe": variables_markdown()})
