@@ -186,7 +186,12 @@ def fits_table(fits):
     """All fits in Markdown."""
     rows = []
     for name, found in fits.items():
-        cells = [f"{SYMBOLS[key]} = {found.values[key]:.3f} ± {found.deviations[key]:.3f}" for key in found.values]
+        cells = [
+            f"{SYMBOLS[key]} = {value:.3f} ± {found.deviations[key]:.3f}"
+            if found.deviations[key] < value
+            else f"{SYMBOLS[key]} = {value:.2f}, not determined"
+            for key, value in found.values.items()
+        ]
         if slope(found):
             cells.append("(1 − A) B = {:.2f} ± {:.2f} s/m".format(*slope(found)))
         chi = f"{found.chi_squared:.1f}"

@@ -302,7 +302,7 @@ def draw_wear(found):
         loads, rates = wear(slips, coefficient, **found.values)
         label = f"ours, k = {coefficient * 1e13:.2g}·10⁻¹³/Pa: {name}"
         axes.plot(loads, rates, "o-", color=colour, markersize=3, linewidth=1.0, label=label)
-    for slip, place in ((0.01, (56, -14)), (0.1, (4, -24))):
+    for slip, place in ((0.01, (56, -14)), (0.1, (6, -28))):
         (load,), (rate,) = wear([slip], mild, **found.values)
         axes.plot(load, rate, "o", color=BLUE, markersize=7)
         axes.annotate(f"{100 * slip:g} % slip", (load, rate), place, textcoords="offset points", ha="right", color=BLUE)
