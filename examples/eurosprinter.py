@@ -13,7 +13,7 @@ from helpers import BLACK, BLUE, GREEN, ORANGE, RED, markdown_table, save, write
 from scipy.integrate import quad
 
 LOAD, SPEED = 106.7e3, 10.0  # N, m/s
-# Standard deviation of a single point, and of reading one: the first is rounded up from the cloud's breadth.
+# Standard deviation of a single point about its mean, and of reading one, as the table has them.
 SCATTER, READING = 0.04, 0.003
 # CONTACT's example for this locomotive: friction falls from 0.33 at 0 °C by 0.19 over 400 K. The ratio is kept.
 COLD, HOT = 273.15, 673.15  # K
