@@ -64,7 +64,7 @@ def preset(name: str) -> dict[str, Any]:
     Parameters
     ----------
     name
-        "dry", "wet" or "contaminated"; where each value comes from is in presets/NAME.toml of the package.
+        "dry", "wet", "contaminated" or "eurosprinter"; where each value comes from is in the package's presets.
     """
     folder = PACKAGE / "presets"
     if not folder.exists():

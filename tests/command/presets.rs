@@ -44,7 +44,7 @@ fn traction_coefficient(name: &str, creepage: &str, options: &[&str]) -> f64 {
         .unwrap()
 }
 
-/// The files of presets/ but for those that describe one vehicle.
+/// The names that the command line knows.
 fn names() -> Vec<String> {
     let listed = wheelrail(&["presets"]);
     let text = String::from_utf8(listed.stdout).unwrap();
@@ -130,7 +130,7 @@ fn a_file_serves_as_well_and_what_does_not_is_refused() {
     let output = wheelrail(&["simulate", "none.csv", "-o", "out.csv", "--preset", "icy"]);
     let message = String::from_utf8(output.stderr).unwrap();
     assert!(
-        message.contains("\"icy\"") && message.contains("dry, wet, contaminated"),
+        message.contains("\"icy\"") && message.contains("dry, wet, contaminated, eurosprinter"),
         "{message}"
     );
     // Choices by name; what the command line sets goes before.

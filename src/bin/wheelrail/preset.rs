@@ -15,7 +15,7 @@ macro_rules! shipped {
 }
 
 /// Name and text of those that the command line knows.
-const SHIPPED: &[(&str, &str)] = shipped! { "dry" "wet" "contaminated" };
+const SHIPPED: &[(&str, &str)] = shipped! { "dry" "wet" "contaminated" "eurosprinter" };
 
 /// Options of `presets`.
 #[derive(Args)]
