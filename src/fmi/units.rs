@@ -73,6 +73,7 @@ units! {
     "Pa" [kg 1 m -1 s -2] "MPa" = 1e-6, "GPa" = 1e-9;
     "1/Pa" [kg -1 m 1 s 2];
     "m/Pa" [kg -1 m 2 s 2];
+    "Pa/m" [kg 1 m -2 s -2];
     "J" [kg 1 m 2 s -2] "kJ" = 1e-3;
     "W" [kg 1 m 2 s -3] "kW" = 1e-3;
     "W/m" [kg 1 m 1 s -3] "kW/m" = 1e-3;

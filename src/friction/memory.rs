@@ -1,16 +1,19 @@
 //! What the rail remembers of the friction that it has felt: the state of [`super::path`].
 
+use crate::parameters::Parameters;
 use serde::{Deserialize, Serialize};
 
 /// What a particle brings along, or a change of it; values of nodes.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Brought {
-    /// μ.
+    /// μ of the surfaces.
     pub friction: Vec<f64>,
     /// s, the magnitude of the law's slip velocity, `m/s`, 0 outside the contact.
     pub speed: Vec<f64>,
     /// μ(θ), the coefficient at this temperature and no slip.
     pub resting: Vec<f64>,
+    /// u_pl, the way that the layer has flowed, `m`, 0 outside the contact.
+    pub flow: Vec<f64>,
 }
 
 impl Brought {
@@ -19,6 +22,7 @@ impl Brought {
             friction: vec![0.0; nodes],
             speed: vec![0.0; nodes],
             resting: vec![0.0; nodes],
+            flow: vec![0.0; nodes],
         }
     }
 
@@ -26,6 +30,7 @@ impl Brought {
         self.friction.copy_from_slice(&other.friction);
         self.speed.copy_from_slice(&other.speed);
         self.resting.copy_from_slice(&other.resting);
+        self.flow.copy_from_slice(&other.flow);
     }
 }
 
@@ -38,7 +43,7 @@ pub struct Memory {
     pub now: Brought,
     /// At its beginning. The derivatives of the step need it.
     pub before: Brought,
-    /// dμ by μ(θ) at the node's temperature.
+    /// The coefficient that bounds the shear, by μ(θ) at the node's temperature.
     pub share: Vec<f64>,
 }
 
@@ -53,16 +58,24 @@ impl Memory {
         }
     }
 
+    /// Whether anything is remembered: μ, or the way of a layer that hardens.
+    pub fn is_kept(parameters: &Parameters) -> bool {
+        parameters.friction_memory_distance > 0.0
+            || (parameters.layer_yield_stress > 0.0 && parameters.layer_hardening > 0.0)
+    }
+
     /// The vectors.
-    pub fn vectors(&self) -> [&Vec<f64>; 7] {
+    pub fn vectors(&self) -> [&Vec<f64>; 9] {
         let (now, before) = (&self.now, &self.before);
         [
             &now.friction,
             &now.speed,
             &now.resting,
+            &now.flow,
             &before.friction,
             &before.speed,
             &before.resting,
+            &before.flow,
             &self.share,
         ]
     }
@@ -82,6 +95,7 @@ impl Memory {
             return;
         }
         self.before.speed.fill(0.0);
+        self.before.flow.fill(0.0);
         for node in 0..self.before.resting.len() {
             self.before.resting[node] = resting(node);
         }
@@ -94,6 +108,7 @@ impl Memory {
             &mut self.before.friction,
             &mut self.before.speed,
             &mut self.before.resting,
+            &mut self.before.flow,
         ] {
             values.fill(0.0);
         }
@@ -103,12 +118,14 @@ impl Memory {
 /// What the particles on one path bring along: of the nodes of a window, or of one of its strips.
 #[derive(Debug, Clone, Copy)]
 pub struct Path<'a> {
-    /// μ.
+    /// μ of the surfaces.
     pub friction: &'a [f64],
     /// s, `m/s`.
     pub speed: &'a [f64],
     /// μ(θ).
     pub resting: &'a [f64],
+    /// u_pl, `m`.
+    pub flow: &'a [f64],
 }
 
 impl Brought {
@@ -117,7 +134,8 @@ impl Brought {
         Path {
             friction: &self.friction[nodes.clone()],
             speed: &self.speed[nodes.clone()],
-            resting: &self.resting[nodes],
+            resting: &self.resting[nodes.clone()],
+            flow: &self.flow[nodes],
         }
     }
 }

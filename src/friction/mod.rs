@@ -1,6 +1,7 @@
-//! Friction: the laws of the coefficient μ(θ) here, with slip and memory in [`path`] and [`memory`], Coulomb's law in [`coulomb`].
+//! Friction: the laws of the coefficient μ(θ) here, with slip and memory in [`path`] and [`memory`], a layer that flows in [`layer`], Coulomb's law in [`coulomb`].
 
 pub mod coulomb;
+pub mod layer;
 pub mod memory;
 mod passage;
 pub mod path;

@@ -26,8 +26,12 @@
 //! ŝ = β s_O + (1 − β) T s: β is 1 where d_c is longer than twice the elastic displacement of a cell at its bound, and on a coarser mesh the
 //! ratio of the two. With more of its own slip the shear of a cell would fall faster than its elasticity follows, and the discrete problem
 //! would have the several solutions that the memory is there to prevent.
+//!
+//! A layer between wheel and rail that flows lowers the bound on the shear from μ p to its own strength, [`super::layer`]. The coefficient of a
+//! node is then that bound over the pressure, beside the μ of the surfaces that the particle takes along.
 
 use super::largest_coefficient;
+use super::layer::{LayerLaw, Yielding};
 use super::memory::Path;
 use super::passage::Passage;
 use crate::parameters::Parameters;
@@ -72,21 +76,102 @@ pub struct PathNode {
     speed: f64,
     /// Share of the slip velocity of the node before it.
     speed_carry: f64,
+    /// T u_pl without the share of the node before it, `m`.
+    flow: f64,
+    /// Share of the u_pl of the node before it.
+    flow_carry: f64,
+}
+
+/// What a particle takes from a node in contact to the next one, or a change of it.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Passed {
+    /// μ of the surfaces.
+    pub friction: f64,
+    /// Magnitude of the slip velocity, `m/s`.
+    pub speed: f64,
+    /// u_pl, `m`.
+    pub flow: f64,
 }
 
 /// μ at a node, and its derivatives.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct NodeFriction {
-    /// μ.
+    /// The bound on the shear over the pressure: μ of the surfaces where no layer flows.
     pub coefficient: f64,
     /// By μ(θ) at the node's temperature.
     pub share: f64,
-    /// By the μ of the node before it.
-    pub by_before: f64,
+    /// μ of the surfaces.
+    pub surfaces: f64,
+    /// Of that: by the μ of the node before it.
+    by_before: f64,
     /// By the magnitude of the slip velocity of the node before it, `s/m`.
-    pub by_speed_before: f64,
+    by_speed_before: f64,
     /// By that of its own, `s/m`.
-    pub by_speed: f64,
+    by_speed: f64,
+    /// The layer.
+    layer: Yielding,
+    /// Derivative of u_pl by that of the node before it.
+    flow_by_before: f64,
+}
+
+impl Default for NodeFriction {
+    fn default() -> NodeFriction {
+        NodeFriction {
+            coefficient: 0.0,
+            share: 0.0,
+            surfaces: 0.0,
+            by_before: 0.0,
+            by_speed_before: 0.0,
+            by_speed: 0.0,
+            layer: Yielding::none(0.0),
+            flow_by_before: 0.0,
+        }
+    }
+}
+
+impl NodeFriction {
+    /// u_pl, `m`.
+    pub fn flow(&self) -> f64 {
+        self.layer.flow
+    }
+
+    /// The coefficient by the node's own slip velocity, `s/m`.
+    pub fn by_speed(&self) -> f64 {
+        self.layer.by_friction * self.by_speed + self.layer.by_flow * self.layer.flow_by_speed
+    }
+
+    /// The coefficient by the node's own pressure.
+    pub fn by_pressure(&self) -> f64 {
+        self.layer.by_pressure
+    }
+
+    /// What the node passes on.
+    pub fn passed(&self, speed: f64) -> Passed {
+        Passed {
+            friction: self.surfaces,
+            speed,
+            flow: self.layer.flow,
+        }
+    }
+
+    /// Changes of the coefficient with those of what comes from the node before, and of what it passes on with those of its own slip velocity
+    /// and pressure besides.
+    pub fn change(&self, before: &Passed, speed: f64, pressure: f64) -> (f64, Passed) {
+        let layer = &self.layer;
+        let friction = self.by_before * before.friction + self.by_speed_before * before.speed;
+        let flow = self.flow_by_before * before.flow;
+        let linked = layer.by_friction * friction + layer.by_flow * flow;
+        let friction = friction + self.by_speed * speed;
+        let passed = Passed {
+            friction,
+            speed,
+            flow: flow
+                + layer.flow_by_speed * speed
+                + layer.flow_by_friction * friction
+                + layer.flow_by_pressure * pressure,
+        };
+        (linked, passed)
+    }
 }
 
 /// The law of all nodes in a step.
@@ -102,6 +187,7 @@ pub struct PathLaw {
     passage_tangent: Passage,
     /// Whether particles come from high indices.
     forward: bool,
+    layer: Option<LayerLaw>,
 }
 
 /// A step as the particles see it.
@@ -115,6 +201,8 @@ pub struct PathStep {
     pub speed: f64,
     /// Elastic displacement of a cell under a shear of the size of the largest pressure, `m`.
     pub displacement: f64,
+    /// What pressures are scaled with, `Pa`.
+    pub pressure: f64,
 }
 
 impl PathLaw {
@@ -122,7 +210,8 @@ impl PathLaw {
     pub fn new(parameters: &Parameters, step: &PathStep) -> Option<PathLaw> {
         let slip = SlipLaw::new(parameters);
         let distance = parameters.friction_memory_distance;
-        if slip.is_constant() && distance == 0.0 {
+        let layer = LayerLaw::new(parameters, step);
+        if slip.is_constant() && distance == 0.0 && layer.is_none() {
             return None;
         }
         let passage = Passage::new(step.duration, step.spacing, step.speed.abs(), distance);
@@ -138,11 +227,17 @@ impl PathLaw {
             passage,
             passage_tangent: passage.tangent(step.duration, step.spacing, step.speed.abs()),
             forward: step.speed >= 0.0,
+            layer,
         })
     }
 
     /// Whether what a node does depends on the nodes before it.
     pub fn remembers(&self) -> bool {
+        self.follows() || self.layer.is_some_and(|layer| layer.hardens())
+    }
+
+    /// Whether μ follows on a way of slip.
+    fn follows(&self) -> bool {
         self.passage.exposure.is_finite()
     }
 
@@ -153,7 +248,7 @@ impl PathLaw {
 
     /// exp(−max(s, s₀) t/d_c) and its derivative by s.
     fn fade(&self, speed: f64) -> (f64, f64) {
-        if !self.remembers() {
+        if !self.follows() {
             return (0.0, 0.0);
         }
         let fade = (-self.passage.exposure * speed.max(self.least_speed)).exp();
@@ -170,20 +265,28 @@ impl PathLaw {
         self.own * speed + (1.0 - self.own) * (node.speed + node.speed_carry * speed_before)
     }
 
-    /// μ at a node with this slip velocity `m/s`, after a node with this μ and slip velocity.
-    pub fn friction(&self, node: &PathNode, (before, speed_before): (f64, f64), speed: f64) -> NodeFriction {
-        let felt = self.felt(node, speed_before, speed);
+    /// μ at a node with this slip velocity `m/s` and pressure, after a node that passes on the given.
+    pub fn friction(&self, node: &PathNode, before: &Passed, speed: f64, pressure: f64) -> NodeFriction {
+        let felt = self.felt(node, before.speed, speed);
         let (factor, factor_slope) = self.slip.factor(felt);
         let (fade, fade_slope) = self.fade(felt);
         let steady = node.steady * factor;
-        let more = node.arrived + node.carry * before - steady;
+        let more = node.arrived + node.carry * before.friction - steady;
         let by_felt = (1.0 - fade) * node.steady * factor_slope + fade_slope * more;
+        let surfaces = steady + fade * more;
+        let layer = match &self.layer {
+            None => Yielding::none(surfaces),
+            Some(layer) => layer.bound((surfaces, pressure), node.flow + node.flow_carry * before.flow, speed),
+        };
         NodeFriction {
-            coefficient: steady + fade * more,
-            share: (1.0 - fade) * factor,
+            coefficient: layer.coefficient,
+            share: layer.by_friction * ((1.0 - fade) * factor),
+            surfaces,
             by_before: fade * node.carry,
             by_speed_before: by_felt * (1.0 - self.own) * node.speed_carry,
             by_speed: by_felt * self.own,
+            layer,
+            flow_by_before: layer.flow_by_arrived * node.flow_carry,
         }
     }
 
@@ -196,12 +299,15 @@ impl PathLaw {
     /// A node and the one upstream of it, with μ(θ) of all.
     fn node(&self, path: &Path, resting: &[f64], node: usize, upstream: usize) -> PathNode {
         let start = |values: &[f64]| self.passage.start(values[upstream], values[node]);
+        let layer = self.layer.as_ref().map(|layer| &layer.passage);
         PathNode {
             steady: resting[node],
             arrived: start(path.friction),
             carry: self.passage.upstream,
             speed: start(path.speed),
             speed_carry: self.passage.upstream,
+            flow: layer.map_or(0.0, |passage| passage.start(path.flow[upstream], path.flow[node])),
+            flow_carry: layer.map_or(0.0, |passage| passage.upstream),
         }
     }
 
@@ -259,6 +365,7 @@ impl PathLaw {
                         arrived: own.arrived + own.carry * constant,
                         carry: own.carry * share,
                         speed_carry: if touched { own.speed_carry } else { 0.0 },
+                        flow_carry: if touched { own.flow_carry } else { 0.0 },
                         ..own
                     },
                 );
@@ -289,34 +396,35 @@ impl PathLaw {
         }
     }
 
-    /// Change of μ of all nodes at unchanged slip, with that of |V| by `speed` `m/s` and with that of μ(θ), `resting`; `now` is the
-    /// solution.
+    /// Change of the coefficient of all nodes at unchanged slip, with that of |V| by `speed` `m/s`, that of μ(θ), `resting`, and that of the
+    /// pressure; `now` is the solution.
     pub fn tangent(
         &self,
         (path, now): (&Path, &Path),
-        in_contact: impl Fn(usize) -> bool,
+        (pressure, pressure_change): (&[f64], impl Fn(usize) -> f64),
         (speed, resting): (f64, &[f64]),
         friction: &mut [f64],
     ) {
-        if !self.remembers() {
-            for (node, friction) in friction.iter_mut().enumerate() {
-                let slides = if in_contact(node) { now.speed[node] } else { 0.0 };
-                *friction = self.slip.factor(slides).0 * resting[node];
-            }
-            return;
-        }
+        let in_contact = |node: usize| pressure[node] > 0.0;
         let mut order = self.order(resting.len());
         let Some(mut upstream) = order.next() else {
             return;
         };
+        let mut passed = Passed {
+            friction: resting[upstream],
+            ..Passed::default()
+        };
         friction[upstream] = resting[upstream];
+        if !self.remembers() {
+            order = self.order(resting.len());
+        }
         let (passage, change) = (&self.passage, &self.passage_tangent);
         for node in order {
             let own = self.node(path, now.resting, node, upstream);
-            let moved = |now: &[f64], before: &[f64]| {
+            let moved = |change: &Passage, now: &[f64], before: &[f64]| {
                 speed * (change.upstream * now[upstream] + change.start(before[upstream], before[node]))
             };
-            let arrived_change = passage.upstream * friction[upstream] + moved(now.friction, path.friction);
+            let arrived_change = passage.upstream * passed.friction + moved(change, now.friction, path.friction);
             let contact = in_contact(node);
             let felt = if contact {
                 self.felt(&own, now.speed[upstream], now.speed[node])
@@ -327,16 +435,36 @@ impl PathLaw {
             let (fade, fade_slope) = self.fade(felt);
             let more = own.arrived + own.carry * now.friction[upstream] - own.steady * factor;
             let slid = if contact {
-                (1.0 - self.own) * moved(now.speed, path.speed)
+                (1.0 - self.own) * moved(change, now.speed, path.speed)
             } else {
                 0.0
             };
             let by_felt = (1.0 - fade) * own.steady * factor_slope + fade_slope * more;
             let by_exposure = -felt.max(self.least_speed) * fade * more;
-            friction[node] = (1.0 - fade) * factor * resting[node]
+            let surfaces = (1.0 - fade) * factor * resting[node]
                 + fade * arrived_change
                 + by_felt * slid
                 + by_exposure * speed * change.exposure;
+            friction[node] = surfaces;
+            let mut flow = 0.0;
+            if let (Some(layer), true) = (&self.layer, contact) {
+                let arrived = own.flow + own.flow_carry * now.flow[upstream];
+                let yielding = layer.bound((now.friction[node], pressure[node]), arrived, now.speed[node]);
+                let change = &layer.passage_tangent;
+                flow = yielding.flow_by_arrived
+                    * (layer.passage.upstream * passed.flow + moved(change, now.flow, path.flow))
+                    + yielding.flow_by_time * speed * change.exposure
+                    + yielding.flow_by_friction * surfaces
+                    + yielding.flow_by_pressure * pressure_change(node);
+                friction[node] = yielding.by_friction * surfaces
+                    + yielding.by_flow * flow
+                    + yielding.by_pressure * pressure_change(node);
+            }
+            passed = Passed {
+                friction: surfaces,
+                flow,
+                ..passed
+            };
             upstream = node;
         }
     }

@@ -73,11 +73,15 @@ pub struct Tractions<'a> {
     pub slip: &'a mut [f64],
     /// Share −τ/(μ p) of Coulomb's bound, with the sign of the slip: between −1 and 1.
     pub saturation: &'a mut [f64],
-    /// μ.
+    /// μ; where a layer flows, its bound over the pressure.
     pub friction: &'a mut [f64],
+    /// Where μ depends on more than the temperature: μ of the surfaces.
+    pub surfaces: &'a mut [f64],
+    /// u_pl of a layer that flows, `m`, 0 outside the contact.
+    pub flow: &'a mut [f64],
     /// Where μ depends on slip: the magnitude of the law's slip velocity, `m/s`, 0 outside the contact.
     pub speed: &'a mut [f64],
-    /// And its derivative by the μ without slip.
+    /// And the derivative of `friction` by the μ without slip.
     pub share: &'a mut [f64],
     /// Penetration, scaled.
     pub penetration: &'a mut f64,

@@ -270,6 +270,8 @@ impl Mechanics {
             tractions.saturation.fill(0.0);
             if problem.path.is_some() {
                 tractions.speed.fill(0.0);
+                tractions.flow.fill(0.0);
+                tractions.surfaces.copy_from_slice(problem.friction);
             }
             return Ok(clamped);
         }
@@ -319,8 +321,12 @@ impl Mechanics {
         }
         if problem.path.is_some() {
             tractions.speed.fill(0.0);
+            tractions.flow.fill(0.0);
+            tractions.surfaces.copy_from_slice(problem.friction);
             for (row, &node) in self.nodes.iter().enumerate() {
                 tractions.friction[node] = point.friction[row];
+                tractions.surfaces[node] = point.of_slip[row].surfaces;
+                tractions.flow[node] = point.of_slip[row].flow();
                 tractions.speed[node] = point.slip[row].abs();
                 tractions.share[node] = point.of_slip[row].share;
             }
@@ -451,6 +457,8 @@ mod tests {
         slip: Vec<f64>,
         saturation: Vec<f64>,
         friction: Vec<f64>,
+        surfaces: Vec<f64>,
+        flow: Vec<f64>,
         speed: Vec<f64>,
         share: Vec<f64>,
         penetration: f64,
@@ -464,6 +472,8 @@ mod tests {
                 slip: vec![0.0; NODES],
                 saturation: vec![0.0; NODES],
                 friction: vec![0.0; NODES],
+                surfaces: vec![0.0; NODES],
+                flow: vec![0.0; NODES],
                 speed: vec![0.0; NODES],
                 share: vec![0.0; NODES],
                 penetration: 0.0,
@@ -477,6 +487,8 @@ mod tests {
                 slip: &mut self.slip,
                 saturation: &mut self.saturation,
                 friction: &mut self.friction,
+                surfaces: &mut self.surfaces,
+                flow: &mut self.flow,
                 speed: &mut self.speed,
                 share: &mut self.share,
                 penetration: &mut self.penetration,

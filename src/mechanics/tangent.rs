@@ -151,7 +151,8 @@ impl Mechanics {
         if let Some((law, _)) = &problem.path {
             let local = &mut self.local;
             local.following[..m].copy_from_slice(&local.slip[..m]);
-            self.tangential.friction_tangent(law, &mut local.following[..m]);
+            self.tangential
+                .friction_tangent(law, &local.pressure[..m], &mut local.following[..m]);
             dense::add_multiple(&local.following[..m], 1.0, &mut local.friction[..m]);
         }
         for (row, law) in self.tangential.rows()[..m].iter().enumerate() {
@@ -162,7 +163,7 @@ impl Mechanics {
         self.tangential.solve_linear(&mut self.local.shear[..m]);
     }
 
-    /// dμ, with the law's slip under the change of the shear.
+    /// dμ, with the law's slip and the pressure under the change of the shear.
     fn friction_tangent(&mut self, problem: &MechanicsProblem, change: &ProblemTangent, friction: &mut [f64]) {
         friction.copy_from_slice(change.friction_of_slip);
         let Some((law, _)) = &problem.path else {
@@ -180,7 +181,8 @@ impl Mechanics {
                 slip[row] += response * shear;
             }
         }
-        self.tangential.friction_tangent(law, &mut slip[..m]);
+        self.tangential
+            .friction_tangent(law, &self.local.pressure[..m], &mut slip[..m]);
         for (&node, slip) in self.nodes.iter().zip(&slip) {
             friction[node] += slip;
         }

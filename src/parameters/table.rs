@@ -235,6 +235,11 @@ parameters! {
     /// Tangential displacement per shear traction of the layer between wheel and rail, its thickness over its shear
     /// modulus; 0 is no layer
     layer_compliance "h/G₃": f64 = real { "m/Pa", 0.0, 0.0, 1e-9 }
+    /// Shear traction at which the layer between wheel and rail begins to flow; 0 is a layer that never does
+    layer_yield_stress "τ_c0": f64 = real { "Pa" shown in "MPa", 0.0, 0.0, 1e11, tunable }
+    /// Rise of the shear traction at which the layer flows with the way that it has flowed, used where layer_yield_stress is
+    /// not 0
+    layer_hardening "k_τ": f64 = real { "Pa/m", 0.0, 0.0, 1e15, tunable }
 }
 
 /// The start values of the friction table: the default piecewise linear law, its hot end repeated.

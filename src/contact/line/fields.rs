@@ -28,7 +28,7 @@ pub struct Fields {
     pub slip: Vec<f64>,
     /// Share −τ/(μ p) of Coulomb's bound that the shear takes, n.
     pub saturation: Vec<f64>,
-    /// Friction coefficient, n.
+    /// Friction coefficient; where a layer flows, its bound over the pressure, n.
     pub friction: Vec<f64>,
     /// Heat flux into the rail, `W/m²`, n.
     pub heat_flux: Vec<f64>,
@@ -150,6 +150,11 @@ impl Fields {
         }
         self.penetration += factor * other.penetration;
         self.wheel_temperature += factor * other.wheel_temperature;
+    }
+
+    /// Whether the layer's bound is that of a node in contact at the end of a sweep, where friction depends on more than the temperature.
+    pub fn flows(&self, node: usize) -> bool {
+        self.friction[node] < self.memory.now.friction[node]
     }
 
     /// μ of a node in contact as a function of its temperature.

@@ -109,6 +109,7 @@ impl<'a> Problem<'a> {
                 speed: self.conditions.motion.rolling_speed,
                 displacement: rail.near_field.direct * rail.scales.displacement
                     + self.parameters.layer_compliance * rail.scales.pressure,
+                pressure: rail.scales.pressure,
             },
         )
     }
@@ -315,6 +316,8 @@ impl<'a> Problem<'a> {
             slip: &mut fields.slip,
             saturation: &mut fields.saturation,
             friction: &mut fields.friction,
+            surfaces: &mut fields.memory.now.friction,
+            flow: &mut fields.memory.now.flow,
             speed: &mut fields.memory.now.speed,
             share: &mut fields.memory.share,
             penetration: &mut fields.penetration,

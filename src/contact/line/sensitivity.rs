@@ -148,10 +148,9 @@ impl<'a> Linearisation<'a> {
         if let Some(path_law) = problem.path_law() {
             let nodes = 0..fields.pressure.len();
             let (before, now) = (fields.memory.before.path(nodes.clone()), fields.memory.now.path(nodes));
-            let touches = |node: usize| fields.pressure[node] > 0.0;
             path_law.tangent(
                 (&before, &now),
-                touches,
+                (&fields.pressure, |_| 0.0),
                 (direction.speed, resting),
                 &mut friction_of_slip,
             );
@@ -188,6 +187,8 @@ impl<'a> Linearisation<'a> {
             slip: &mut tangent.slip,
             saturation: &mut tangent.saturation,
             friction: &mut tangent.friction,
+            surfaces: &mut tangent.memory.now.friction,
+            flow: &mut tangent.memory.now.flow,
             speed: &mut tangent.memory.now.speed,
             share: &mut tangent.memory.share,
             penetration: &mut tangent.penetration,

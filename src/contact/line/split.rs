@@ -9,6 +9,7 @@ use crate::contact::rest::Rest;
 use crate::contact::rim::{self, ContactHeat};
 use crate::contact::task::Convergence;
 use crate::error::{Error, Result};
+use crate::friction::memory::Memory;
 use crate::heat::factors::CellFactors;
 use crate::heat::march::Heated;
 use crate::heat::surface::SurfaceExchange;
@@ -196,6 +197,7 @@ fn solve_tractions(problem: &Problem, fields: &mut Fields, scratch: &mut Scratch
         fields.saturation.fill(0.0);
         fields.penetration = 0.0;
         fields.memory.now.speed.fill(0.0);
+        fields.memory.now.flow.fill(0.0);
         return Ok(Sweep::NONE);
     }
     problem.update_mechanics_data(&scratch.iterate, fields, &mut scratch.data);
@@ -210,7 +212,7 @@ fn solve_tractions(problem: &Problem, fields: &mut Fields, scratch: &mut Scratch
 
 /// What the rail brings along from the step before.
 fn remember(problem: &Problem, before: &Fields, fields: &mut Fields) {
-    let remembers = problem.parameters.friction_memory_distance > 0.0;
+    let remembers = Memory::is_kept(problem.parameters);
     fields.memory.remembers = remembers;
     if remembers {
         let (law, first) = (problem.friction(), problem.rail.mesh.first_contact);
@@ -221,7 +223,7 @@ fn remember(problem: &Problem, before: &Fields, fields: &mut Fields) {
 
 /// What the rail takes along into the next step.
 fn close_memory(problem: &Problem, fields: &mut Fields) {
-    fields.memory.remembers = problem.parameters.friction_memory_distance > 0.0;
+    fields.memory.remembers = Memory::is_kept(problem.parameters);
     let (Some(path_law), true) = (problem.path_law(), fields.memory.remembers) else {
         return;
     };
@@ -230,7 +232,6 @@ fn close_memory(problem: &Problem, fields: &mut Fields) {
     let Fields {
         memory,
         pressure,
-        friction,
         surface_temperature,
         ..
     } = fields;
@@ -239,7 +240,6 @@ fn close_memory(problem: &Problem, fields: &mut Fields) {
     }
     let touches = |node: usize| pressure[node] > 0.0;
     let now = &mut memory.now;
-    now.friction.copy_from_slice(friction);
     path_law.close(&memory.before.path(0..nodes), &now.resting, touches, &mut now.friction);
 }
 
@@ -380,8 +380,12 @@ fn close_friction(problem: &Problem, fields: &mut Fields) {
         let resting = law.coefficient(fields.surface_temperature[first + node]).0;
         let mut mu = resting;
         if of_slip && fields.pressure[node] > 0.0 {
+            let flows = fields.flows(node);
             mu = fields.point_law(node).of((resting, 0.0)).0;
             fields.memory.now.resting[node] = resting;
+            if !flows {
+                fields.memory.now.friction[node] = mu;
+            }
         }
         fields.friction[node] = mu;
         if fields.pressure[node] > 0.0 {

@@ -142,6 +142,11 @@ impl PatchFields {
         rail.chain(self.on_grid()).chain(self.memory.vectors())
     }
 
+    /// Whether the layer's bound is that of a cell in contact at the end of a sweep, where friction depends on more than the temperature.
+    pub fn flows(&self, place: usize, index: usize) -> bool {
+        self.friction[place] < self.memory.now.friction[index]
+    }
+
     /// μ of a cell in contact, by its place on the grid and its index, as a function of its temperature.
     pub fn point_law(&self, place: usize, index: usize) -> PointLaw {
         let share = self.memory.share[index];

@@ -3,6 +3,7 @@
 use super::fields::PatchFields;
 use super::problem::Problem;
 use super::scratch::PathScratch;
+use crate::friction::memory::Memory;
 use crate::friction::path::PathLaw;
 use crate::mechanics::patch::contact::Contact;
 use std::ops::Range;
@@ -49,7 +50,7 @@ pub fn prepare(
 
 /// What the rail brings along from the step before.
 pub fn remember(problem: &Problem, before: &PatchFields, fields: &mut PatchFields) {
-    let remembers = problem.parameters.friction_memory_distance > 0.0;
+    let remembers = Memory::is_kept(problem.parameters);
     fields.memory.remembers = remembers;
     if remembers {
         let law = problem.friction();
@@ -60,48 +61,44 @@ pub fn remember(problem: &Problem, before: &PatchFields, fields: &mut PatchField
 
 /// What the rail takes along into the next step.
 pub fn close(problem: &Problem, fields: &mut PatchFields) {
-    fields.memory.remembers = problem.parameters.friction_memory_distance > 0.0;
+    fields.memory.remembers = Memory::is_kept(problem.parameters);
     let (Some(path_law), true) = (problem.path_law(), fields.memory.remembers) else {
         return;
     };
     let (grid, law) = (&problem.rail.grid, problem.friction());
     let PatchFields {
-        memory,
-        pressure,
-        friction,
-        heat,
-        ..
+        memory, pressure, heat, ..
     } = fields;
     for (resting, temperature) in memory.now.resting.iter_mut().zip(&heat.surface) {
         *resting = law.coefficient(*temperature).0;
     }
     for strip in 0..grid.strips {
         let (own, row) = (cells(problem, strip), grid.row(strip));
-        let (pressure, friction) = (&pressure[row.clone()], &friction[row]);
+        let pressure = &pressure[row];
         let before = memory.before.path(own.clone());
         let now = &mut memory.now;
-        now.friction[own.clone()].copy_from_slice(&friction[..grid.cells]);
         let touches = |cell: usize| pressure[cell] > 0.0;
         path_law.close(&before, &now.resting[own.clone()], touches, &mut now.friction[own]);
     }
 }
 
-/// Change of μ of the cells at unchanged slip, with that of |V| by `speed` `m/s` and with that of μ(θ), strip by strip in `resting`.
+/// Change of μ of the cells at unchanged slip, with that of |V| by `speed` `m/s`, with that of μ(θ), strip by strip in `resting`, and with
+/// that of the pressure on the grid.
 pub fn tangent(
     problem: &Problem,
     law: &PathLaw,
     fields: &PatchFields,
-    (speed, resting): (f64, &[f64]),
+    (speed, resting, pressure_change): (f64, &[f64], &[f64]),
     friction: &mut [f64],
 ) {
     let grid = &problem.rail.grid;
     for strip in 0..grid.strips {
         let own = cells(problem, strip);
-        let pressure = &fields.pressure[grid.row(strip)];
+        let (pressure, changes) = (&fields.pressure[grid.row(strip)], &pressure_change[grid.row(strip)]);
         let (before, now) = (&fields.memory.before, &fields.memory.now);
         law.tangent(
             (&before.path(own.clone()), &now.path(own.clone())),
-            |cell| pressure[cell] > 0.0,
+            (pressure, |cell| changes[cell]),
             (speed, &resting[own.clone()]),
             &mut friction[own],
         );

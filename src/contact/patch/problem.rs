@@ -84,6 +84,7 @@ impl<'a> Problem<'a> {
                 spacing: rail.grid.length,
                 speed: self.conditions.motion.rolling_speed,
                 displacement: rail.scales.displacement * rail.own[0][origin],
+                pressure: rail.scales.pressure,
             },
         )
     }

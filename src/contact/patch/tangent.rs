@@ -257,15 +257,6 @@ impl Tangent {
                 tangent.friction[place] = if touches { resting } else { 0.0 };
             }
         }
-        if let Some(path_law) = &self.path_law {
-            let resting = &tangent.memory.now.resting;
-            let change = &mut self.friction_change;
-            memory::tangent(problem, path_law, fields, (direction.speed, resting), change);
-            for run in self.contact.runs() {
-                let own = &self.friction_change[run.strip * grid.cells + run.first..];
-                tangent.friction[run.places(grid)].copy_from_slice(&own[..run.cells]);
-            }
-        }
         let total = direction.inputs.normal_load / rail.unit_force();
         let constraint = match problem.constraint() {
             Constraint::Total(_) => Constraint::Total(total),
@@ -280,6 +271,14 @@ impl Tangent {
         let data = normal_problem(problem, &self.gap, &self.softness, constraint, tolerance * size);
         tangent.penetration = self.normal.tangent(&data, &self.contact, &mut tangent.pressure)?;
         self.edges(problem, fields, direction, tangent);
+        if let Some(path_law) = &self.path_law {
+            let changes = (direction.speed, &tangent.memory.now.resting[..], &tangent.pressure[..]);
+            memory::tangent(problem, path_law, fields, changes, &mut self.friction_change);
+            for run in self.contact.runs() {
+                let own = &self.friction_change[run.strip * grid.cells + run.first..];
+                tangent.friction[run.places(grid)].copy_from_slice(&own[..run.cells]);
+            }
+        }
         for (index, place) in self.contact.places(grid).enumerate() {
             self.bound_change[index] =
                 tangent.friction[place] * fields.pressure[place] + fields.friction[place] * tangent.pressure[place];

@@ -10,6 +10,7 @@ use crate::body::grid::Grid;
 use crate::body::influence::Window;
 use crate::error::Result;
 use crate::friction::coulomb;
+use crate::friction::path::Passed;
 use crate::mechanics::normal::problem::Constraint;
 use crate::mechanics::patch::contact::Contact;
 use crate::mechanics::patch::friction::{FrictionProblem, PathOfCells};
@@ -68,6 +69,7 @@ fn lift(problem: &Problem, fields: &mut PatchFields, scratch: &mut Scratch) {
         vectors.iter_mut().for_each(|component| component.fill(0.0));
     }
     fields.memory.now.speed.fill(0.0);
+    fields.memory.now.flow.fill(0.0);
     fields.penetration = 0.0;
     given_displacement(problem, fields, scratch);
 }
@@ -196,12 +198,15 @@ fn solve_friction(problem: &Problem, fields: &mut PatchFields, scratch: &mut Scr
             let (of_slip, speeds) = scratch.friction.of_slip();
             fields.friction.fill(0.0);
             fields.memory.now.speed.fill(0.0);
+            fields.memory.now.flow.fill(0.0);
             for run in scratch.contact.runs() {
                 for (k, (index, place)) in run.own().zip(run.places(grid)).enumerate() {
                     let cell = run.strip * grid.cells + run.first + k;
                     fields.friction[place] = of_slip[index].coefficient;
                     fields.memory.share[cell] = of_slip[index].share;
+                    fields.memory.now.friction[cell] = of_slip[index].surfaces;
                     fields.memory.now.speed[cell] = speeds[index];
+                    fields.memory.now.flow[cell] = of_slip[index].flow();
                 }
             }
         }
@@ -293,10 +298,14 @@ fn slide_on_the_spot(
             let speed = coulomb::magnitude(slip);
             if let Some(path) = path {
                 // At rest particles come from nowhere.
-                let friction = path.law.friction(&path.nodes[index], (0.0, 0.0), speed);
+                let friction = path
+                    .law
+                    .friction(&path.nodes[index], &Passed::default(), speed, path.pressure[index]);
                 let cell = run.strip * grid.cells + run.first + k;
                 (fields.friction[place], fields.memory.share[cell]) = (friction.coefficient, friction.share);
+                fields.memory.now.friction[cell] = friction.surfaces;
                 fields.memory.now.speed[cell] = speed;
+                fields.memory.now.flow[cell] = friction.flow();
                 bound[index] = friction.coefficient * path.pressure[index];
             }
             let saturation = if epsilon > 0.0 {

@@ -8,6 +8,8 @@ const NODES: usize = 11;
 /// Two contacts, the second entered by what has left the first.
 const TOUCHES: [bool; NODES] = [false, true, true, true, false, false, true, true, true, true, false];
 const SPACING: f64 = 2e-4;
+/// What pressures are scaled with, `Pa`.
+const PRESSURE: f64 = 1e9;
 
 fn parameters(distance: f64) -> Parameters {
     Parameters {
@@ -24,6 +26,7 @@ fn step(duration: f64, speed: f64) -> PathStep {
         spacing: SPACING,
         speed,
         displacement: 2e-6,
+        pressure: PRESSURE,
     }
 }
 
@@ -43,27 +46,61 @@ fn before() -> Brought {
             }
         }),
         resting: values(|i| 0.35 + 0.04 * (0.9 * i as f64).cos()),
+        flow: values(|i| {
+            if TOUCHES[i] {
+                1e-6 + 5e-7 * (1.3 * i as f64).sin()
+            } else {
+                0.0
+            }
+        }),
     }
 }
 
-/// μ of all nodes at these μ(θ) and slip velocities, from the law of the nodes in contact and then the others.
-fn solve(law: &PathLaw, resting: &[f64], speed: &[f64]) -> Vec<f64> {
+/// The same with a layer that yields at some 60 % of the surfaces' bound.
+fn with_layer(parameters: Parameters) -> Parameters {
+    Parameters {
+        layer_yield_stress: 0.08 * PRESSURE,
+        layer_hardening: 2e4 * PRESSURE,
+        ..parameters
+    }
+}
+
+fn pressure() -> Vec<f64> {
+    values(|i| {
+        if TOUCHES[i] {
+            0.4 + 0.2 * (1.9 * i as f64).sin()
+        } else {
+            0.0
+        }
+    })
+}
+
+/// What the rail has at these μ(θ), slip velocities and pressures, from the law of the nodes in contact and then the others; and their
+/// coefficients.
+fn solve(law: &PathLaw, resting: &[f64], speed: &[f64], pressure: &[f64]) -> (Vec<f64>, Brought) {
     let brought = before();
     let path = brought.path(0..NODES);
-    let mut friction = vec![0.0; NODES];
-    let mut last = (0.0, 0.0);
+    let mut coefficient = vec![0.0; NODES];
+    let mut now = Brought {
+        friction: vec![0.0; NODES],
+        speed: speed.to_vec(),
+        resting: resting.to_vec(),
+        flow: vec![0.0; NODES],
+    };
+    let mut last = Passed::default();
     law.prepare(
         &path,
         resting,
         |node| TOUCHES[node],
         |node, own| {
-            let found = law.friction(&own, last, speed[node]).coefficient;
-            friction[node] = found;
-            last = (found, speed[node]);
+            let found = law.friction(&own, &last, speed[node], pressure[node]);
+            coefficient[node] = found.coefficient;
+            last = found.passed(speed[node]);
+            (now.friction[node], now.flow[node]) = (last.friction, last.flow);
         },
     );
-    law.close(&path, resting, |node| TOUCHES[node], &mut friction);
-    friction
+    law.close(&path, resting, |node| TOUCHES[node], &mut now.friction);
+    (coefficient, now)
 }
 
 fn speeds() -> Vec<f64> {
@@ -80,7 +117,8 @@ fn resting() -> Vec<f64> {
 }
 
 proptest! {
-    /// With speed and μ(θ) of all nodes at once, over parts of a cell and over many, along and against x₁, at any d_c.
+    /// With speed, μ(θ) and pressure of all nodes at once, over parts of a cell and over many, along and against x₁, at any d_c, with a layer
+    /// that flows and without.
     #[test]
     fn the_tangent_is_the_derivative(
         cells in prop_oneof![0.05..0.9_f64, 1.1..20.0_f64, Just(f64::INFINITY)],
@@ -89,8 +127,12 @@ proptest! {
         speed_change in -1.0..1.0_f64,
         change in prop::collection::vec(-0.1..0.1_f64, NODES),
         slips in prop::collection::vec(-1e-3..1e-3_f64, NODES),
+        pressures in prop::collection::vec(-0.1..0.1_f64, NODES),
+        layer in any::<bool>(),
+        part in 0.0..1.0_f64,
     ) {
         let parameters = parameters(10.0_f64.powf(log_distance));
+        let parameters = if layer { with_layer(parameters) } else { parameters };
         let sign = if forward { 1.0 } else { -1.0 };
         let speed = 10.0;
         let duration = cells * SPACING / speed;
@@ -98,27 +140,29 @@ proptest! {
             let law = PathLaw::new(&parameters, &step(duration, sign * (speed + h * speed_change))).unwrap();
             let resting = values(|i| resting()[i] + h * change[i]);
             let speeds = values(|i| if TOUCHES[i] { speeds()[i] + h * slips[i] } else { 0.0 });
-            solve(&law, &resting, &speeds)
+            let pressure = values(|i| if TOUCHES[i] { pressure()[i] + h * pressures[i] } else { 0.0 });
+            solve(&law, &resting, &speeds, &pressure)
         };
         let h = 1e-5;
-        let (here, ahead, behind) = (at(0.0), at(h), at(-h));
+        let ((_, now), (ahead, _), (behind, _)) = (at(0.0), at(h), at(-h));
         let law = PathLaw::new(&parameters, &step(duration, sign * speed)).unwrap();
         let brought = before();
-        let now = Brought { friction: here, speed: speeds(), resting: resting() };
         let mut tangent = vec![0.0; NODES];
         law.tangent(
             (&brought.path(0..NODES), &now.path(0..NODES)),
-            |node| TOUCHES[node],
+            (&pressure(), |node| part * pressures[node]),
             (speed_change, &change),
             &mut tangent,
         );
-        // The part of the slip, in the order of the particles.
-        let mut last = (0.0, 0.0, 0.0, 0.0);
+        // The part of the slip and the rest of the pressure's, in the order of the particles.
+        let (mut last, mut last_change) = (Passed::default(), Passed::default());
         let (path, mut by_slip) = (brought.path(0..NODES), vec![0.0; NODES]);
         law.prepare(&path, &resting(), |node| TOUCHES[node], |node, own| {
-            let found = law.friction(&own, (last.0, last.1), now.speed[node]);
-            by_slip[node] = found.by_before * last.2 + found.by_speed_before * last.3 + found.by_speed * slips[node];
-            last = (found.coefficient, now.speed[node], by_slip[node], slips[node]);
+            let found = law.friction(&own, &last, now.speed[node], pressure()[node]);
+            let pressed = (1.0 - part) * pressures[node];
+            let (linked, passed) = found.change(&last_change, slips[node], pressed);
+            by_slip[node] = linked + found.by_speed() * slips[node] + found.by_pressure() * pressed;
+            (last, last_change) = (found.passed(now.speed[node]), passed);
         });
         for node in (0..NODES).filter(|&node| TOUCHES[node]) {
             let exact = tangent[node] + by_slip[node];
@@ -144,7 +188,16 @@ fn the_share_is_that_of_the_temperature() {
                 |node| TOUCHES[node],
                 |node, own| {
                     if node == 8 {
-                        found = law.friction(&own, (0.31, 0.02), 0.05);
+                        found = law.friction(
+                            &own,
+                            &Passed {
+                                friction: 0.31,
+                                speed: 0.02,
+                                flow: 0.0,
+                            },
+                            0.05,
+                            1.0,
+                        );
                     }
                 },
             );
@@ -164,7 +217,7 @@ fn the_limits_of_the_memory_are_the_steady_law_and_none_of_it() {
     let steady = 0.4 * SlipLaw::new(&parameters(0.0)).factor(0.5).0;
     for (distance, expected) in [(0.0, steady), (1e-9, steady), (1e-2, 0.4)] {
         let law = PathLaw::new(&parameters(distance), &step(f64::INFINITY, 10.0)).unwrap();
-        let friction = solve(&law, &resting, &speeds);
+        let (friction, _) = solve(&law, &resting, &speeds, &pressure());
         // The first node of a coarse mesh has entered without slip.
         for node in [1, 2, 6, 7, 8] {
             assert!(
@@ -188,12 +241,19 @@ fn at_standstill_each_node_relaxes_in_time() {
     let (distance, slides) = (3e-6, 0.01);
     let steady = 0.4 * SlipLaw::new(&parameters(0.0)).factor(slides).0;
     let total = 4e-4;
+    // Nothing that a node before could have makes a difference.
+    let strange = Passed {
+        friction: 9.0,
+        speed: 9.0,
+        flow: 9.0,
+    };
     for steps in [1, 100] {
         let law = PathLaw::new(&parameters(distance), &step(total / f64::from(steps), 0.0)).unwrap();
         let mut brought = Brought {
             friction: vec![0.4; NODES],
             speed: vec![slides; NODES],
             resting: vec![0.4; NODES],
+            flow: vec![0.0; NODES],
         };
         for _ in 0..steps {
             let mut friction = vec![0.0; NODES];
@@ -203,7 +263,7 @@ fn at_standstill_each_node_relaxes_in_time() {
                 &[0.4; NODES],
                 |node| TOUCHES[node],
                 |node, own| {
-                    friction[node] = law.friction(&own, (9.0, 9.0), slides).coefficient;
+                    friction[node] = law.friction(&own, &strange, slides, 1.0).coefficient;
                 },
             );
             brought.friction = friction;
@@ -211,6 +271,63 @@ fn at_standstill_each_node_relaxes_in_time() {
         let exact = steady + (0.4 - steady) * (-slides * total / distance).exp();
         for node in (0..NODES).filter(|&node| TOUCHES[node]) {
             assert!((brought.friction[node] - exact).abs() < 1e-12);
+        }
+    }
+}
+
+/// A layer alone: particles that come through a contact at a uniform pressure flow from the yield stress on, the stress rising with the way of
+/// slip behind them, until it reaches the surfaces' bound, and the surfaces slip from there on.
+#[test]
+fn a_layer_hardens_along_the_path_up_to_the_bound_of_the_surfaces() {
+    let parameters = with_layer(Parameters::default());
+    let (speed, slides, coefficient, pressure) = (10.0, 0.05, 0.3, 0.4);
+    for (duration, sign) in [(f64::INFINITY, 1.0), (f64::INFINITY, -1.0)] {
+        let law = PathLaw::new(&parameters, &step(duration, sign * speed)).unwrap();
+        assert!(law.remembers());
+        let resting = [coefficient; NODES];
+        let (found, now) = solve(&law, &resting, &[slides; NODES], &[pressure; NODES]);
+        let mut flow = 0.0;
+        for node in law.order(NODES) {
+            if !TOUCHES[node] {
+                flow = 0.0;
+                assert_eq!(now.flow[node], 0.0);
+                continue;
+            }
+            flow += slides * SPACING / speed;
+            let bound = (0.08 + 2e4 * flow).min(coefficient * pressure);
+            let way = (bound - 0.08) / 2e4;
+            assert!((found[node] * pressure - bound).abs() < 1e-14, "{node}");
+            assert!((now.flow[node] - way).abs() < 1e-18, "{node}");
+            assert_eq!(now.friction[node], coefficient);
+        }
+    }
+}
+
+/// At standstill the way of flow is all that has been slipped since the contact closed, in any number of steps.
+#[test]
+fn at_standstill_a_layer_flows_in_time() {
+    let parameters = with_layer(Parameters::default());
+    let (total, slides) = (1e-4, 0.01);
+    for steps in [1, 50] {
+        let law = PathLaw::new(&parameters, &step(total / f64::from(steps), 0.0)).unwrap();
+        let mut brought = Brought {
+            friction: vec![0.4; NODES],
+            speed: vec![0.0; NODES],
+            resting: vec![0.4; NODES],
+            flow: vec![0.0; NODES],
+        };
+        for _ in 0..steps {
+            let mut flow = vec![0.0; NODES];
+            law.prepare(
+                &brought.path(0..NODES),
+                &[0.4; NODES],
+                |node| TOUCHES[node],
+                |node, own| flow[node] = law.friction(&own, &Passed::default(), slides, 0.5).flow(),
+            );
+            brought.flow = flow;
+        }
+        for node in (0..NODES).filter(|&node| TOUCHES[node]) {
+            assert!((brought.flow[node] / (slides * total) - 1.0).abs() < 1e-12);
         }
     }
 }

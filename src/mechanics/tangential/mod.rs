@@ -18,7 +18,7 @@ mod path;
 
 use super::front::{Added, Edge, Front};
 use crate::error::{Error, Result};
-use crate::friction::path::{NodeFriction, PathLaw, PathNode};
+use crate::friction::path::{NodeFriction, Passed, PathLaw, PathNode};
 use crate::numerics::dense::{self, largest};
 use crate::settings::TangentialSettings;
 use path::Path;
@@ -133,13 +133,14 @@ pub struct Tangential {
     pressure: Vec<f64>,
     slip: Vec<f64>,
     added: [Added; 2],
-    /// μ, and where it depends on slip its derivatives.
+    /// μ, or the bound of a layer that flows over the pressure; and where it depends on slip its derivatives.
     friction: Vec<f64>,
     of_slip: Vec<NodeFriction>,
     /// The slip's response to the shear on one node.
     responded: Vec<f64>,
-    /// The law's derivatives by the slip, with what μ of a node follows from its own.
+    /// The law's derivatives by the slip and by the pressure, with what μ of a node follows from its own.
     by_slip: Vec<f64>,
+    by_pressure: Vec<f64>,
     /// φ.
     saturation: Vec<f64>,
     /// Coulomb's law: φ = ±1 of the nodes that slip, 0 of those that stick.
@@ -173,6 +174,7 @@ impl Tangential {
             of_slip: vec![NodeFriction::default(); nodes],
             responded: vector(),
             by_slip: vector(),
+            by_pressure: vector(),
             saturation: vector(),
             sliding: vector(),
             residual: vector(),
@@ -276,36 +278,54 @@ impl Tangential {
         self.update_friction(problem);
     }
 
-    /// μ at the present slip.
+    /// μ at the present slip and pressure.
     fn update_friction(&mut self, problem: &TangentialProblem) {
         let m = problem.friction.len();
         let Some((law, nodes)) = &problem.path else {
             self.friction[..m].copy_from_slice(problem.friction);
             return;
         };
-        let mut before = (0.0, 0.0);
+        let mut before = Passed::default();
         for row in law.order(m) {
             let speed = self.slip[row].abs();
-            self.of_slip[row] = law.friction(&nodes[row], before, speed);
+            self.of_slip[row] = law.friction(&nodes[row], &before, speed, self.pressure[row]);
             self.friction[row] = self.of_slip[row].coefficient;
-            before = (self.friction[row], speed);
+            before = self.of_slip[row].passed(speed);
         }
     }
 
-    /// Changes of the slip to those of μ by them, in place, at the point of the last solve.
-    pub fn friction_tangent(&self, law: &PathLaw, slip: &mut [f64]) {
-        follow(law, (&self.of_slip, &self.slip), slip);
+    /// Changes of the slip to those of μ by them and by those of the pressure, in place, at the point of the last solve.
+    pub fn friction_tangent(&self, law: &PathLaw, pressure: &[f64], slip: &mut [f64]) {
+        let mut before = Passed::default();
+        for row in law.order(slip.len()) {
+            let (of_slip, speed) = (&self.of_slip[row], self.slip[row].signum() * slip[row]);
+            let (linked, passed) = of_slip.change(&before, speed, pressure[row]);
+            slip[row] = linked + of_slip.by_speed() * speed + of_slip.by_pressure() * pressure[row];
+            before = passed;
+        }
+    }
+
+    /// The bound on a node's shear as a function of its pressure at an unchanged slip: its part without, and its slope.
+    fn bound(&self, problem: &TangentialProblem, node: usize) -> (f64, f64) {
+        let friction = self.friction[node];
+        if problem.path.is_none() {
+            return (0.0, friction);
+        }
+        let slope = friction + self.pressure[node] * self.of_slip[node].by_pressure();
+        ((friction - slope) * self.pressure[node], slope)
     }
 
     /// Factorises the law's rows at the present point. False where the matrix is singular.
     fn factorise(&mut self, problem: &TangentialProblem) -> bool {
         let m = problem.pressure.len();
         let rows = &self.rows[..m];
-        let by_slip = &mut self.by_slip[..m];
-        for (row, (by_slip, law)) in by_slip.iter_mut().zip(rows).enumerate() {
-            *by_slip = law.by_slip;
+        let (by_slip, by_pressure) = (&mut self.by_slip[..m], &mut self.by_pressure[..m]);
+        for (row, law) in rows.iter().enumerate() {
+            (by_slip[row], by_pressure[row]) = (law.by_slip, law.by_pressure);
             if problem.path.is_some() {
-                *by_slip += law.by_friction * self.of_slip[row].by_speed * self.slip[row].signum();
+                let of_slip = &self.of_slip[row];
+                by_slip[row] += law.by_friction * of_slip.by_speed() * self.slip[row].signum();
+                by_pressure[row] += law.by_friction * of_slip.by_pressure();
             }
         }
         let linked = problem.path.as_ref().filter(|(law, _)| law.remembers());
@@ -314,9 +334,11 @@ impl Tangential {
             let slip = &problem.slip_response[range.clone()];
             let pressure = &problem.pressure_response[range.clone()];
             let factor = &mut self.factor[range];
-            let laws = rows.iter().zip(&*by_slip);
-            for (((entry, (row, by_slip)), slip), pressure) in factor.iter_mut().zip(laws).zip(slip).zip(pressure) {
-                *entry = by_slip * slip + row.by_pressure * pressure;
+            let laws = by_pressure.iter().zip(&*by_slip);
+            for (((entry, (by_pressure, by_slip)), slip), pressure) in
+                factor.iter_mut().zip(laws).zip(slip).zip(pressure)
+            {
+                *entry = by_slip * slip + by_pressure * pressure;
             }
             factor[column] += rows[column].by_shear;
             let added = problem.edge.response(&self.added, problem.pressure_response, column);
@@ -329,12 +351,12 @@ impl Tangential {
                 for (added, row) in added.iter().zip(problem.edge.rows) {
                     friction[row] += added;
                 }
-                let mut before = (0.0, 0.0);
+                let mut before = Passed::default();
                 for row in law.order(m) {
                     let (of_slip, speed) = (&self.of_slip[row], self.slip[row].signum() * friction[row]);
-                    let linked = of_slip.by_before * before.0 + of_slip.by_speed_before * before.1;
+                    let (linked, passed) = of_slip.change(&before, speed, pressure[row]);
                     factor[row] += rows[row].by_friction * linked;
-                    before = (linked + of_slip.by_speed * speed, speed);
+                    before = passed;
                 }
             }
         }
@@ -352,196 +374,5 @@ impl Tangential {
     }
 }
 
-/// Changes of the slip to those of μ by them, in place.
-fn follow(law: &PathLaw, (of_slip, slip): (&[NodeFriction], &[f64]), change: &mut [f64]) {
-    let mut before = (0.0, 0.0);
-    for row in law.order(change.len()) {
-        let (of_slip, speed) = (&of_slip[row], slip[row].signum() * change[row]);
-        change[row] = of_slip.by_before * before.0 + of_slip.by_speed_before * before.1 + of_slip.by_speed * speed;
-        before = (change[row], speed);
-    }
-}
-
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::friction::coulomb::saturation;
-    use crate::mechanics::front::NearField;
-    use proptest::prelude::*;
-
-    const NODES: usize = 6;
-
-    /// A leading edge that adds nothing.
-    fn no_edge(zero: &[f64]) -> LeadingEdge<'_> {
-        LeadingEdge {
-            front: Front {
-                near_field: NearField {
-                    direct: 1.0,
-                    coupling: 0.0,
-                    opening: 1.0,
-                },
-                resolved: false,
-                forward: true,
-                strain_speed: 0.0,
-            },
-            rows: [0; 3],
-            gap: 0.0,
-            gap_response: zero,
-        }
-    }
-
-    /// A problem without response: pressure and slip stay what they are.
-    fn stiff<'a>(pressure: &'a [f64], slip: &'a [f64], zero: &'a [f64], friction: &'a [f64]) -> TangentialProblem<'a> {
-        TangentialProblem {
-            pressure,
-            slip,
-            pressure_response: zero,
-            slip_response: zero,
-            friction,
-            path: None,
-            edge: no_edge(&zero[..pressure.len()]),
-            regularisation: 1e-3,
-            tolerance: 1e-12,
-        }
-    }
-
-    #[test]
-    fn without_compliance_the_shear_is_coulombs_law_of_the_rigid_slip() {
-        let (pressure, friction) = ([0.2, 1.0, 0.6], [0.4, 0.3, 0.5]);
-        let zero = [0.0; 9];
-        for rigid_slip in [-0.2, -1e-4, 0.0, 5e-4, 3.0] {
-            let slip = [rigid_slip; 3];
-            for regularisation in [1e-3, 0.0] {
-                let mut shear = [0.05, -0.05, 0.0];
-                let mut solver = Tangential::new(3, TangentialSettings::default());
-                let problem = TangentialProblem {
-                    regularisation,
-                    ..stiff(&pressure, &slip, &zero, &friction)
-                };
-                solver.solve(&problem, &[0.0; 3], &mut shear).unwrap();
-                let share = if regularisation > 0.0 {
-                    saturation(rigid_slip, regularisation)
-                } else if rigid_slip == 0.0 {
-                    0.0
-                } else {
-                    rigid_slip.signum()
-                };
-                for node in 0..3 {
-                    let expected = -friction[node] * pressure[node] * share;
-                    assert!((shear[node] - expected).abs() < 1e-12, "{rigid_slip}: {shear:?}");
-                }
-            }
-        }
-    }
-
-    #[test]
-    fn a_limit_of_no_steps_is_an_error_with_its_numbers() {
-        let settings = TangentialSettings {
-            newton_steps: 0,
-            ..TangentialSettings::default()
-        };
-        let (one, zero) = ([1.0], [0.0]);
-        let mut shear = [0.0];
-        let failed = Tangential::new(1, settings).solve(&stiff(&one, &one, &zero, &one), &[0.0], &mut shear);
-        assert!(matches!(
-            failed,
-            Err(Error::TangentialNotConverged { iterations: 0, residual, .. }) if residual > 0.5
-        ));
-        assert_eq!(shear, [0.0]);
-    }
-
-    /// Slip that falls with the shear at the node itself and less at its neighbours, as an elastic surface has it.
-    fn response() -> Vec<f64> {
-        (0..NODES * NODES)
-            .map(|k| 2e-2 / (1.0 + (k / NODES).abs_diff(k % NODES) as f64))
-            .collect()
-    }
-
-    fn sum(matrix: &[f64], row: usize, values: &[f64]) -> f64 {
-        (0..NODES)
-            .map(|column| matrix[column * NODES + row] * values[column])
-            .sum()
-    }
-
-    proptest! {
-        /// With a pressure that follows a little, regularisations down to a thousandth of the slip.
-        #[test]
-        fn the_solution_satisfies_the_regularised_law(
-            pressure in prop::collection::vec(0.1..1.0, NODES),
-            slip in prop::collection::vec(-6e-2..6e-2, NODES),
-            friction in prop::collection::vec(0.1..0.6, NODES),
-            follows in prop::collection::vec(-0.05..0.05, NODES * NODES),
-            log_regularisation in -5.0..-2.0,
-        ) {
-            let regularisation = 10.0_f64.powf(log_regularisation);
-            let response = response();
-            let zero = [0.0; NODES];
-            let problem = TangentialProblem {
-                pressure: &pressure,
-                slip: &slip,
-                pressure_response: &follows,
-                slip_response: &response,
-                friction: &friction,
-                path: None,
-                edge: no_edge(&zero),
-                regularisation,
-                tolerance: 1e-12,
-            };
-            let mut shear = vec![0.0; NODES];
-            Tangential::new(NODES, TangentialSettings::default()).solve(&problem, &zero, &mut shear).unwrap();
-            for row in 0..NODES {
-                let slip = slip[row] + sum(&response, row, &shear);
-                let p = (pressure[row] + sum(&follows, row, &shear)).max(0.0);
-                let law = -friction[row] * p * saturation(slip, regularisation);
-                // The slope of the law, μ p/ε ds/dτ ≤ 0.6 · 4e-2/1e-5, times the tolerance of the shear.
-                prop_assert!((shear[row] - law).abs() < 1e-8, "{row}: {} {law}", shear[row]);
-            }
-        }
-
-        /// Coulomb's conditions at every node, by the exchanges and by the path alone, from any start.
-        #[test]
-        fn the_solution_satisfies_coulombs_law(
-            pressure in prop::collection::vec(0.1..1.0, NODES),
-            slip in prop::collection::vec(-6e-2..6e-2, NODES),
-            friction in prop::collection::vec(0.1..0.6, NODES),
-            follows in prop::collection::vec(-0.05..0.05, NODES * NODES),
-            start in prop::collection::vec(-1.0..1.0_f64, NODES),
-            exchanges in 1..14_usize,
-        ) {
-            let response = response();
-            let zero = [0.0; NODES];
-            let start: Vec<f64> = start.iter().map(|phi| if phi.abs() < 0.5 { 0.0 } else { phi.signum() }).collect();
-            let mut shear: Vec<f64> = (0..NODES).map(|i| -start[i] * friction[i] * pressure[i]).collect();
-            // The problem is posed around the start.
-            let at_start: Vec<f64> = (0..NODES).map(|i| slip[i] + sum(&response, i, &shear)).collect();
-            let pressure_at_start: Vec<f64> = (0..NODES).map(|i| pressure[i] + sum(&follows, i, &shear)).collect();
-            let problem = TangentialProblem {
-                pressure: &pressure_at_start,
-                slip: &at_start,
-                pressure_response: &follows,
-                slip_response: &response,
-                friction: &friction,
-                path: None,
-                edge: no_edge(&zero),
-                regularisation: 0.0,
-                tolerance: 1e-12,
-            };
-            let settings = TangentialSettings { exchanges, ..TangentialSettings::default() };
-            let mut solver = Tangential::new(NODES, settings);
-            solver.solve(&problem, &start, &mut shear).unwrap();
-            for row in 0..NODES {
-                let slip: f64 = slip[row] + sum(&response, row, &shear);
-                let p: f64 = pressure[row] + sum(&follows, row, &shear);
-                let bound = friction[row] * p.max(0.0);
-                let phi = solver.point(NODES).saturation[row];
-                prop_assert!((shear[row] + bound * phi).abs() < 1e-11, "{row}: {} {bound} {phi}", shear[row]);
-                prop_assert!(phi.abs() <= 1.0);
-                if phi.abs() == 1.0 {
-                    prop_assert!(phi * slip > -1e-11, "{row}: {phi} {slip}");
-                } else {
-                    prop_assert!(slip.abs() < 1e-11, "{row}: {phi} {slip}");
-                }
-            }
-        }
-    }
-}
+mod tests;

@@ -20,6 +20,8 @@ pub struct Path {
     change_on: [Vec<f64>; 2],
     slip_on: [Vec<f64>; 2],
     pressure_on: [Vec<f64>; 2],
+    /// What the law has beside the shear, the slip and the pressure.
+    constant: Vec<f64>,
 }
 
 impl Path {
@@ -33,6 +35,7 @@ impl Path {
             change_on: pair(),
             slip_on: pair(),
             pressure_on: pair(),
+            constant: vector(),
         }
     }
 }
@@ -54,7 +57,7 @@ impl Tangential {
             if !self.solve_on_path(problem, shear) {
                 return false;
             }
-            let Some((node, at, phi)) = self.next_exchange(shear, lambda, last) else {
+            let Some((node, at, phi)) = self.next_exchange(problem, shear, lambda, last) else {
                 self.change[..m].copy_from_slice(&self.path.change_on[0][..m]);
                 self.update_point(problem, shear);
                 return true;
@@ -87,7 +90,8 @@ impl Tangential {
     fn start_path(&mut self, problem: &TangentialProblem, shear: &[f64]) -> bool {
         let m = shear.len();
         for (i, shear) in shear.iter().enumerate() {
-            let bound = self.friction[i] * self.pressure[i];
+            let (constant, slope) = self.bound(problem, i);
+            let bound = constant + slope * self.pressure[i];
             let tau = shear + self.change[i];
             self.sliding[i] = if tau.abs() >= bound { -tau.signum() } else { 0.0 };
         }
@@ -95,7 +99,8 @@ impl Tangential {
         for column in 0..m {
             for row in 0..m {
                 let unit = if row == column { 1.0 } else { 0.0 };
-                let follows = self.friction[row] * self.sliding[row] * problem.pressure_response[column * m + row];
+                let follows =
+                    self.bound(problem, row).1 * self.sliding[row] * problem.pressure_response[column * m + row];
                 self.factor[column * m + row] = unit + follows;
             }
         }
@@ -105,7 +110,8 @@ impl Tangential {
         }
         for (i, shear) in shear.iter().enumerate() {
             if self.sliding[i] != 0.0 {
-                self.change[i] = -shear - self.friction[i] * self.sliding[i] * problem.pressure[i];
+                let (constant, slope) = self.bound(problem, i);
+                self.change[i] = -shear - slope * self.sliding[i] * problem.pressure[i] - constant * self.sliding[i];
             }
         }
         dense::lu_solve(&self.factor, m, &self.pivots, &mut self.change[..m]);
@@ -136,6 +142,14 @@ impl Tangential {
     fn solve_on_path(&mut self, problem: &TangentialProblem, shear: &[f64]) -> bool {
         let m = shear.len();
         self.set_coulomb_rows(problem);
+        for (i, row) in self.rows[..m].iter().enumerate() {
+            let (constant, slope) = self.bound(problem, i);
+            (self.path.constant[i], self.by_pressure[i]) = if self.sliding[i] == 0.0 {
+                (0.0, row.by_pressure)
+            } else {
+                (constant * self.sliding[i], slope * self.sliding[i])
+            };
+        }
         for column in 0..m {
             for row in 0..m {
                 let law = &self.rows[row];
@@ -143,7 +157,7 @@ impl Tangential {
                 let unit = if row == column { law.by_shear } else { 0.0 };
                 self.factor[place] = unit
                     + law.by_slip * self.path.slip_response[place]
-                    + law.by_pressure * problem.pressure_response[place];
+                    + self.by_pressure[row] * problem.pressure_response[place];
             }
         }
         if !dense::lu(&mut self.factor[..m * m], m, &mut self.pivots) {
@@ -155,13 +169,14 @@ impl Tangential {
             change_on,
             slip_on,
             pressure_on,
+            constant,
         } = &mut self.path;
         for part in 0..2 {
             let change = &mut change_on[part][..m];
             for (i, change) in change.iter_mut().enumerate() {
                 let law = &self.rows[i];
                 let fixed = if part == 0 {
-                    law.by_shear * shear[i] + law.by_pressure * problem.pressure[i]
+                    law.by_shear * shear[i] + self.by_pressure[i] * problem.pressure[i] + constant[i]
                 } else {
                     0.0
                 };
@@ -182,7 +197,13 @@ impl Tangential {
 
     /// The node that changes sides next as λ falls, the λ at which it does, and its φ after it; None where λ = 0 is reached
     /// first. The node exchanged `last` is at its corner and stays.
-    fn next_exchange(&self, shear: &[f64], lambda: f64, last: usize) -> Option<(usize, f64, f64)> {
+    fn next_exchange(
+        &self,
+        problem: &TangentialProblem,
+        shear: &[f64],
+        lambda: f64,
+        last: usize,
+    ) -> Option<(usize, f64, f64)> {
         let Path {
             change_on: [change, change_slope],
             slip_on: [slip, slip_slope],
@@ -204,11 +225,11 @@ impl Tangential {
             if phi != 0.0 {
                 consider(i, phi * slip[i], phi * slip_slope[i], 0.0);
             } else {
-                let mu = self.friction[i];
+                let (constant, by_pressure) = self.bound(problem, i);
                 for phi in [1.0, -1.0] {
                     // Distance of τ from −μ p φ.
-                    let margin = mu * pressure[i] + phi * (shear[i] + change[i]);
-                    consider(i, margin, mu * pressure_slope[i] + phi * change_slope[i], phi);
+                    let margin = constant + by_pressure * pressure[i] + phi * (shear[i] + change[i]);
+                    consider(i, margin, by_pressure * pressure_slope[i] + phi * change_slope[i], phi);
                 }
             }
         }

@@ -1,7 +1,7 @@
 //! Friction that depends on slip in the law of the cells: the bound of a cell follows from its slip, and where friction remembers, from
 //! that of the cells that its particles have come through.
 
-use crate::friction::path::{NodeFriction, PathLaw, PathNode};
+use crate::friction::path::{NodeFriction, Passed, PathLaw, PathNode};
 use crate::mechanics::patch::law::{Cell, Row, Scheme, Vector, dot, outer};
 use std::ops::Range;
 
@@ -26,7 +26,7 @@ pub struct OnPath {
     /// Change of the magnitude.
     change: Vec<f64>,
     /// The cell before, of those that [`OnPath::row`] has gone through.
-    before: (f64, f64),
+    before: Passed,
 }
 
 impl OnPath {
@@ -36,13 +36,13 @@ impl OnPath {
             speed: vec![0.0; cells],
             by_slip: vec![[[0.0; 2]; 2]; cells],
             change: vec![0.0; cells],
-            before: (0.0, 0.0),
+            before: Passed::default(),
         }
     }
 
     /// Begins a round over the cells.
     pub(super) fn start(&mut self) {
-        self.before = (0.0, 0.0);
+        self.before = Passed::default();
     }
 
     /// The law of a cell, in the order in which particles come to the cells of a run. Its bound follows from its slip; what it has of the
@@ -61,13 +61,13 @@ impl OnPath {
             })
         };
         let by_slip = [along(by_ahead), along(by_behind)];
-        let friction = path.law.friction(&path.nodes[index], self.before, speed);
-        self.before = (friction.coefficient, speed);
-        (self.friction[index], self.speed[index], self.by_slip[index]) = (friction, speed, by_slip);
         let pressure = path.pressure[index];
+        let friction = path.law.friction(&path.nodes[index], &self.before, speed, pressure);
+        self.before = friction.passed(speed);
+        (self.friction[index], self.speed[index], self.by_slip[index]) = (friction, speed, by_slip);
         cell.bound = friction.coefficient * pressure;
         let mut row = scheme.row(&cell);
-        let own = row.by_bound.map(|by_bound| by_bound * pressure * friction.by_speed);
+        let own = row.by_bound.map(|by_bound| by_bound * pressure * friction.by_speed());
         for (matrix, by_slip) in [&mut row.by_ahead, &mut row.by_behind].into_iter().zip(by_slip) {
             for (line, added) in matrix.iter_mut().zip(outer(own, by_slip)) {
                 line[0] += added[0];
@@ -90,24 +90,23 @@ impl OnPath {
         if !path.law.remembers() {
             return;
         }
-        let mut before = (0.0, 0.0);
+        let mut before = Passed::default();
         for index in path.law.order(n) {
             let friction = &self.friction[index];
-            let by_before = friction.by_before * before.0 + friction.by_speed_before * before.1;
+            let (by_before, passed) = friction.change(&before, self.change[index], 0.0);
             take(index, by_before);
-            before = (by_before + friction.by_speed * self.change[index], self.change[index]);
+            before = passed;
         }
     }
 
     /// The changes of μ of n cells with the kept ones of their slip velocities, and those of the slip velocities.
     pub(super) fn changes(&self, path: &PathOfCells, n: usize, mut take: impl FnMut(usize, f64)) {
-        let mut before = (0.0, 0.0);
+        let mut before = Passed::default();
         for index in path.law.order(n) {
             let (friction, speed) = (&self.friction[index], self.change[index]);
-            let change =
-                friction.by_before * before.0 + friction.by_speed_before * before.1 + friction.by_speed * speed;
-            take(index, change);
-            before = (change, speed);
+            let (by_before, passed) = friction.change(&before, speed, 0.0);
+            take(index, by_before + friction.by_speed() * speed);
+            before = passed;
         }
     }
 
@@ -146,15 +145,15 @@ impl Linked<'_> {
         slip: impl Fn(usize) -> (usize, f64, f64),
         mut take: impl FnMut(usize, f64),
     ) {
-        let mut before = (0.0, 0.0);
+        let mut before = Passed::default();
         for line in self.law.order(run.len()) {
             let index = run.start + line;
             let (friction, [by_ahead, by_behind]) = (&self.friction[index], self.by_slip[index]);
             let (component, ahead, behind) = slip(line);
             let speed = by_ahead[component] * ahead + by_behind[component] * behind;
-            let by_before = friction.by_before * before.0 + friction.by_speed_before * before.1;
+            let (by_before, passed) = friction.change(&before, speed, 0.0);
             take(line, self.pressure[index] * by_before);
-            before = (by_before + friction.by_speed * speed, speed);
+            before = passed;
         }
     }
 }
