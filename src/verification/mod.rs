@@ -40,6 +40,7 @@ mod row;
 mod set_up;
 pub mod standstill;
 pub mod wheel_temperature;
+pub mod yielding_layer;
 
 use crate::error::Result;
 pub use row::Row;
@@ -216,6 +217,10 @@ pub const CHECKS: &[Check] = &[
     Check {
         name: "Layer between wheel and rail",
         rows: layer::rows,
+    },
+    Check {
+        name: "Layer that flows",
+        rows: yielding_layer::rows,
     },
 ];
 

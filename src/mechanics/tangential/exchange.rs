@@ -7,6 +7,9 @@
 use super::{Ended, LawRow, Tangential, TangentialProblem};
 use crate::numerics::dense::largest;
 
+/// A half step of Newton's method on a straight line leaves half the distance; this is as good as half.
+const HALVED: f64 = 0.51;
+
 impl Tangential {
     /// Solves Coulomb's law from the nodes in slip that `saturation` tells.
     pub(super) fn solve_coulomb(&mut self, problem: &TangentialProblem, saturation: &[f64], shear: &[f64]) -> Ended {
@@ -19,7 +22,7 @@ impl Tangential {
             *sliding = start;
         }
         self.update_point(problem, shear);
-        let (mut exchanges, mut last_length) = (0, f64::INFINITY);
+        let (mut exchanges, mut last_length, mut cycles) = (0, f64::INFINITY, true);
         for steps in 1..=settings.newton_steps {
             self.set_coulomb_rows(problem);
             self.set_residual(shear);
@@ -34,7 +37,7 @@ impl Tangential {
             }
             // The corners of a law of slip and memory may send Newton's method to and fro between two points: half a step ends that.
             let damping = match problem.path {
-                Some(_) if steps > settings.newton_steps / 3 => 0.5,
+                Some(_) if steps > settings.newton_steps / 3 && cycles => 0.5,
                 _ => 1.0,
             };
             for (change, step) in self.change.iter_mut().zip(&self.step[..m]) {
@@ -62,9 +65,16 @@ impl Tangential {
                 return Ended::Converged(steps);
             }
             // What the leading edge adds is not linear: with a matrix that no longer fits the steps do not get shorter.
-            if length > settings.slow_contraction * last_length || damping < 1.0 {
+            let slow = length > settings.slow_contraction * last_length;
+            if slow || damping < 1.0 {
                 self.forget();
             }
+            // Half a step that halves what is left has left the corners behind.
+            cycles = if damping < 1.0 {
+                length > HALVED * last_length
+            } else {
+                slow || cycles && steps <= settings.newton_steps / 3
+            };
             last_length = length;
         }
         Ended::Stalled(settings.newton_steps)
