@@ -244,7 +244,7 @@ outputs! {
     peak_shear: "Pa" shown in "MPa", Instantaneous, at least 0.0, nominal 1e8;
     /// Share of the contact length that sticks
     stick_fraction: "1", Counted, at least 0.0, at most 1.0, nominal 1.0;
-    /// Pressure-weighted mean of the friction coefficient
+    /// Pressure-weighted mean of the friction coefficient; where a layer flows, its strength over the pressure counts
     friction_coefficient "μ": "1", Instantaneous, at least 0.0, nominal 0.1;
     /// Power dissipated by friction in the contact
     friction_power: "W" shown in "kW", Instantaneous, at least 0.0, nominal 1e4;

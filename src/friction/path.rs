@@ -236,6 +236,11 @@ impl PathLaw {
         self.follows() || self.layer.is_some_and(|layer| layer.hardens())
     }
 
+    /// Whether there is a layer that flows.
+    pub fn yields(&self) -> bool {
+        self.layer.is_some()
+    }
+
     /// Whether μ follows on a way of slip.
     fn follows(&self) -> bool {
         self.passage.exposure.is_finite()

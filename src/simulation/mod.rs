@@ -148,6 +148,7 @@ impl Simulation {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::parameters::ContactModel;
 
     fn coarse() -> Parameters {
         Parameters {
@@ -180,19 +181,37 @@ mod tests {
     #[test]
     fn resumed_from_its_bytes_it_goes_on_with_the_same_bits() {
         let schedule = schedule(0.02);
-        let mut whole = Simulation::new(&coarse(), &schedule.start().inputs).unwrap();
-        let mut bytes = Vec::new();
-        for (number, step) in schedule.steps(1e-3).unwrap().enumerate() {
-            if number == 10 {
-                bytes = postcard::to_allocvec(&whole.state).unwrap();
+        // Friction that remembers, on a layer that hardens.
+        let with_laws = Parameters {
+            friction_slip_share: 0.5,
+            friction_slip_decay: 0.5,
+            friction_memory_distance: 3e-6,
+            layer_compliance: 1e-13,
+            layer_yield_stress: 1e8,
+            layer_hardening: 1e12,
+            ..coarse()
+        };
+        let patch = Parameters {
+            contact_model: ContactModel::Patch,
+            patch_nodes: 14,
+            patch_strips: 7,
+            ..with_laws.clone()
+        };
+        for parameters in [coarse(), with_laws, patch] {
+            let mut whole = Simulation::new(&parameters, &schedule.start().inputs).unwrap();
+            let mut bytes = Vec::new();
+            for (number, step) in schedule.steps(1e-3).unwrap().enumerate() {
+                if number == 10 {
+                    bytes = postcard::to_allocvec(&whole.state).unwrap();
+                }
+                whole.follow(&step).unwrap();
             }
-            whole.follow(&step).unwrap();
+            let saved = postcard::from_bytes(&bytes).unwrap();
+            let mut resumed = Simulation::resume(whole.model.clone(), saved).unwrap();
+            simulated(&mut resumed, &schedule, 10);
+            assert_eq!(resumed.state, whole.state);
+            assert_eq!(resumed.profiles(), whole.profiles());
         }
-        let saved = postcard::from_bytes(&bytes).unwrap();
-        let mut resumed = Simulation::resume(whole.model.clone(), saved).unwrap();
-        simulated(&mut resumed, &schedule, 10);
-        assert_eq!(resumed.state, whole.state);
-        assert_eq!(resumed.profiles(), whole.profiles());
     }
 
     #[test]

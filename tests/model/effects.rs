@@ -88,7 +88,14 @@ fn scenarios() -> Vec<Scenario> {
         layer_compliance: 1e-13,
         ..parameters(FrictionLaw::PiecewiseLinear)
     };
-    scenarios.push((falling, inputs));
+    scenarios.push((falling.clone(), inputs));
+    // One that flows, besides.
+    let yielding = Parameters {
+        layer_yield_stress: 1e8,
+        layer_hardening: 1e12,
+        ..falling
+    };
+    scenarios.push((yielding, inputs));
     scenarios
 }
 

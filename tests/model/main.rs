@@ -14,3 +14,4 @@ mod time_step;
 mod torture;
 mod wear;
 mod wheel_heat;
+mod yielding_layer;

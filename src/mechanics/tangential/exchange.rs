@@ -69,12 +69,14 @@ impl Tangential {
             if slow || damping < 1.0 {
                 self.forget();
             }
-            // Half a step that halves what is left has left the corners behind.
-            cycles = if damping < 1.0 {
-                length > HALVED * last_length
-            } else {
-                slow || cycles && steps <= settings.newton_steps / 3
-            };
+            // Half a step that halves what is left has left the corners behind: those of a layer, many of which lie far apart.
+            if problem.path.is_some_and(|(law, _)| law.yields()) {
+                cycles = if damping < 1.0 {
+                    length > HALVED * last_length
+                } else {
+                    slow || cycles && steps <= settings.newton_steps / 3
+                };
+            }
             last_length = length;
         }
         Ended::Stalled(settings.newton_steps)

@@ -1,0 +1,207 @@
+//! A layer between wheel and rail that flows: its sensitivities against differences of the step, and what it must not change.
+
+use crate::sensitivity::{check, patch, rolling};
+use proptest::prelude::*;
+use wheelrail::Error;
+use wheelrail::parameters::{ContactModel, FrictionLaw, Parameters, SlipSource, Wheel, WheelHeating};
+use wheelrail::signals::Inputs;
+use wheelrail::simulation::Simulation;
+
+/// Strength, hardening and compliance, with friction that falls and remembers or without.
+type Layer = (f64, f64, f64, bool);
+
+fn layers() -> impl Strategy<Value = Layer> {
+    (
+        5e7..4e8_f64,
+        prop_oneof![Just(0.0), (11.0..13.5_f64).prop_map(|log| 10.0_f64.powf(log))],
+        prop_oneof![Just(0.0), (-14.0..-12.0_f64).prop_map(|log| 10.0_f64.powf(log))],
+        any::<bool>(),
+    )
+}
+
+fn yielding(parameters: Parameters, (strength, hardening, compliance, falls): Layer) -> Parameters {
+    let falling = if falls {
+        Parameters {
+            friction_slip_share: 0.5,
+            friction_slip_decay: 0.5,
+            friction_memory_distance: 2e-6,
+            ..parameters
+        }
+    } else {
+        parameters
+    };
+    Parameters {
+        layer_yield_stress: strength,
+        layer_hardening: hardening,
+        layer_compliance: compliance,
+        ..falling
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 12, ..ProptestConfig::default() })]
+
+    #[test]
+    fn sensitivities_of_a_line(
+        layer in layers(),
+        creepage in prop_oneof![0.0005..0.003, 0.005..0.2, -0.2..-0.005],
+        speed in prop_oneof![0.01..0.1_f64, 2.0..40.0],
+        reverse in any::<bool>(),
+        vehicle in any::<bool>(),
+        wheel in prop_oneof![Just(Wheel::Rigid), Just(Wheel::Elastic)],
+        regularisation in prop_oneof![3 => Just(0.0), 1 => Just(1e-3)],
+        long in any::<bool>(),
+        friction_law in prop_oneof![Just(FrictionLaw::Constant), Just(FrictionLaw::PiecewiseLinear), Just(FrictionLaw::FlowStress)],
+    ) {
+        let parameters = Parameters {
+            slip_source: if vehicle { SlipSource::VehicleSpeed } else { SlipSource::Creepage },
+            friction_law,
+            wheel,
+            wheel_shear_modulus: 6e10,
+            wheel_heating: WheelHeating::On,
+            slip_regularisation: regularisation,
+            rim_depth: 1e-3,
+            rim_width: 5e-3,
+            contact_thermal_resistance: 200.0,
+            strip_half_length: 0.3,
+            ..Parameters::default()
+        };
+        let direction = if reverse { -1.0 } else { 1.0 };
+        let mut inputs = rolling(direction * speed, [creepage, 0.0, 0.0]);
+        (inputs.lateral_creepage, inputs.spin_creepage, inputs.lateral_speed, inputs.spin_rate) = (0.0, 0.0, 0.0, 0.0);
+        let step = if long { 0.05 } else { 1e-3 };
+        let compared = check(yielding(parameters, layer), inputs, step);
+        // Settings this tight are no promise of the solvers.
+        prop_assume!(!matches!(compared, Err(Error::TangentialNotConverged { .. } | Error::SplitNotConverged { .. })));
+        let compared = compared.unwrap();
+        prop_assert!(compared >= 96, "{compared}");
+    }
+
+    #[test]
+    fn sensitivities_of_a_patch(
+        layer in layers(),
+        creepage in prop_oneof![-0.003..-0.0003, 0.0003..0.003, 0.005..0.05],
+        lateral in -0.002..0.002,
+        spin in -0.8..0.8,
+        speed in 2.0..40.0,
+        reverse in any::<bool>(),
+        vehicle in any::<bool>(),
+        wheel in prop_oneof![Just(Wheel::Rigid), Just(Wheel::Elastic)],
+        regularisation in prop_oneof![3 => Just(0.0), 1 => Just(1e-3)],
+        long in any::<bool>(),
+    ) {
+        let source = if vehicle { SlipSource::VehicleSpeed } else { SlipSource::Creepage };
+        let parameters = Parameters { slip_regularisation: regularisation, ..patch(source, wheel) };
+        let direction = if reverse { -1.0 } else { 1.0 };
+        let inputs = rolling(direction * speed, [creepage, lateral, spin]);
+        let step = if long { 0.05 } else { 1e-3 };
+        let compared = check(yielding(parameters, layer), inputs, step);
+        prop_assume!(!matches!(compared, Err(Error::TangentialNotConverged { .. } | Error::SplitNotConverged { .. })));
+        prop_assert!(compared.unwrap() >= 150);
+    }
+}
+
+fn models() -> [Parameters; 2] {
+    [ContactModel::Line, ContactModel::Patch].map(|contact_model| Parameters {
+        contact_model,
+        contact_nodes: 31,
+        depth_nodes: 21,
+        patch_nodes: 16,
+        patch_strips: 9,
+        ..Parameters::default()
+    })
+}
+
+/// A layer that is stronger than friction changes nothing but the last digits, whether or not it would harden.
+#[test]
+fn a_layer_that_does_not_yield_is_none() {
+    for plain in models() {
+        let inputs = |creepage| Inputs {
+            creepage,
+            ..Inputs::default()
+        };
+        let traction = |parameters: &Parameters| {
+            let mut run = Simulation::new(parameters, &inputs(1e-3)).unwrap();
+            run.hold(&inputs(0.01), 1e-3, 20).unwrap().traction_force
+        };
+        let without = traction(&plain);
+        for hardening in [0.0, 1e12] {
+            let with = traction(&Parameters {
+                layer_yield_stress: 1e10,
+                layer_hardening: hardening,
+                ..plain.clone()
+            });
+            assert!((with / without - 1.0).abs() < 1e-9, "{with} {without}");
+        }
+    }
+}
+
+/// A wheel that spins on the spot shears the layer until it is as strong as friction: T = min(τ_c0 + k s t, μp) over the contact, where it
+/// is far stiffer than it has hardened.
+#[test]
+fn a_wheel_that_spins_on_the_spot_hardens_the_layer_up_to_the_friction_bound() {
+    for plain in models() {
+        let parameters = Parameters {
+            slip_source: SlipSource::VehicleSpeed,
+            friction_law: FrictionLaw::Constant,
+            thermal_expansion: 0.0,
+            wear_coefficient: 0.0,
+            layer_yield_stress: 1e7,
+            layer_hardening: 1e11,
+            ..plain
+        };
+        let inputs = Inputs {
+            vehicle_speed: 0.0,
+            wheel_speed: 0.1 / parameters.wheel_radius,
+            ..Inputs::default()
+        };
+        let mut run = Simulation::new(&parameters, &inputs).unwrap();
+        let mut last = run.outputs().traction_force;
+        let mut at = Vec::new();
+        for _ in 0..100 {
+            let traction = run.hold(&inputs, 1e-3, 1).unwrap().traction_force;
+            assert!(traction > last * (1.0 - 1e-9), "{traction} {last}");
+            (last, at) = (traction, [at, vec![traction]].concat());
+        }
+        // 100 µm of flow by then would be 10 GPa.
+        let bound = parameters.friction_cold * inputs.normal_load;
+        assert!((last / bound - 1.0).abs() < 1e-6, "{last} {bound}");
+        // After the first millisecond some 20 MPa, on an area that carries 1 GPa.
+        assert!(at[0] < 0.2 * bound, "{} {bound}", at[0]);
+        // From nothing else than what has slipped: in a hundred steps as in one.
+        let mut once = Simulation::new(&parameters, &inputs).unwrap();
+        let traction = once.hold(&inputs, 1e-2, 1).unwrap().traction_force;
+        assert!((traction / at[9] - 1.0).abs() < 0.01, "{traction} {}", at[9]);
+    }
+}
+
+/// Rail that leaves the contact forgets how far the layer on it has flowed: a contact that has been left empty begins anew.
+#[test]
+fn a_wheel_that_was_lifted_begins_anew() {
+    for plain in models() {
+        let parameters = Parameters {
+            thermal_expansion: 0.0,
+            wear_coefficient: 0.0,
+            friction_law: FrictionLaw::Constant,
+            layer_yield_stress: 5e7,
+            layer_hardening: 1e13,
+            ..plain
+        };
+        let down = Inputs {
+            creepage: 0.01,
+            ..Inputs::default()
+        };
+        let lifted = Inputs {
+            normal_load: 0.0,
+            ..down
+        };
+        let after = |steps: usize| {
+            let mut run = Simulation::new(&parameters, &down).unwrap();
+            run.hold(&down, 1e-3, steps).unwrap();
+            run.hold(&lifted, 1e-3, 1).unwrap();
+            run.hold(&down, 2e-5, 1).unwrap().traction_force
+        };
+        let (short, long) = (after(1), after(30));
+        assert!((short / long - 1.0).abs() < 1e-9, "{short} {long}");
+    }
+}
