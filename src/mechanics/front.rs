@@ -6,7 +6,9 @@
 //! leading node is taken off its strain. A layer between wheel and rail is sheared from the edge on, not from the node ahead: what it
 //! adds to the strain is cτ over the distance d to the edge, in place of that to the node ahead. Where the pressure leaves the edge with the
 //! root of the distance, the separation goes with its power 3/2, γ = w E*/(2 Δx p) = ⅔ (1 − q)^{3/2}/√q with q = d/Δx, and
-//! 1/q − 1 is 3 γ within a sixth for q between ¼ and ¾.
+//! 1/q − 1 is 3 γ within a sixth for q between ¼ and ¾. Beyond γ = 1, where the leading node has just joined and carries next to nothing, it is
+//! held: with a layer that is far softer than a cell, w τ/p of a pressure that falls to 0 in the midst of an iteration would outweigh all other
+//! slip, and Newton's method would not come to rest.
 //!
 //! **The slip that is smaller than a cell.** Unlike bodies (Dundurs) have τ/p that grows towards the leading edge with the
 //! logarithm of the distance from it, until the edge slips, on less than a cell. The strain between the nodes contains that slip,
@@ -27,6 +29,8 @@ use crate::body::half_plane::HalfPlanes;
 const LEAST_PRESSURE: f64 = 1e-12;
 /// (1/q − 1)/γ.
 pub const LAYER_OPENING: f64 = 3.0;
+/// The largest γ in it.
+const LARGEST_OPENING: f64 = 1.0;
 /// S at ω = 0 and 1, and its rise towards ω = ½ over ω(1 − ω).
 const SHARE: [f64; 2] = [0.21, 0.57];
 
@@ -37,8 +41,8 @@ pub struct NearField {
     pub direct: f64,
     /// β Δx: (1 − 2ν)/(2γ) of the rail less that of the wheel, times Δx.
     pub coupling: f64,
-    /// Strain of the leading node that belongs to the cell ahead, per w τ/p: 1 without a layer.
-    pub opening: f64,
+    /// Strain of the leading node that a layer adds to that of the cell ahead, per w τ/p: 0 without a layer.
+    pub layer: f64,
 }
 
 /// The leading edge of one contact.
@@ -100,14 +104,14 @@ impl NearField {
         NearField {
             direct: half_planes.direct * cell,
             coupling: half_planes.coupling * cell,
-            opening: 1.0,
+            layer: 0.0,
         }
     }
 
     /// The same with a layer of this compliance between the bodies, scaled.
     pub fn with_layer(self, compliance: f64) -> NearField {
         NearField {
-            opening: 1.0 + LAYER_OPENING * compliance / self.direct,
+            layer: LAYER_OPENING * compliance / self.direct,
             ..self
         }
     }
@@ -125,11 +129,14 @@ impl Front {
         let ratio = open / edge.pressure[0];
         let ratio_by_gap = opens / edge.pressure[0];
         let ratio_by_pressure = -ratio / edge.pressure[0];
-        let speed = self.strain_speed * self.near_field.opening;
-        rows[0].slip = speed * ratio * edge.shear[0];
-        rows[0].by_shear[0] = speed * ratio;
-        rows[0].by_gap = speed * ratio_by_gap * edge.shear[0];
-        rows[0].by_pressure[0] = speed * ratio_by_pressure * edge.shear[0];
+        let NearField { direct, layer, .. } = self.near_field;
+        let held = LARGEST_OPENING * direct;
+        let slope = 1.0 + if ratio < held { layer } else { 0.0 };
+        let (speed, strain) = (self.strain_speed, ratio + layer * ratio.min(held));
+        rows[0].slip = speed * strain * edge.shear[0];
+        rows[0].by_shear[0] = speed * strain;
+        rows[0].by_gap = speed * slope * ratio_by_gap * edge.shear[0];
+        rows[0].by_pressure[0] = speed * slope * ratio_by_pressure * edge.shear[0];
         let coupled = self.near_field.coupling != 0.0;
         if coupled && self.resolved && edge.pressure[1].min(edge.pressure[2]) > LEAST_PRESSURE {
             self.add_hidden_slip(edge, (ratio, ratio_by_gap, ratio_by_pressure), &mut rows);
@@ -206,7 +213,7 @@ mod tests {
         near_field: NearField {
             direct: 0.04,
             coupling: 0.012,
-            opening: 1.7,
+            layer: 0.7,
         },
         resolved: true,
         forward: true,

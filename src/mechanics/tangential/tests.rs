@@ -14,7 +14,7 @@ fn no_edge(zero: &[f64]) -> LeadingEdge<'_> {
             near_field: NearField {
                 direct: 1.0,
                 coupling: 0.0,
-                opening: 1.0,
+                layer: 0.0,
             },
             resolved: false,
             forward: true,
