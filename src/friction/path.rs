@@ -185,6 +185,8 @@ pub struct PathLaw {
     passage: Passage,
     /// Its change with |V|.
     passage_tangent: Passage,
+    /// What is left of the μ that a particle brings where nothing slips.
+    idle_fade: f64,
     /// Whether particles come from high indices.
     forward: bool,
     layer: Option<LayerLaw>,
@@ -226,6 +228,11 @@ impl PathLaw {
             },
             passage,
             passage_tangent: passage.tangent(step.duration, step.spacing, step.speed.abs()),
+            idle_fade: if passage.exposure.is_finite() {
+                (-passage.exposure * parameters.friction_memory_speed).exp()
+            } else {
+                0.0
+            },
             forward: step.speed >= 0.0,
             layer,
         })
@@ -256,13 +263,11 @@ impl PathLaw {
         if !self.follows() {
             return (0.0, 0.0);
         }
-        let fade = (-self.passage.exposure * speed.max(self.least_speed)).exp();
-        let slope = if speed > self.least_speed {
-            -self.passage.exposure * fade
-        } else {
-            0.0
-        };
-        (fade, slope)
+        if speed <= self.least_speed {
+            return (self.idle_fade, 0.0);
+        }
+        let fade = (-self.passage.exposure * speed).exp();
+        (fade, -self.passage.exposure * fade)
     }
 
     /// ŝ.
@@ -318,8 +323,7 @@ impl PathLaw {
 
     /// μ of a node outside the contact, where nothing slips, after one with the given μ.
     fn idle(&self, node: &PathNode, before: f64) -> f64 {
-        let (fade, _) = self.fade(0.0);
-        node.steady + fade * (node.arrived + node.carry * before - node.steady)
+        node.steady + self.idle_fade * (node.arrived + node.carry * before - node.steady)
     }
 
     /// Gives the nodes in contact their law, in the order of the particles, with μ(θ) of all nodes. What lies between two of them is
@@ -377,7 +381,7 @@ impl PathLaw {
                 (constant, share) = (0.0, 1.0);
             } else {
                 constant = self.idle(&own, constant);
-                share *= self.fade(0.0).0 * own.carry;
+                share *= self.idle_fade * own.carry;
             }
             (upstream, touched) = (node, touches);
         }

@@ -75,6 +75,19 @@ impl LeadingEdge<'_> {
     }
 }
 
+/// Columns whose links are followed side by side: each link waits for the one before it in its column. Four at a time save
+/// 2 to 3 % of a step with memory (`cargo bench --bench falling_friction`).
+const LANES: usize = 4;
+
+/// Responses of a node to the shear on some others.
+#[derive(Debug, Clone, Copy, Default)]
+struct Responded {
+    /// Of its slip; then the change of its bound by that of the nodes before it.
+    slip: [f64; LANES],
+    /// Of its pressure.
+    pressure: [f64; LANES],
+}
+
 /// Where the last solve ended, on the nodes of its problem.
 #[derive(Debug, Clone, Copy)]
 pub struct Point<'a> {
@@ -136,8 +149,8 @@ pub struct Tangential {
     /// μ, or the bound of a layer that flows over the pressure; and where it depends on slip its derivatives.
     friction: Vec<f64>,
     of_slip: Vec<NodeFriction>,
-    /// The slip's response to the shear on one node.
-    responded: Vec<f64>,
+    /// The responses to the shear on some nodes.
+    responded: Vec<Responded>,
     /// The law's derivatives by the slip and by the pressure, with what μ of a node follows from its own.
     by_slip: Vec<f64>,
     by_pressure: Vec<f64>,
@@ -172,7 +185,7 @@ impl Tangential {
             added: Default::default(),
             friction: vector(),
             of_slip: vec![NodeFriction::default(); nodes],
-            responded: vector(),
+            responded: vec![Responded::default(); nodes],
             by_slip: vector(),
             by_pressure: vector(),
             saturation: vector(),
@@ -328,7 +341,6 @@ impl Tangential {
                 by_pressure[row] += law.by_friction * of_slip.by_pressure();
             }
         }
-        let linked = problem.path.as_ref().filter(|(law, _)| law.remembers());
         for column in 0..m {
             let range = column * m..(column + 1) * m;
             let slip = &problem.slip_response[range.clone()];
@@ -345,24 +357,53 @@ impl Tangential {
             for (added, row) in added.iter().zip(problem.edge.rows) {
                 factor[row] += by_slip[row] * added;
             }
-            if let Some((law, _)) = linked {
-                let friction = &mut self.responded[..m];
-                friction.copy_from_slice(slip);
-                for (added, row) in added.iter().zip(problem.edge.rows) {
-                    friction[row] += added;
-                }
-                let mut before = Passed::default();
-                for row in law.order(m) {
-                    let (of_slip, speed) = (&self.of_slip[row], self.slip[row].signum() * friction[row]);
-                    let (linked, passed) = of_slip.change(&before, speed, pressure[row]);
-                    factor[row] += rows[row].by_friction * linked;
-                    before = passed;
-                }
-            }
+        }
+        if let Some((law, _)) = &problem.path
+            && law.remembers()
+        {
+            self.add_links(problem, law);
         }
         self.factored = dense::lu(&mut self.factor[..m * m], m, &mut self.pivots);
         self.contraction = self.settings.fresh_contraction;
         self.factored
+    }
+
+    /// Adds to the law's rows what a node's bound takes from the slip of the nodes before it.
+    fn add_links(&mut self, problem: &TangentialProblem, law: &PathLaw) {
+        let m = problem.pressure.len();
+        for first in (0..m).step_by(LANES) {
+            let columns = LANES.min(m - first);
+            for lane in 0..columns {
+                let column = first + lane;
+                let range = column * m..(column + 1) * m;
+                let responses = problem.slip_response[range.clone()]
+                    .iter()
+                    .zip(&problem.pressure_response[range]);
+                for (responded, (slip, pressure)) in self.responded.iter_mut().zip(responses) {
+                    (responded.slip[lane], responded.pressure[lane]) = (*slip, *pressure);
+                }
+                let added = problem.edge.response(&self.added, problem.pressure_response, column);
+                for (added, row) in added.iter().zip(problem.edge.rows) {
+                    self.responded[row].slip[lane] += added;
+                }
+            }
+            let mut before = [Passed::default(); LANES];
+            for row in law.order(m) {
+                let (of_slip, sign) = (&self.of_slip[row], self.slip[row].signum());
+                let responded = &mut self.responded[row];
+                for (lane, before) in before.iter_mut().enumerate() {
+                    let speed = sign * responded.slip[lane];
+                    let (linked, passed) = of_slip.change(before, speed, responded.pressure[lane]);
+                    (responded.slip[lane], *before) = (linked, passed);
+                }
+            }
+            for lane in 0..columns {
+                let factor = &mut self.factor[(first + lane) * m..][..m];
+                for ((entry, row), responded) in factor.iter_mut().zip(&self.rows).zip(&self.responded) {
+                    *entry += row.by_friction * responded.slip[lane];
+                }
+            }
+        }
     }
 
     /// Newton step −J⁻¹ residual.
