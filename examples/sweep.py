@@ -9,21 +9,29 @@ each, and not computed again: after a kill, the same command goes on. docs/coupl
 """
 
 import argparse
-import hashlib
 import itertools
 import os
 import shutil
 import sys
 import tempfile
 import time
-from contextlib import contextmanager
 from pathlib import Path
 
 import matplotlib.pyplot as plt
 import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
-from dask.distributed import Client, LocalCluster, as_completed
+from dask_runs import (
+    add_options,
+    client_for,
+    computed,
+    local_client,
+    local_file,
+    missing,
+    read_component,
+    stamp_of,
+    write_table,
+)
 from helpers import FMU, REPOSITORY, RESULTS, WHEEL_RADIUS, reused, save
 from matplotlib.collections import LineCollection
 from matplotlib.colors import LogNorm
@@ -53,13 +61,7 @@ WORK = RESULTS / "creep_curves"
 
 def curve(component, digest, law, speed, load, creepages):
     """Steady outputs of one curve, a list for each column; every curve starts from the same state."""
-    local = Path(tempfile.gettempdir()) / f"{digest}.fmu"
-    if not local.exists():
-        # Another process on the same machine may be doing the same.
-        own = local.with_suffix(f".{os.getpid()}")
-        own.write_bytes(component)
-        own.replace(local)
-    instance = reused(local, friction_law=LAWS[law])
+    instance = reused(local_file(component, digest), friction_law=LAWS[law])
     columns = {name: [] for name in OUTPUTS}
     for creepage in creepages:
         instance.set(creepage=creepage, normal_load=load, wheel_speed=speed * (1.0 + creepage) / WHEEL_RADIUS)
@@ -77,69 +79,33 @@ def part(folder, law, speed, load):
     return folder / f"{law}-{speed:g}-{load:g}.parquet"
 
 
-def is_done(path, stamp):
-    """Whether a curve was computed by the same component at the same creepages."""
-    return path.exists() and pq.read_schema(path).metadata.get(b"stamp") == stamp
-
-
 def write_part(path, stamp, law, speed, load, creepages, columns):
     """Write one curve; the file is there as a whole or not at all."""
     count = len(creepages)
-    names = {"speed": ("m/s", [speed] * count), "normal_load": ("N", [load] * count), "creepage": ("1", creepages)}
-    names |= {name: (unit, columns[name]) for name, unit in OUTPUTS.items()}
-    fields = [pa.field("friction_law", pa.string())]
-    fields += [pa.field(name, pa.float64(), metadata={"unit": unit}) for name, (unit, _) in names.items()]
-    arrays = [pa.array([law] * count), *(pa.array(values, pa.float64()) for _, values in names.values())]
-    schema = pa.schema(fields, metadata={"stamp": stamp})
-    unfinished = path.with_suffix(".unfinished")
-    pq.write_table(pa.Table.from_arrays(arrays, schema=schema), unfinished)
-    unfinished.replace(path)
+    known = {"friction_law": (None, [law] * count), "speed": ("m/s", [speed] * count)}
+    known |= {"normal_load": ("N", [load] * count), "creepage": ("1", creepages)}
+    write_table(path, stamp, known | {name: (unit, columns[name]) for name, unit in OUTPUTS.items()})
 
 
 def sweep(client, folder, laws=tuple(LAWS), speeds=SPEEDS, loads=LOADS, creepages=CREEPAGES, quiet=False):
     """Compute the curves that are not there yet; return how many those were."""
     folder.mkdir(parents=True, exist_ok=True)
-    component = FMU.read_bytes()
-    digest = hashlib.sha256(component).hexdigest()
-    stamp = hashlib.sha256(f"{digest} {creepages} {STEP} {STEADY}".encode()).hexdigest().encode()
+    component, digest = read_component()
+    stamp = stamp_of(digest, creepages, STEP, STEADY)
     curves = list(itertools.product(laws, speeds, loads))
-    missing = [key for key in curves if not is_done(part(folder, *key), stamp)]
-    if len(missing) < len(curves):
-        print(f"  {len(curves) - len(missing)} of {len(curves)} curves are there from before", flush=True)
-    if not missing:
-        return 0
-    data = client.scatter(component, broadcast=True)
-    futures = {client.submit(curve, data, digest, *key, creepages, pure=False): key for key in missing}
-    began = time.perf_counter()
-    for number, future in enumerate(as_completed(futures), 1):
-        key = futures[future]
-        write_part(part(folder, *key), stamp, *key, creepages, future.result())
-        if not quiet:
-            report(number, len(missing), time.perf_counter() - began)
-    return len(missing)
+    left = missing(curves, lambda *key: part(folder, *key), lambda *key: stamp, "curves")
 
+    def arguments(*key):
+        return digest, *key, creepages
 
-def report(number, count, seconds):
-    """A line of progress: in place on a terminal, every tenth in a log."""
-    if sys.stdout.isatty() or number * 10 // count > (number - 1) * 10 // count:
-        left = seconds / number * (count - number)
-        end = "\r" if sys.stdout.isatty() and number < count else "\n"
-        print(f"  {number} of {count} curves, {number / seconds:.1f} a second, {left:.0f} s left ", end=end, flush=True)
+    for key, columns in computed(client, curve, left, component, arguments, "curves", quiet):
+        write_part(part(folder, *key), stamp, *key, creepages, columns)
+    return len(left)
 
 
 def gather(folder, laws=tuple(LAWS), speeds=SPEEDS, loads=LOADS):
     """All curves as one table, in the order of the grid."""
     return pa.concat_tables([pq.read_table(part(folder, *key)) for key in itertools.product(laws, speeds, loads)])
-
-
-@contextmanager
-def local_client(workers):
-    """Processes of one thread each on this machine."""
-    with (
-        LocalCluster(n_workers=workers, threads_per_worker=1, dashboard_address="127.0.0.1:0") as cluster,
-        Client(cluster) as client,
-    ):
-        yield client
 
 
 def scaling(rounds=3):
@@ -217,9 +183,7 @@ def label_ends(axes, values, ends, unit, scale):
 def main():
     """Sweep, gather, draw."""
     options = argparse.ArgumentParser(description="Creep curves over friction law, speed and load as a Dask job")
-    options.add_argument("--scheduler", help="address of a Dask scheduler; without one, workers on this machine")
-    options.add_argument("--workers", type=int, default=2, help="workers on this machine (2)")
-    options.add_argument("--fresh", action="store_true", help="forget the curves that are there from before")
+    add_options(options, "curves")
     options.add_argument("--scaling", action="store_true", help="measure two workers against one instead")
     chosen = options.parse_args()
     if not FMU.exists():
@@ -229,13 +193,7 @@ def main():
         return
     if chosen.fresh:
         shutil.rmtree(WORK, ignore_errors=True)
-    with Client(chosen.scheduler) if chosen.scheduler else local_client(chosen.workers) as client:
-        if chosen.scheduler:
-            # Workers on this machine find it where this process does.
-            with tempfile.TemporaryDirectory() as folder:
-                package = shutil.make_archive(f"{folder}/package", "zip", REPOSITORY / "python", "wheelrail")
-                client.upload_file(package)
-            client.upload_file(str(Path(__file__).with_name("helpers.py")))
+    with client_for(chosen.scheduler, chosen.workers, ()) as client:
         sweep(client, WORK)
     table = gather(WORK)
     path = RESULTS / "creep_curves.parquet"
