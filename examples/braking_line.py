@@ -6,11 +6,11 @@ creepage. maintenance.py runs many lines of them on workers.
 """
 
 from functools import cache
+from itertools import accumulate
 
 import numpy as np
 from dask_runs import local_file
 from helpers import WHEEL_RADIUS, reused
-from scipy.signal import lfilter
 from scipy.special import ndtr
 
 TRAINS = 1000
@@ -105,7 +105,7 @@ def weather(rng, trains, memory):
     fresh = rng.standard_normal(trains)
     # The first is as good as any: its variance is 1 as well.
     fresh[1:] *= np.sqrt(1.0 - keep**2)
-    return ndtr(lfilter([1.0], [1.0, -keep], fresh))
+    return ndtr(list(accumulate(fresh.tolist(), lambda before, new: keep * before + new)))
 
 
 def drawn(settings, line, trains=TRAINS, again=None):
@@ -215,12 +215,13 @@ def half_length(load):
 
 
 def by_energy(power, length, speed):
-    """Depth of wear by friction energy [m]: a rolled metre takes 5.3 x, 55, then 61.9 x - 4778.7 ug/(m mm2).
+    """Depth of wear by friction energy [m], from what a rolled metre takes off a contact's area [ug/(m mm2)].
 
-    x = T gamma/A in N/mm2. R8T wheel on UIC 900A rail, twin disc, dry (Braghin et al., Wear 261 (2006) 1265).
+    With x = T gamma/A in N/mm2: 5.3 x up to 10.4, 55 up to 77.2, then 61.9 for each one more. R8T wheel on UIC 900A
+    rail in a twin disc, dry (Braghin et al., Wear 261 (2006) 1265).
     """
-    density = power / (speed * CONTACT_WIDTH * length) * 1e-6
-    rate = 5.3 * density if density <= 10.4 else 55.0 if density <= 77.2 else 61.9 * density - 4778.7
+    x = power / (speed * CONTACT_WIDTH * length) * 1e-6
+    rate = 5.3 * x if x <= 10.4 else 55.0 + 61.9 * max(0.0, x - 77.2)
     return rate * 1e-3 * length / DENSITY
 
 

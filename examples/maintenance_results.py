@@ -4,8 +4,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 from braking_line import AS_IT_IS, FACTORS, SCENARIOS, TRAINS, WEATHER
 from helpers import BLACK, BLUE, GREEN, ORANGE, RED, SKY, markdown_table, save, write_tables
-from scipy.special import ndtri
-from scipy.stats import chi2
+from scipy.special import chdtri, ndtri
 
 BASE = next(name for name, settings in SCENARIOS.items() if settings == AS_IT_IS)
 ALONE = next(name for name, settings in SCENARIOS.items() if settings["weather"] == 0.0)
@@ -94,6 +93,16 @@ def depths(lines, scenario, name="wear_depth"):
     return lines[scenario, ""][name].sum(axis=1) / MICROMETRE
 
 
+def change(lines, scenario):
+    """Change of the mean against the same lines as they are, and its standard error over lines; none for itself."""
+    if scenario in (BASE, ALONE):
+        return ""
+    now, before = depths(lines, scenario), depths(lines, BASE)
+    ratio = now.mean() / before.mean()
+    error = (now - ratio * before).std(ddof=1) / np.sqrt(len(now)) / before.mean()
+    return f"{100.0 * (ratio - 1.0):+.0f} ± {100.0 * error:.0f} %"
+
+
 def tables(lines):
     """Write the tables of the page."""
     rows = []
@@ -107,12 +116,13 @@ def tables(lines):
                 f"{len(found['wear_depth'])}",
                 f"{100.0 * found['sliding_wheels'].mean() / 8.0:.2f} %",
                 f"{depths(lines, name).mean():.1f}",
+                change(lines, name),
                 f"{low:.1f} – {middle:.1f} – {high:.1f}",
                 f"{early:.0f} – {usual:.0f} – {late:.0f}",
                 f"{depths(lines, name, 'wear_depth_energy').mean():.1f}",
             ]
         )
-    head = ["", "lines", "wheels that slide", "mean µm", "5 % – half – 95 %, µm"]
+    head = ["", "lines", "wheels that slide", "mean µm", "against the same lines", "5 % – half – 95 %, µm"]
     head += [f"trains to {LIMIT * 1e3:g} mm: 5 % – half – 95 %", "mean by friction energy, µm"]
     train, line = shares(lines)
     parts = [[factor, f"{100 * train[factor]:.1f} %", f"{100 * line[factor]:.1f} %"] for factor in FACTORS]
@@ -135,7 +145,7 @@ def spread(lines):
         found = depths(lines, name)
         free = len(found) - 1
         formula = np.sqrt(line_variance(alone["share"], alone["wear_depth"], memory, TRAINS)) / MICROMETRE
-        low, high = found.std(ddof=1) * np.sqrt(free / chi2.ppf([0.975, 0.025], free))
+        low, high = found.std(ddof=1) * np.sqrt(free / chdtri(free, [0.025, 0.975]))
         rows.append([name, f"{formula:.1f}", f"{found.std(ddof=1):.1f}", f"{low:.1f} – {high:.1f}"])
     return rows
 
