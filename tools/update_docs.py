@@ -5,8 +5,8 @@
 - the accuracy of the patch, from results/patch_accuracy.csv, which examples/patch_creep_curves.py writes;
 - the figures of the verification, from target/verification.txt, which `make verify` writes.
 
-With the argument `couplings` (`make couplings-docs`) the tables of docs/couplings/stiff.md and hunting.md, with
-`measurements` (`make measurements-docs`) those of docs/measurements.md, from those in results/.
+With the argument `couplings` (`make couplings-docs`) the tables of the pages in docs/couplings/, with `measurements`
+(`make measurements-docs`) those of docs/measurements.md, from those in results/.
 """
 
 import csv
@@ -24,7 +24,8 @@ INDEX = REPOSITORY / "docs" / "index.md"
 PAGE = REPOSITORY / "modelDescription" / "documentation" / "index.html"
 VERIFICATION = REPOSITORY / "target" / "verification.txt"
 STIFF = REPOSITORY / "docs" / "couplings" / "stiff.md"
-COUPLING_PAGES = (STIFF, REPOSITORY / "docs" / "couplings" / "hunting.md")
+TABLED = ("stiff", "hunting", "adhesion", "maintenance")
+COUPLING_PAGES = tuple(REPOSITORY / "docs" / "couplings" / f"{name}.md" for name in TABLED)
 MEASUREMENTS = REPOSITORY / "docs" / "measurements.md"
 MEASURED = ("measurements_eurosprinter.md", "measurements_twin_disc.md")
 PAPER_CASES = REPOSITORY / "results" / "paper_cases.csv"
