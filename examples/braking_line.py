@@ -218,7 +218,7 @@ def by_energy(power, length, speed):
     """Depth of wear by friction energy [m], from what a rolled metre takes off a contact's area [ug/(m mm2)].
 
     With x = T gamma/A in N/mm2: 5.3 x up to 10.4, 55 up to 77.2, then 61.9 for each one more. R8T wheel on UIC 900A
-    rail in a twin disc, dry (Braghin et al., Wear 261 (2006) 1265).
+    rail in a twin disc, dry (Braghin et al., Wear 261 (2006) 1253).
     """
     x = power / (speed * CONTACT_WIDTH * length) * 1e-6
     rate = 5.3 * x if x <= 10.4 else 55.0 + 61.9 * max(0.0, x - 77.2)
