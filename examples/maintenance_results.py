@@ -115,15 +115,15 @@ def tables(lines):
                 name,
                 f"{len(found['wear_depth'])}",
                 f"{100.0 * found['sliding_wheels'].mean() / 8.0:.2f} %",
-                f"{depths(lines, name).mean():.1f}",
+                f"{depths(lines, name).mean():.1f} ± {depths(lines, name).std(ddof=1) / np.sqrt(len(found['share'])):.1f}",
                 change(lines, name),
                 f"{low:.1f} – {middle:.1f} – {high:.1f}",
                 f"{early:.0f} – {usual:.0f} – {late:.0f}",
                 f"{depths(lines, name, 'wear_depth_energy').mean():.1f}",
             ]
         )
-    head = ["", "lines", "wheels that slide", "mean µm", "against the same lines", "5 % – half – 95 %, µm"]
-    head += [f"trains to {LIMIT * 1e3:g} mm: 5 % – half – 95 %", "mean by friction energy, µm"]
+    head = ["", "lines", "wheels that slide", "mean µm", "against the same lines", "5 % – median – 95 %, µm"]
+    head += [f"trains to {LIMIT * 1e3:g} mm: 5 % – median – 95 %", "mean by friction energy, µm"]
     train, line = shares(lines)
     parts = [[factor, f"{100 * train[factor]:.1f} %", f"{100 * line[factor]:.1f} %"] for factor in FACTORS]
     write_tables(
@@ -177,6 +177,8 @@ def draw(lines):
     draw_scenarios(panels[0, 1], lines)
     draw_shares(panels[1, 0], lines)
     draw_laws(panels[1, 1], lines)
+    for axes in panels.flat:
+        axes.set_axisbelow(True)
     save(figure, "maintenance.png")
 
 
@@ -194,7 +196,7 @@ def draw_growth(axes, lines):
         axes.annotate(name, (TRAINS, middle[-1]), (5, 0), textcoords="offset points", va="center", color=COLOURS[name])
     axes.set(xlim=(0, TRAINS), ylim=(0, None), xlabel="trains", ylabel="depth of wear [µm]")
     axes.set_title(
-        "Wear comes in steps, on slippery days\nbold: half of the lines are below; shade: 5 to 95 %; thin: lines"
+        "Wear comes in steps, on slippery days\nbold: median of the lines; shade: 5 to 95 %; thin: single lines"
     )
 
 
@@ -211,7 +213,7 @@ def draw_scenarios(axes, lines):
     axes.set_yticks(range(len(names)), names)
     axes.invert_yaxis()
     axes.set(xlim=(0, None), xlabel=f"depth of wear after {TRAINS} trains [µm]")
-    axes.set_title("What would change it\ndot: a line; bar: 5 to 95 %; tick: half of the lines are below")
+    axes.set_title("What would change it\ndot: a line; bar: 5 to 95 %; tick: median")
 
 
 def draw_shares(axes, lines):
