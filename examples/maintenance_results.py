@@ -108,14 +108,15 @@ def tables(lines):
     rows = []
     for name in SCENARIOS:
         found = lines[name, ""]
+        count = len(found["wear_depth"])
         low, middle, high = band(depths(lines, name))
         early, usual, late = trains_to_limit(depths(lines, name) * MICROMETRE, TRAINS)
         rows.append(
             [
                 name,
-                f"{len(found['wear_depth'])}",
+                f"{count}",
                 f"{100.0 * found['sliding_wheels'].mean() / 8.0:.2f} %",
-                f"{depths(lines, name).mean():.1f} ± {depths(lines, name).std(ddof=1) / np.sqrt(len(found['share'])):.1f}",
+                f"{depths(lines, name).mean():.1f} ± {depths(lines, name).std(ddof=1) / np.sqrt(count):.1f}",
                 change(lines, name),
                 f"{low:.1f} – {middle:.1f} – {high:.1f}",
                 f"{early:.0f} – {usual:.0f} – {late:.0f}",
