@@ -53,22 +53,25 @@ def line_variance(share, wear, memory, trains):
 def shares(lines):
     """Share of each factor in the variance of a train's wear, and in that of a line's: what fixing it would take away.
 
+    Then the standard error of the former, over lines.
+
     Of a train: E (w - w')^2 / (2 var w) with that factor drawn again (Jansen's total index); they add up to more than 1
     where factors work together. Of a line: all but the weather are drawn train by train, and add n times their part.
     """
     alone = lines[ALONE, ""]
-    train = {}
+    train, error = {}, {}
     for factor in FACTORS:
         again = lines[ALONE, factor]["wear_depth"]
         first = alone["wear_depth"][: len(again)]
         both = np.concatenate([again.ravel(), first.ravel()])
-        train[factor] = float(np.mean((again - first) ** 2) / (2.0 * both.var()))
+        each = np.mean((again - first) ** 2, axis=1) / (2.0 * both.var())
+        train[factor], error[factor] = float(each.mean()), float(each.std(ddof=1) / np.sqrt(len(each)))
     trains = alone["wear_depth"].shape[1]
     variance = alone["wear_depth"].var()
     whole = line_variance(alone["share"], alone["wear_depth"], WEATHER, trains)
     line = {factor: share * trains * variance / whole for factor, share in train.items()}
     line["friction"] = 1.0 - (1.0 - train["friction"]) * trains * variance / whole
-    return train, line
+    return train, line, error
 
 
 def trains_to_limit(depths, trains, limit=LIMIT):
@@ -125,8 +128,11 @@ def tables(lines):
         )
     head = ["", "lines", "wheels that slide", "mean µm", "against the same lines", "5 % – median – 95 %, µm"]
     head += [f"trains to {LIMIT * 1e3:g} mm: 5 % – median – 95 %", "mean by friction energy, µm"]
-    train, line = shares(lines)
-    parts = [[factor, f"{100 * train[factor]:.1f} %", f"{100 * line[factor]:.1f} %"] for factor in FACTORS]
+    train, line, error = shares(lines)
+    parts = [
+        [factor, f"{100 * train[factor]:.1f} ± {100 * error[factor]:.1f} %", f"{100 * line[factor]:.1f} %"]
+        for factor in FACTORS
+    ]
     write_tables(
         "maintenance.md",
         {
@@ -220,7 +226,7 @@ def draw_scenarios(axes, lines):
 def draw_shares(axes, lines):
     """Shares of variance, of a train and of a line."""
     for offset, found, colour, label in zip(
-        (-0.2, 0.2), shares(lines), (SKY, BLUE), ("of one train", f"of a line of {TRAINS} trains"), strict=True
+        (-0.2, 0.2), shares(lines)[:2], (SKY, BLUE), ("of one train", f"of a line of {TRAINS} trains"), strict=True
     ):
         places = np.arange(len(FACTORS)) + offset
         values = [100.0 * found[factor] for factor in FACTORS]
