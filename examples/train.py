@@ -17,6 +17,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 from helpers import BLACK, BLUE, FMU, GREEN, ORANGE, RED, WHEEL_RADIUS, Instance, save, show, write_csv
 from matplotlib.patches import Circle
+from rail_trail import Trail, skin_depths
 
 GRAVITY = 9.81
 AMBIENT = 283.15  # K
@@ -63,47 +64,6 @@ def creepage(now):
     )
 
 
-def skin_depths(speed=TYPICAL_SPEED):
-    """Skin depth of each unit, so that the temperature that enters is that of the surface.
-
-    Heat put in at the surface a time t before is spread over d = sqrt(pi kappa t). Here it comes from all the wheels in
-    front, about as much from each: 1/d is the mean of theirs. The first gets fresh rail; its own depth is that of its
-    wake where it leaves.
-    """
-    depths = [np.sqrt(np.pi * DIFFUSIVITY * HALF_LENGTH / speed)]
-    for axle in range(1, len(AXLES)):
-        ages = (AXLES[:axle] - AXLES[axle] - HALF_LENGTH) / speed
-        depths.append(1.0 / np.mean(1.0 / np.sqrt(np.pi * DIFFUSIVITY * ages)))
-    return np.array(depths)
-
-
-class Trail:
-    """What a unit leaves on the track: heat and wear against position, both summed up from the start of the trail."""
-
-    def __init__(self, start):
-        """Begin at a position; the rail ahead of it is untouched so far, and so is that behind."""
-        self.position, self.heat, self.wear = [start], [0.0], [0.0]
-        self.at = 0
-
-    def leave(self, length, heat, wear):
-        """Continue by a length [m] with a heat, over rho c and per area [K.m], and a depth of wear [m]."""
-        self.position.append(self.position[-1] + length)
-        self.heat.append(self.heat[-1] + length * heat)
-        self.wear.append(self.wear[-1] + length * wear)
-
-    def until(self, place):
-        """Heat and wear up to a place; places are to be asked for in ascending order."""
-        if place <= self.position[0]:
-            return 0.0, 0.0
-        if place > self.position[-1] + 1e-9:
-            raise ValueError("the unit behind is longer than the distance to the unit in front")
-        while self.position[self.at + 1] < place and self.at + 2 < len(self.position):
-            self.at += 1
-        low, high = self.at, self.at + 1
-        share = (place - self.position[low]) / (self.position[high] - self.position[low])
-        return tuple(values[low] + share * (values[high] - values[low]) for values in (self.heat, self.wear))
-
-
 class Wheel:
     """A unit: an instance of the component, and the trail that it leaves."""
 
@@ -137,7 +97,8 @@ class Train:
 
     def __init__(self, depths=None, **start_values):
         """Make the units, the front one first, with the given skin depths [m]."""
-        depths = skin_depths() if depths is None else depths
+        if depths is None:
+            depths = skin_depths(AXLES, HALF_LENGTH, TYPICAL_SPEED, DIFFUSIVITY)
         self.wheels = [Wheel(number, float(depth), **start_values) for number, depth in enumerate(depths)]
         self.speed, self.time, self.distance = SPEED, 0.0, 0.0
 
