@@ -44,7 +44,7 @@ say = @printf '\n\033[1m== %s\033[0m\n' '$(1)'
 install = $(PY) -m uv pip install --quiet --python $(PY) -r $(1) \
 	|| $(PY) -m pip install --quiet --disable-pip-version-check -r $(1)
 
-COUPLINGS := longitudinal stiff multibody train sweep hunting maintenance
+COUPLINGS := longitudinal stiff multibody train sweep hunting adhesion maintenance
 WHEELSET := target/Wheelset.fmu
 
 .PHONY: fmu fmu3 platforms wheel demo measurements measurements-docs test docs site bench clean lint rust-test verify python-test hosts library command couplings packages
@@ -164,10 +164,10 @@ $(addprefix coupling-,$(COUPLINGS)): coupling-%: couplings-set-up
 	$(call say,Coupling: $*)
 	@$(PY) examples/$*.py
 
-# The pictures of the pages in docs/couplings/, and the tables of stiff.md, hunting.md and maintenance.md; commit what changes.
+# The pictures of the pages in docs/couplings/, and their tables where they are generated; commit what changes.
 couplings-docs: couplings
 	@$(PY) tools/update_docs.py couplings
-	@cp results/longitudinal.png results/stiff.png results/stiff_stop.png results/multibody.png results/train.png results/creep_curves.png results/hunting.png results/maintenance.png docs/couplings/
+	@cp $(addprefix results/,longitudinal.png stiff.png stiff_stop.png multibody.png train.png creep_curves.png hunting.png adhesion.png maintenance.png) docs/couplings/
 
 # The time that the sweep takes on two workers against one.
 sweep-scaling: couplings-set-up

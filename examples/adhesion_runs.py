@@ -9,7 +9,6 @@ from helpers import FMU, Instance
 from locomotive import (
     AXLES,
     CONTACT,
-    FRICTION,
     GRADIENT,
     GRAVITY,
     INERTIA,
@@ -32,7 +31,7 @@ CONTROLLERS = {
 }
 # As it is; friction of the ambient's temperature, whatever the contact's; each wheelset on rail as cold as the first's.
 AS_IT_IS, CONSTANT, COLD = "as it is", "without temperature", "rail cold under each"
-VARIANTS = {AS_IT_IS: {}, CONSTANT: {"friction": constant_friction(FRICTION)}, COLD: {"chained": False}}
+VARIANTS = {AS_IT_IS: {}, CONSTANT: constant_friction(), COLD: {"chained": False}}
 COMPARED = ("search", "constant 10 %")
 SETTLED = (4.0, 8.0)  # s: on wet rail, the search has found its place
 CREEPAGES = np.array([0.05, 0.1, 0.2, 0.3, 0.5, 0.7, 1.0, 1.4, 2.0, 3.0, 4.0, 5.0, 7.0, 10.0, 14.0, 20.0]) / 100.0
@@ -54,10 +53,10 @@ def all_runs():
     return {(controller, variant): result for (controller, variant, _), result in zip(asked, results, strict=True)}
 
 
-def steady(friction=FRICTION, scale=1.0, creepages=CREEPAGES, **start_values):
+def steady(scale=1.0, creepages=CREEPAGES, load=WHEEL_LOAD, **start_values):
     """Traction over load and peak temperature in steady rolling at 10 m/s, on rail of the ambient's temperature."""
-    motion = {"normal_load": WHEEL_LOAD, "vehicle_speed": SPEED, "wheel_speed": SPEED / WHEEL_RADIUS}
-    contact = Instance(FMU, **(CONTACT | friction | start_values), **motion, friction_scale=scale).start()
+    motion = {"normal_load": load, "vehicle_speed": SPEED, "wheel_speed": SPEED / WHEEL_RADIUS}
+    contact = Instance(FMU, **(CONTACT | start_values), **motion, friction_scale=scale).start()
     rows = []
     for creepage in creepages:
         contact.set(wheel_speed=SPEED * (1.0 + creepage) / WHEEL_RADIUS)
@@ -71,8 +70,7 @@ def steady(friction=FRICTION, scale=1.0, creepages=CREEPAGES, **start_values):
 
 def steady_curves():
     """The steady curves of the page: on wet rail, without temperature, in the leaves."""
-    constant = VARIANTS[CONSTANT]["friction"]
-    return {AS_IT_IS: steady(), CONSTANT: steady(constant), "leaves": steady(scale=min(LEAVES.scales))}
+    return {AS_IT_IS: steady(), CONSTANT: steady(**VARIANTS[CONSTANT]), "leaves": steady(scale=min(LEAVES.scales))}
 
 
 def most(curve):

@@ -10,6 +10,9 @@ through a filter of first order. examples/adhesion.py compares them.
 """
 
 import math
+from collections import deque
+
+import numpy as np
 
 PERIOD = 5e-3  # s, of a controller
 OBSERVER_LAG = 10e-3  # s, of the filter of the estimated force
@@ -65,13 +68,13 @@ class ConstantCreepage:
 class Search(ConstantCreepage):
     """Looks for the creepage with the most adhesion, whatever it is: goes up the slope of force over slip.
 
-    The slip to hold swings a little. Force and slip of late give the slope dF/ds, a least-squares line that forgets
-    exponentially; the slip goes on where the force grows and back where it falls. Where the wheel does not follow, as
-    where the rail changes, the slope says nothing, and is taken anew.
+    The slip to hold swings a little. Force and slip of the last swing give the slope dF/ds, by least squares; the slip
+    goes on where the force grows and back where it falls. Where the wheel does not follow, as where the rail changes,
+    the slope says nothing, and the search waits for another swing.
     """
 
-    SWING, FREQUENCY = 0.03, 3.0  # m/s, Hz
-    MEMORY = 0.3  # s
+    SWING, PERIODS = 0.03, 64  # m/s; control periods of a swing
+    FOLLOWS = 0.045  # m/s: error of the slip up to which the wheel follows
     PACE = 0.5  # (m/s)2/s: pace at which the slip goes, per relative slope dF/ds/F
     FASTEST = 0.2  # m/s2
     LEAST, MOST = 0.05, 1.5  # m/s, of the slip to hold
@@ -81,37 +84,28 @@ class Search(ConstantCreepage):
         super().__init__(inertia, radius, 0.0)
         self.phase = phase
         self.middle = 0.1  # m/s
-        self.forget()
-
-    def forget(self):
-        """Take the slope anew."""
-        self.weight = self.slip = self.force = self.variance = self.covariance = 0.0
+        self.seen = deque(maxlen=self.PERIODS)
 
     def slope(self):
-        """Relative slope dF/ds/F [s/m]: 0 if too little is known, infinite if the slip hardly follows the swing."""
-        observer = self.observer
-        kept = math.exp(-PERIOD / self.MEMORY)
-        self.weight = kept * self.weight + 1.0
-        gain = 1.0 / self.weight
-        slip, force = observer.slip - self.slip, observer.force - self.force
-        self.slip += gain * slip
-        self.force += gain * force
-        self.variance = (1.0 - gain) * (self.variance + gain * slip * slip)
-        self.covariance = (1.0 - gain) * (self.covariance + gain * slip * force)
-        if self.weight * PERIOD < 0.5 * self.MEMORY or self.force <= 0.0:
+        """Relative slope dF/ds/F [s/m]: 0 before a whole swing is seen, infinite if the slip hardly follows it."""
+        if len(self.seen) < self.PERIODS:
             return 0.0
-        if self.variance < (0.1 * self.SWING) ** 2:
+        slip, force = np.array(self.seen).T
+        apart = slip - slip.mean()
+        variance = apart @ apart / self.PERIODS
+        if variance < (0.1 * self.SWING) ** 2 or force.mean() <= 0.0:
             return math.inf
-        return self.covariance / self.variance / self.force
+        return apart @ force / self.PERIODS / variance / force.mean()
 
     def set_point(self, now, vehicle_speed, error):
         """Slip velocity to hold [m/s]."""
-        if abs(error) > 3.0 * self.SWING:
-            self.forget()
+        self.seen.append((self.observer.slip, self.observer.force))
+        if abs(error) > self.FOLLOWS:
+            self.seen.clear()
         pace = self.PACE * self.slope()
         self.middle += PERIOD * min(max(pace, -self.FASTEST), self.FASTEST)
         self.middle = min(max(self.middle, self.LEAST), self.MOST)
-        return self.middle + self.SWING * math.sin(2.0 * math.pi * self.FREQUENCY * now + self.phase)
+        return self.middle + self.SWING * math.sin(2.0 * math.pi * now / (self.PERIODS * PERIOD) + self.phase)
 
 
 class CutAndRamp:

@@ -23,7 +23,6 @@ VARIABLES = REPOSITORY / "docs" / "variables.md"
 INDEX = REPOSITORY / "docs" / "index.md"
 PAGE = REPOSITORY / "modelDescription" / "documentation" / "index.html"
 VERIFICATION = REPOSITORY / "target" / "verification.txt"
-STIFF = REPOSITORY / "docs" / "couplings" / "stiff.md"
 TABLED = ("stiff", "hunting", "adhesion", "maintenance")
 COUPLING_PAGES = tuple(REPOSITORY / "docs" / "couplings" / f"{name}.md" for name in TABLED)
 MEASUREMENTS = REPOSITORY / "docs" / "measurements.md"
