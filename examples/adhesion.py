@@ -19,6 +19,8 @@ from adhesion_runs import (
     CONSTANT,
     CONTROLLERS,
     CREEPAGES,
+    NOISE,
+    NOISY,
     all_runs,
     creepage,
     during,
@@ -111,10 +113,19 @@ def curve(curves):
     """Adhesion in steady rolling with and without temperature."""
     rows = []
     for place in np.flatnonzero(np.isin(CREEPAGES, (0.005, 0.01, 0.02, 0.05, 0.10, 0.20))):
-        own, constant = (curves[variant][0, place] for variant in (AS_IT_IS, CONSTANT))
+        own, constant, fine = (curves[variant][0, place] for variant in (AS_IT_IS, CONSTANT, "fine"))
         changes = [f"{100.0 * (own / constant - 1.0):.1f} %", celsius(curves[AS_IT_IS][1, place])]
-        rows.append([f"{100.0 * CREEPAGES[place]:g} %", f"{own:.3f}", f"{constant:.3f}", *changes])
-    return markdown_table(["creepage", "adhesion", CONSTANT, "the heat changes", "hottest"], rows)
+        rows.append([f"{100.0 * CREEPAGES[place]:g} %", f"{own:.3f}", f"{constant:.3f}", *changes, f"{fine:.3f}"])
+    return markdown_table(["creepage", "adhesion", CONSTANT, "the heat changes", "hottest", "on 34 by 21 cells"], rows)
+
+
+def noise(results):
+    """The search, and the same with speeds that are not quite right."""
+    rows = []
+    for variant, deviation in ((AS_IT_IS, 0.0), (NOISY, NOISE)):
+        wet = summary(results["search", variant][0], during(results["search", variant][0]))
+        rows.append([f"{1e3 * deviation:g} mm/s", f"{1e-3 * wet['effort']:.1f} kN", f"{100.0 * wet['creepage']:.2f} %"])
+    return markdown_table(["noise of the wheels' speeds", "effort", "mean creepage"], rows)
 
 
 def energies(books):
@@ -132,6 +143,7 @@ def main():
     tables = {
         "gains": gains(plain, most(curves[AS_IT_IS])),
         "prices": prices(plain),
+        "noise": noise(results),
         "heat": heat(results),
         "curve": curve(curves),
         "wheelsets": wheelsets(plain),

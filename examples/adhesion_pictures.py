@@ -44,11 +44,20 @@ def draw_efforts(axes, plain, limit):
     axes.text(2.0, 1e-3 * limit + 3.0, "the most that the wet rail gives", color=GREY, fontsize=8)
     axes.text(shade_leaves(axes, plain["search"]), 294.0, "leaves", ha="center", va="top", color=BROWN)
     for name in DRAWN:
-        axes.plot(plain[name]["time"], 1e-3 * effort(plain[name]), color=COLOURS[name], linewidth=1.2, label=name)
+        label = f"{name}: {1e-3 * summary(plain[name], during(plain[name]))['effort']:.0f} kN"
+        axes.plot(plain[name]["time"], 1e-3 * effort(plain[name]), color=COLOURS[name], linewidth=1.2, label=label)
     axes.set(xlabel="time [s]", ylabel="tractive effort [kN]", xlim=(0.0, STOP), ylim=(0.0, 300.0))
     axes.set_title("What the locomotive pulls, by slip controller")
     handles, labels = axes.get_legend_handles_labels()
-    axes.legend(handles[::-1], labels[::-1], loc="lower right", ncols=2, fontsize=8)
+    axes.legend(
+        handles[::-1],
+        labels[::-1],
+        loc="lower right",
+        ncols=2,
+        fontsize=8,
+        title="mean on wet rail, 4 s to 8 s",
+        title_fontsize=8,
+    )
 
 
 def draw_plane(axes, plain, curves):
@@ -102,6 +111,8 @@ def draw_price(axes, results, limit):
         middle = 0.5 * (here[0] + there[0]), 0.5 * (here[1] + there[1])
         takes = f"heat takes {100.0 * (1.0 - here[1] / there[1]):.1f} %"
         axes.annotate(takes, middle, (9, 0), textcoords="offset points", va="center", fontsize=8, color=COLOURS[name])
+    axes.plot([], [], "o", color=GREY, markersize=8, fillstyle="none", linestyle="none", label="without temperature")
+    axes.legend(loc="lower left", fontsize=8)
     efforts = [place[1] for place in places.values()]
     axes.set(
         xlim=(0.0, 1.3 * max(place[0] for place in places.values())), ylim=(min(efforts) - 12.0, max(efforts) + 8.0)

@@ -29,9 +29,11 @@ CONTROLLERS = {
     "constant 10 %": lambda axle: ConstantCreepage(INERTIA, WHEEL_RADIUS, 0.10),
     "cut and ramp": lambda axle: CutAndRamp(INERTIA, WHEEL_RADIUS),
 }
-# As it is; friction of the ambient's temperature, whatever the contact's; each wheelset on rail as cold as the first's.
-AS_IT_IS, CONSTANT, COLD = "as it is", "without temperature", "rail cold under each"
-VARIANTS = {AS_IT_IS: {}, CONSTANT: constant_friction(), COLD: {"chained": False}}
+# As it is; friction of the ambient's temperature, whatever the contact's; each wheelset on rail as cold as the first's;
+# controllers that see speeds with noise.
+AS_IT_IS, CONSTANT, COLD, NOISY = "as it is", "without temperature", "rail cold under each", "noise"
+NOISE = 5e-3  # m/s at the tread
+VARIANTS = {AS_IT_IS: {}, CONSTANT: constant_friction(), COLD: {"chained": False}, NOISY: {"noise": NOISE}}
 COMPARED = ("search", "constant 10 %")
 SETTLED = (4.0, 8.0)  # s: on wet rail, the search has found its place
 CREEPAGES = np.array([0.05, 0.1, 0.2, 0.3, 0.5, 0.7, 1.0, 1.4, 2.0, 3.0, 4.0, 5.0, 7.0, 10.0, 14.0, 20.0]) / 100.0
@@ -47,6 +49,7 @@ def all_runs():
     """All runs, by controller and variant, side by side in processes; the variants only as far as the leaves."""
     asked = [(controller, AS_IT_IS, STOP) for controller in CONTROLLERS]
     asked += [(controller, variant, SETTLED[1]) for variant in (CONSTANT, COLD) for controller in COMPARED]
+    asked.append(("search", NOISY, SETTLED[1]))
     spawn = multiprocessing.get_context("spawn")
     with ProcessPoolExecutor(min(os.cpu_count() or 1, 4), mp_context=spawn) as pool:
         results = list(pool.map(run, *zip(*asked, strict=True)))
@@ -69,8 +72,14 @@ def steady(scale=1.0, creepages=CREEPAGES, load=WHEEL_LOAD, **start_values):
 
 
 def steady_curves():
-    """The steady curves of the page: on wet rail, without temperature, in the leaves."""
-    return {AS_IT_IS: steady(), CONSTANT: steady(**VARIANTS[CONSTANT]), "leaves": steady(scale=min(LEAVES.scales))}
+    """The steady curves of the page: on wet rail, without temperature, in the leaves, and on a fine grid."""
+    fine = steady(patch_nodes=34, patch_strips=21)
+    return {
+        "fine": fine,
+        AS_IT_IS: steady(),
+        CONSTANT: steady(**VARIANTS[CONSTANT]),
+        "leaves": steady(scale=min(LEAVES.scales)),
+    }
 
 
 def most(curve):

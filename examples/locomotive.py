@@ -51,7 +51,7 @@ GRADIENT = 0.012
 RESISTANCE = (1.5e-3, 2e-5, 3e-6)  # over the weight; per speed [s/m] and its square
 HALF_LENGTH = 0.5  # m, of the piece of rail of a unit
 DIFFUSIVITY = 1.44e-5  # m2/s, of the rail
-# A coarse patch, which is quick: on 34 by 21 cells adhesion differs by 1 % at most, at the creepages of the page.
+# A coarse patch, which is quick; the page has the adhesion on a fine one beside it.
 CONTACT = WET_RAIL | {
     "patch_nodes": 16,
     "patch_strips": 11,
@@ -159,14 +159,18 @@ class Wheelset:
 class Locomotive:
     """Four wheelsets one behind the other on a rail, and the train behind them."""
 
-    def __init__(self, controllers, rail=LEAVES, chained=True, **start_values):
-        """With a controller for each wheelset; without the chain all of them find the rail of the first."""
+    def __init__(self, controllers, rail=LEAVES, chained=True, noise=0.0, **start_values):
+        """With a controller for each wheelset; without the chain all of them find the rail of the first.
+
+        The speeds that the controllers see have white noise of a standard deviation [m/s], at the tread.
+        """
         depths = skin_depths(AXLES, HALF_LENGTH, SPEED, DIFFUSIVITY)
         self.wheelsets = [
             Wheelset(number, controller, SPEED, float(depth), **start_values)
             for number, (controller, depth) in enumerate(zip(controllers, depths, strict=True))
         ]
         self.rail, self.chained = rail, chained
+        self.noise, self.random = noise / WHEEL_RADIUS, np.random.default_rng(1)
         self.speed, self.time, self.distance = SPEED, 0.0, 0.0
         self.carried = np.zeros(4)  # forces that the suspension has followed
         self.resistance_work = self.climb_work = 0.0
@@ -185,9 +189,8 @@ class Locomotive:
         """Let the controllers demand torques."""
         driver = STARTING_EFFORT / 4.0 * WHEEL_RADIUS * min(self.time / DEMAND_RISES, 1.0)
         for wheelset in self.wheelsets:
-            wheelset.demand = wheelset.controller.torque(
-                self.time, wheelset.spin, self.speed, wheelset.motor_mean, driver
-            )
+            seen = wheelset.spin + self.noise * self.random.standard_normal()
+            wheelset.demand = wheelset.controller.torque(self.time, seen, self.speed, wheelset.motor_mean, driver)
             wheelset.motor_mean = 0.0
 
     def advance(self, step):

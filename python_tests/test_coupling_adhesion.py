@@ -15,7 +15,7 @@ sys.path.insert(0, str(REPOSITORY / "examples"))
 
 import adhesion_runs as model  # noqa: E402
 import locomotive  # noqa: E402
-from adhesion_runs import AS_IT_IS, COLD, CONSTANT, creepage, during, effort  # noqa: E402
+from adhesion_runs import AS_IT_IS, COLD, CONSTANT, NOISY, creepage, during, effort  # noqa: E402
 
 WIDTH = 0.02  # m
 LINE = {"contact_model": 1, "contact_width": WIDTH}
@@ -101,13 +101,16 @@ def test_step_does_not_matter():
 
 
 def test_search_finds_the_top():
-    """The search pulls the most that the rail gives, but for 1.5 %: its own swing, and what is left of its way there.
+    """The search pulls the most that the rail gives, but for 1.5 %: its swing, and what is left of its way there.
+
+    So it does with noise of 5 mm/s on the speeds that it sees.
 
     No wheelset is where the steady curve is more than 2 % below its top, though it is told nothing about the curve; and
     none of them pulls more than friction lets it, to 0.5 %: that is how much adhesion depends on the load.
     """
     limit = model.most(curve())
     assert 0.985 * limit < mean("search") < 1.005 * limit
+    assert 0.985 * limit < mean("search", NOISY) < 1.005 * limit
     table, _ = run("search")
     slips = creepage(table)[during(table, *SETTLED)].mean(axis=0)
     adhesion = np.interp(slips, model.CREEPAGES, curve()[0])
