@@ -29,7 +29,7 @@ WET_RAIL = {
     "friction_hot": 0.1404,
     "friction_temperature_cold": 273.15,
     "friction_temperature_hot": 673.15,
-    "layer_compliance": 1.60e-13,
+    "layer_compliance": 1.54e-13,
 }
 GRAVITY = 9.81
 AMBIENT = 293.15  # K
