@@ -15,6 +15,7 @@ from adhesion_runs import (
     most,
     summary,
 )
+from fitting import read_measured
 from helpers import BLACK, BLUE, ORANGE, RED, save
 from locomotive import AXLES, SPEED, STOP
 
@@ -22,13 +23,6 @@ GREY, BROWN = "#6b7680", "#a98f4f"
 COLOURS = dict(zip(CONTROLLERS, (BLACK, BLUE, RED, ORANGE), strict=True))
 # The search is drawn last, over the others.
 DRAWN = tuple(CONTROLLERS)[::-1]
-# Engel, Beck and Alders 1998, Eurosprinter 127 001 on wet rail at 10 m/s, means of digitised points: creepage [%], F/N.
-MEASURED = np.array(
-    [
-        (0.55, 0.254), (0.74, 0.257), (0.96, 0.289), (1.40, 0.290), (2.24, 0.306), (2.72, 0.310), (3.77, 0.305),
-        (4.68, 0.297), (6.28, 0.304), (8.9, 0.284), (11.3, 0.237), (15.5, 0.222), (20.7, 0.209),
-    ]
-).T  # fmt: skip
 
 
 def shade_leaves(axes, table):
@@ -66,7 +60,9 @@ def draw_plane(axes, plain, curves):
     axes.plot(percent, curves[AS_IT_IS][0], color=GREY, linewidth=2.2, label="steady curve, wet rail")
     axes.plot(percent, curves[CONSTANT][0], color=GREY, linestyle=":", label="the same without temperature")
     axes.plot(percent, curves["leaves"][0], color=BROWN, label="steady curve, leaves")
-    axes.plot(*MEASURED, "x", color="#8c96a0", markersize=5, linestyle="none", label="measured, Engel et al. 1998")
+    measured = read_measured("eurosprinter.csv")
+    points = (measured["creepage"], measured["traction_coefficient"])
+    axes.plot(*points, "x", color="#8c96a0", markersize=5, linestyle="none", label="measured, Engel et al. 1998")
     for name in DRAWN:
         table, shown = plain[name], during(plain[name], 1.5)
         slips = 100.0 * creepage(table)[shown, 0]

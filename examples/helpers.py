@@ -16,6 +16,7 @@ import matplotlib.pyplot as plt
 REPOSITORY = Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(REPOSITORY / "python"))
 
+import wheelrail  # noqa: E402
 from wheelrail import Instance  # noqa: E402
 from wheelrail.plots import BLACK, BLUE, GREEN, ORANGE, RED, SKY, STYLE  # noqa: E402
 
@@ -24,7 +25,7 @@ RESULTS = REPOSITORY / "results"
 WHEEL_RADIUS = 0.46  # m, the component's default
 
 __all__ = ["BLACK", "BLUE", "FMU", "GREEN", "ORANGE", "RED", "REPOSITORY", "RESULTS", "SKY", "WHEEL_RADIUS", "Instance"]
-__all__ += ["markdown_table", "profile", "reused", "save", "show", "write_csv", "write_tables"]
+__all__ += ["markdown_table", "profile", "reused", "save", "show", "wheelrail", "write_csv", "write_tables"]
 
 plt.rcParams.update(STYLE)
 

@@ -11,26 +11,12 @@ A master steps speeds with the contacts' last forces, then the contacts with the
 import math
 
 import numpy as np
-from helpers import FMU, Instance
+from helpers import FMU, Instance, wheelrail
 from rail_trail import Trail, skin_depths
 from slip_control import PERIOD
 
 # Wet rail under a Eurosprinter, as fitted to the creep curve that was measured with one: presets/eurosprinter.toml.
-WET_RAIL = {
-    "contact_model": 2,
-    "largest_load": 106.7e3,
-    "wheel_radius": 0.625,
-    "rail_transverse_curvature": 0.562835,
-    "wheel_transverse_curvature": 0.0,
-    "heat_partition": 0.5,
-    "contact_thermal_resistance": 1e12,
-    "friction_cold": 0.331,
-    "friction_law": 2,
-    "friction_hot": 0.1404,
-    "friction_temperature_cold": 273.15,
-    "friction_temperature_hot": 673.15,
-    "layer_compliance": 1.54e-13,
-}
+WET_RAIL = wheelrail.preset("eurosprinter")
 GRAVITY = 9.81
 AMBIENT = 293.15  # K
 SPEED = 10.0  # m/s at the start
