@@ -22,8 +22,22 @@ impl Tangential {
             self.forget();
         }
         match end {
-            Ended::Converged(_) => Ended::Converged(iterations),
+            Ended::Converged(_) => {
+                self.take_saturation(shear);
+                Ended::Converged(iterations)
+            }
             Ended::Stalled(_) => Ended::Stalled(iterations),
+        }
+    }
+
+    /// φ = −τ/(μ p) in place of φ(s), the same at the solution. On compliant bodies with a small ε the step of τ that may be left out is one of
+    /// φ(s) that may not.
+    fn take_saturation(&mut self, shear: &[f64]) {
+        for (i, shear) in shear.iter().enumerate() {
+            let bound = self.friction[i] * self.pressure[i];
+            if bound > 0.0 {
+                self.saturation[i] = (-(shear + self.change[i]) / bound).clamp(-1.0, 1.0);
+            }
         }
     }
 
