@@ -31,7 +31,9 @@ pub struct LayerLaw {
 pub struct Yielding {
     /// The bound over the pressure.
     pub coefficient: f64,
-    /// Its derivative by μ of the surfaces: 1, or 0 where the layer flows only.
+    /// The layer's own bound over the pressure; 0 without one.
+    pub cap: f64,
+    /// Derivative of the coefficient by μ of the surfaces: 1, or 0 where the layer flows only.
     pub by_friction: f64,
     /// By u_pl, `1/m`: 0 where the surfaces slip.
     pub by_flow: f64,
@@ -56,6 +58,7 @@ impl Yielding {
     pub fn none(coefficient: f64) -> Yielding {
         Yielding {
             coefficient,
+            cap: 0.0,
             by_friction: 1.0,
             by_flow: 0.0,
             by_pressure: 0.0,
@@ -98,10 +101,13 @@ impl LayerLaw {
 
     /// The bound at a node of this μ and pressure, and u_pl of a particle that brings `arrived` `m` and moves with this slip velocity, `m/s`.
     pub fn bound(&self, (coefficient, pressure): (f64, f64), arrived: f64, speed: f64) -> Yielding {
-        let none = Yielding::none(coefficient);
         let (bound, time) = (coefficient * pressure, self.time());
         let first = self.strength + self.hardening * arrived;
         let last = first + self.hardening * time * speed;
+        let none = Yielding {
+            cap: if pressure > 0.0 { last / pressure } else { 0.0 },
+            ..Yielding::none(coefficient)
+        };
         if bound <= first {
             // The surfaces slip.
             Yielding {

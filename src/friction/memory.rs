@@ -1,5 +1,6 @@
 //! What the rail remembers of the friction that it has felt: the state of [`super::path`].
 
+use super::PointLaw;
 use crate::parameters::Parameters;
 use serde::{Deserialize, Serialize};
 
@@ -43,8 +44,10 @@ pub struct Memory {
     pub now: Brought,
     /// At its beginning. The derivatives of the step need it.
     pub before: Brought,
-    /// The coefficient that bounds the shear, by μ(θ) at the node's temperature.
+    /// dμ of the surfaces by μ(θ) at the node's temperature.
     pub share: Vec<f64>,
+    /// Bound of a layer that may flow, over the pressure; 0 without one.
+    pub cap: Vec<f64>,
 }
 
 impl Memory {
@@ -55,6 +58,7 @@ impl Memory {
             now: Brought::new(nodes),
             before: Brought::new(nodes),
             share: vec![1.0; nodes],
+            cap: vec![0.0; nodes],
         }
     }
 
@@ -65,7 +69,7 @@ impl Memory {
     }
 
     /// The vectors.
-    pub fn vectors(&self) -> [&Vec<f64>; 9] {
+    pub fn vectors(&self) -> [&Vec<f64>; 10] {
         let (now, before) = (&self.now, &self.before);
         [
             &now.friction,
@@ -77,6 +81,7 @@ impl Memory {
             &before.resting,
             &before.flow,
             &self.share,
+            &self.cap,
         ]
     }
 
@@ -86,6 +91,30 @@ impl Memory {
         self.now.copy_from(&other.now);
         self.before.copy_from(&other.before);
         self.share.copy_from_slice(&other.share);
+        self.cap.copy_from_slice(&other.cap);
+    }
+
+    /// μ of a node in contact as a function of its temperature.
+    pub fn point_law(&self, node: usize) -> PointLaw {
+        let share = self.share[node];
+        PointLaw {
+            base: self.now.friction[node] - share * self.now.resting[node],
+            share,
+            cap: self.cap[node],
+        }
+    }
+
+    /// Derivative of the coefficient of a node in contact by μ(θ).
+    pub fn share_at(&self, node: usize) -> f64 {
+        self.point_law(node).share_at(self.now.resting[node])
+    }
+
+    /// Takes μ(θ) of a node in contact at its final temperature. Returns the coefficient.
+    pub fn close(&mut self, node: usize, resting: f64) -> f64 {
+        let law = self.point_law(node);
+        let surfaces = PointLaw { cap: 0.0, ..law }.of((resting, 0.0)).0;
+        (self.now.friction[node], self.now.resting[node]) = (surfaces, resting);
+        law.of((resting, 0.0)).0
     }
 
     /// Begins a step from the memory at its beginning. Rail that has remembered nothing yet has rested, at μ(θ) of the nodes then.

@@ -103,26 +103,51 @@ impl FrictionState<'_> {
     }
 }
 
-/// μ of a point as a function of its temperature at given slip and history: `base` + `share` μ(θ).
+/// μ of a point as a function of its temperature at given slip and history: `base` + `share` μ(θ), but no more than the `cap`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PointLaw {
     /// What does not depend on the temperature.
     pub base: f64,
     /// Share of μ(θ).
     pub share: f64,
+    /// The strength of a layer over the pressure; 0 where there is none.
+    pub cap: f64,
 }
 
 impl PointLaw {
     /// μ, and its derivative, from those of μ(θ).
     pub fn of(&self, (mu, slope): (f64, f64)) -> (f64, f64) {
-        (self.base + self.share * mu, self.share * slope)
+        let surfaces = self.base + self.share * mu;
+        if self.caps(surfaces) {
+            (self.cap, 0.0)
+        } else {
+            (surfaces, self.share * slope)
+        }
+    }
+
+    /// Whether the layer's bound is below that of surfaces of this μ.
+    fn caps(&self, surfaces: f64) -> bool {
+        self.cap > 0.0 && surfaces > self.cap
+    }
+
+    /// The derivative by μ(θ), from μ(θ).
+    pub fn share_at(&self, mu: f64) -> f64 {
+        if self.caps(self.base + self.share * mu) {
+            0.0
+        } else {
+            self.share
+        }
     }
 }
 
 impl Default for PointLaw {
     /// μ(θ).
     fn default() -> PointLaw {
-        PointLaw { base: 0.0, share: 1.0 }
+        PointLaw {
+            base: 0.0,
+            share: 1.0,
+            cap: 0.0,
+        }
     }
 }
 

@@ -98,11 +98,11 @@ pub struct Passed {
 pub struct NodeFriction {
     /// The bound on the shear over the pressure: μ of the surfaces where no layer flows.
     pub coefficient: f64,
-    /// By μ(θ) at the node's temperature.
-    pub share: f64,
     /// μ of the surfaces.
     pub surfaces: f64,
-    /// Of that: by the μ of the node before it.
+    /// Its derivative by μ(θ) at the node's temperature.
+    pub share: f64,
+    /// By the μ of the node before it.
     by_before: f64,
     /// By the magnitude of the slip velocity of the node before it, `s/m`.
     by_speed_before: f64,
@@ -133,6 +133,11 @@ impl NodeFriction {
     /// u_pl, `m`.
     pub fn flow(&self) -> f64 {
         self.layer.flow
+    }
+
+    /// The layer's bound over the pressure; 0 without a layer.
+    pub fn cap(&self) -> f64 {
+        self.layer.cap
     }
 
     /// The coefficient by the node's own slip velocity, `s/m`.
@@ -290,7 +295,7 @@ impl PathLaw {
         };
         NodeFriction {
             coefficient: layer.coefficient,
-            share: layer.by_friction * ((1.0 - fade) * factor),
+            share: (1.0 - fade) * factor,
             surfaces,
             by_before: fade * node.carry,
             by_speed_before: by_felt * (1.0 - self.own) * node.speed_carry,

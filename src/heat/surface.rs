@@ -186,7 +186,8 @@ impl SurfaceCondition<'_> {
         let parameters = self.friction.parameters;
         let (mu, slope) = exchange.law.of(self.friction.coefficient(rise));
         let by_scale = friction::coefficient(parameters, self.friction.ambient + rise).0;
-        let scale = exchange.law.share * common.friction_scale * by_scale + tangent.coefficient;
+        let share = exchange.law.share_at(self.friction.scale * by_scale);
+        let scale = share * common.friction_scale * by_scale + tangent.coefficient;
         let loss = exchange.loss();
         let partition = parameters.heat_partition;
         let source =
@@ -261,7 +262,7 @@ mod tests {
             let parameters = parameters(100.0);
             let response = 1e-7;
             let [dp, ds, dq, dw, du, ambient, friction_scale, coefficient] = changes;
-            let law = |h: f64| PointLaw { base: 0.05 + h * coefficient, share: 0.8 };
+            let law = |h: f64| PointLaw { base: 0.05 + h * coefficient, share: 0.8, cap: 0.0 };
             let sliding = Sliding { speed, power };
             let change = ExchangeChange {
                 pressure: 1e7 * dp,

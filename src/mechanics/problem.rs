@@ -81,8 +81,10 @@ pub struct Tractions<'a> {
     pub flow: &'a mut [f64],
     /// Where μ depends on slip: the magnitude of the law's slip velocity, `m/s`, 0 outside the contact.
     pub speed: &'a mut [f64],
-    /// And the derivative of `friction` by the μ without slip.
+    /// The derivative of `surfaces` by the μ without slip.
     pub share: &'a mut [f64],
+    /// And the bound of a layer over the pressure, 0 without one.
+    pub cap: &'a mut [f64],
     /// Penetration, scaled.
     pub penetration: &'a mut f64,
 }

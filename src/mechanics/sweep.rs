@@ -329,6 +329,7 @@ impl Mechanics {
                 tractions.flow[node] = point.of_slip[row].flow();
                 tractions.speed[node] = point.slip[row].abs();
                 tractions.share[node] = point.of_slip[row].share;
+                tractions.cap[node] = point.of_slip[row].cap();
             }
         }
         Ok(change.max(clamped))
@@ -461,6 +462,7 @@ mod tests {
         flow: Vec<f64>,
         speed: Vec<f64>,
         share: Vec<f64>,
+        cap: Vec<f64>,
         penetration: f64,
     }
 
@@ -476,6 +478,7 @@ mod tests {
                 flow: vec![0.0; NODES],
                 speed: vec![0.0; NODES],
                 share: vec![0.0; NODES],
+                cap: vec![0.0; NODES],
                 penetration: 0.0,
             }
         }
@@ -491,6 +494,7 @@ mod tests {
                 flow: &mut self.flow,
                 speed: &mut self.speed,
                 share: &mut self.share,
+                cap: &mut self.cap,
                 penetration: &mut self.penetration,
             }
         }

@@ -1,7 +1,6 @@
 //! The fields of the contact, all that a step changes, and their trend from step to step.
 
 use crate::contact::line::rail::Rail;
-use crate::friction::PointLaw;
 use crate::friction::memory::Memory;
 use crate::numerics::dense;
 use serde::{Deserialize, Serialize};
@@ -150,20 +149,6 @@ impl Fields {
         }
         self.penetration += factor * other.penetration;
         self.wheel_temperature += factor * other.wheel_temperature;
-    }
-
-    /// Whether the layer's bound is that of a node in contact at the end of a sweep, where friction depends on more than the temperature.
-    pub fn flows(&self, node: usize) -> bool {
-        self.friction[node] < self.memory.now.friction[node]
-    }
-
-    /// μ of a node in contact as a function of its temperature.
-    pub fn point_law(&self, node: usize) -> PointLaw {
-        let share = self.memory.share[node];
-        PointLaw {
-            base: self.friction[node] - share * self.memory.now.resting[node],
-            share,
-        }
     }
 
     /// Modal amplitudes of one column.

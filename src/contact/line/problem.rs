@@ -235,7 +235,7 @@ impl<'a> Problem<'a> {
             let sliding = Sliding::new(fields.slip[node], fields.saturation[node]);
             *exchange = SurfaceExchange::new(self.parameters, pressure, sliding, wheel_rise);
             if of_slip && pressure > 0.0 {
-                exchange.law = fields.point_law(node);
+                exchange.law = fields.memory.point_law(node);
             }
         }
     }
@@ -320,6 +320,7 @@ impl<'a> Problem<'a> {
             flow: &mut fields.memory.now.flow,
             speed: &mut fields.memory.now.speed,
             share: &mut fields.memory.share,
+            cap: &mut fields.memory.cap,
             penetration: &mut fields.penetration,
         };
         (problem, tractions)

@@ -191,6 +191,7 @@ impl<'a> Linearisation<'a> {
             flow: &mut tangent.memory.now.flow,
             speed: &mut tangent.memory.now.speed,
             share: &mut tangent.memory.share,
+            cap: &mut tangent.memory.cap,
             penetration: &mut tangent.penetration,
         };
         let Scratch {
@@ -239,7 +240,7 @@ impl<'a> Linearisation<'a> {
                     sliding: Sliding::tangent((slip, saturation), (tangent.slip[node], tangent.saturation[node])),
                     wheel_rise: wheel_rise_tangent,
                     coefficient: if of_slip && fields.pressure[node] > 0.0 {
-                        tangent.friction[node] - fields.memory.share[node] * tangent.memory.now.resting[node]
+                        tangent.friction[node] - fields.memory.share_at(node) * tangent.memory.now.resting[node]
                     } else {
                         0.0
                     },

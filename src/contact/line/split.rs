@@ -380,12 +380,7 @@ fn close_friction(problem: &Problem, fields: &mut Fields) {
         let resting = law.coefficient(fields.surface_temperature[first + node]).0;
         let mut mu = resting;
         if of_slip && fields.pressure[node] > 0.0 {
-            let flows = fields.flows(node);
-            mu = fields.point_law(node).of((resting, 0.0)).0;
-            fields.memory.now.resting[node] = resting;
-            if !flows {
-                fields.memory.now.friction[node] = mu;
-            }
+            mu = fields.memory.close(node, resting);
         }
         fields.friction[node] = mu;
         if fields.pressure[node] > 0.0 {

@@ -1,7 +1,6 @@
 //! The fields of a patch, all that a step changes, and their trend from step to step.
 
 use super::rail::PatchRail;
-use crate::friction::PointLaw;
 use crate::friction::memory::Memory;
 use crate::heat::strips::StripTemperature;
 use crate::wear::strips::StripWear;
@@ -140,20 +139,6 @@ impl PatchFields {
     pub fn vectors(&self) -> impl Iterator<Item = &Vec<f64>> {
         let rail = self.heat.vectors().into_iter().chain(self.wear.vectors());
         rail.chain(self.on_grid()).chain(self.memory.vectors())
-    }
-
-    /// Whether the layer's bound is that of a cell in contact at the end of a sweep, where friction depends on more than the temperature.
-    pub fn flows(&self, place: usize, index: usize) -> bool {
-        self.friction[place] < self.memory.now.friction[index]
-    }
-
-    /// μ of a cell in contact, by its place on the grid and its index, as a function of its temperature.
-    pub fn point_law(&self, place: usize, index: usize) -> PointLaw {
-        let share = self.memory.share[index];
-        PointLaw {
-            base: self.friction[place] - share * self.memory.now.resting[index],
-            share,
-        }
     }
 
     /// The numbers.

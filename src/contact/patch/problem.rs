@@ -279,7 +279,7 @@ impl<'a> Problem<'a> {
                     SurfaceExchange::default()
                 };
                 if of_slip && pressure > 0.0 {
-                    exchange.law = fields.point_law(place, strip * grid.cells + cell);
+                    exchange.law = fields.memory.point_law(strip * grid.cells + cell);
                 }
             }
         }

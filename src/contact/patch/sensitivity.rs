@@ -304,7 +304,7 @@ impl<'a> Linearisation<'a> {
                     wheel_rise: rise_change,
                     coefficient: if of_slip && fields.pressure[place] > 0.0 {
                         let index = strip * grid.cells + cell;
-                        tangent.friction[place] - fields.memory.share[index] * tangent.memory.now.resting[index]
+                        tangent.friction[place] - fields.memory.share_at(index) * tangent.memory.now.resting[index]
                     } else {
                         0.0
                     },

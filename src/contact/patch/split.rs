@@ -240,12 +240,7 @@ fn close_friction(problem: &Problem, fields: &mut PatchFields, contact: &Contact
             let resting = law.coefficient(fields.heat.surface[index]).0;
             let mut mu = resting;
             if of_slip {
-                let flows = fields.flows(place, index);
-                mu = fields.point_law(place, index).of((resting, 0.0)).0;
-                fields.memory.now.resting[index] = resting;
-                if !flows {
-                    fields.memory.now.friction[index] = mu;
-                }
+                mu = fields.memory.close(index, resting);
             }
             let ratio = if fields.friction[place] > 0.0 {
                 mu / fields.friction[place]

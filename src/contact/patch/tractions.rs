@@ -204,6 +204,7 @@ fn solve_friction(problem: &Problem, fields: &mut PatchFields, scratch: &mut Scr
                     let cell = run.strip * grid.cells + run.first + k;
                     fields.friction[place] = of_slip[index].coefficient;
                     fields.memory.share[cell] = of_slip[index].share;
+                    fields.memory.cap[cell] = of_slip[index].cap();
                     fields.memory.now.friction[cell] = of_slip[index].surfaces;
                     fields.memory.now.speed[cell] = speeds[index];
                     fields.memory.now.flow[cell] = of_slip[index].flow();
@@ -303,6 +304,7 @@ fn slide_on_the_spot(
                     .friction(&path.nodes[index], &Passed::default(), speed, path.pressure[index]);
                 let cell = run.strip * grid.cells + run.first + k;
                 (fields.friction[place], fields.memory.share[cell]) = (friction.coefficient, friction.share);
+                fields.memory.cap[cell] = friction.cap();
                 fields.memory.now.friction[cell] = friction.surfaces;
                 fields.memory.now.speed[cell] = speed;
                 fields.memory.now.flow[cell] = friction.flow();
