@@ -9,8 +9,7 @@
 //!
 //! u_pl = T u_pl + |s| t, but no more than up to τ_c = μ p.
 
-use super::passage::Passage;
-use super::path::PathStep;
+use super::passage::{Passage, PathStep};
 use crate::parameters::Parameters;
 
 /// The layer's law of all nodes in a step, its stresses scaled.

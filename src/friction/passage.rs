@@ -1,5 +1,20 @@
 //! What a particle of the rail brings to a node, and the time that it takes through the cell upstream: see [`super::path`].
 
+/// A step as the particles see it.
+#[derive(Debug, Clone, Copy)]
+pub struct PathStep {
+    /// Δt, `s`; infinite or 0 for steady rolling.
+    pub duration: f64,
+    /// Δ, `m`.
+    pub spacing: f64,
+    /// V, `m/s`; 0 counts as forward.
+    pub speed: f64,
+    /// Elastic displacement of a cell under a shear of the size of the largest pressure, `m`.
+    pub displacement: f64,
+    /// What pressures are scaled with, `Pa`.
+    pub pressure: f64,
+}
+
 /// T, and t/d_c; or their change.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Passage {

@@ -34,6 +34,7 @@ use super::largest_coefficient;
 use super::layer::{LayerLaw, Yielding};
 use super::memory::Path;
 use super::passage::Passage;
+pub use super::passage::PathStep;
 use crate::parameters::Parameters;
 
 /// f(s).
@@ -195,21 +196,6 @@ pub struct PathLaw {
     /// Whether particles come from high indices.
     forward: bool,
     layer: Option<LayerLaw>,
-}
-
-/// A step as the particles see it.
-#[derive(Debug, Clone, Copy)]
-pub struct PathStep {
-    /// Δt, `s`; infinite or 0 for steady rolling.
-    pub duration: f64,
-    /// Δ, `m`.
-    pub spacing: f64,
-    /// V, `m/s`; 0 counts as forward.
-    pub speed: f64,
-    /// Elastic displacement of a cell under a shear of the size of the largest pressure, `m`.
-    pub displacement: f64,
-    /// What pressures are scaled with, `Pa`.
-    pub pressure: f64,
 }
 
 impl PathLaw {

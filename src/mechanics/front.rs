@@ -314,7 +314,8 @@ mod tests {
             gap: 0.01,
         };
         let [first, second] = front.added(&edge);
-        assert!((first.slip - 1.7 * 20.0 * 0.01 / 0.1 * 0.03).abs() < 1e-15);
+        // The layer's share is held at γ = 1.
+        assert!((first.slip - 20.0 * (0.01 / 0.1 + 0.7 * 0.04) * 0.03).abs() < 1e-15);
         assert_eq!(second, Added::default());
     }
 }
