@@ -155,8 +155,8 @@ fn falling(random: &mut Random, parameters: &mut Parameters) {
 }
 
 /// A layer between wheel and rail, elastic, plastic or both: of a strength far below the friction bound to above it, and of a hardening that is
-/// not felt within the contact to one that hardly lets it flow. Not drawn for a line contact, of whose runs with a layer some per cent
-/// fail: docs/limits.md.
+/// not felt within the contact to one that hardly lets it flow. Not drawn for a line contact, some of whose runs with a layer fail:
+/// docs/limits.md.
 fn layer(random: &mut Random, parameters: &mut Parameters) {
     if random.chance(0.3) {
         parameters.layer_compliance = random.decades(1e-14, 1e-12);
