@@ -1,4 +1,4 @@
-//! What friction that falls with slip, and its memory, add to a step of the braking manoeuvre: the median time of a step with the laws over
+//! What friction that falls with slip, its memory, and a layer add to a step of the braking manoeuvre: the median time of a step with the laws over
 //! that without them, the runs side by side.
 
 mod braking;
@@ -27,19 +27,33 @@ fn main() {
             friction_memory_distance: 3e-6,
             ..falling.clone()
         };
-        let [without, falling, remembering] = side_by_side([&without, &falling, &remembering]);
+        let layered = Parameters {
+            layer_compliance: 1e-13,
+            ..without.clone()
+        };
+        // Below the peak of the friction bound, so that it flows.
+        let flowing = Parameters {
+            layer_yield_stress: 100e6,
+            layer_hardening: 1e12,
+            ..layered.clone()
+        };
+        let [without, falling, remembering, layered, flowing] =
+            side_by_side([&without, &falling, &remembering, &layered, &flowing]);
         println!(
-            "{name}: a step by temperature alone {without:.1} µs, with the law of slip {:.3} times that, with memory {:.3} times",
+            "{name}: a step by temperature alone {without:.1} µs; with the law of slip {:.3} times that, with memory {:.3}; with an elastic \
+             layer {:.3}, with one that flows {:.3}",
             falling / without,
-            remembering / without
+            remembering / without,
+            layered / without,
+            flowing / without
         );
     }
 }
 
 /// Median time of a step of each, `µs`.
-fn side_by_side(parameters: [&Parameters; 3]) -> [f64; 3] {
+fn side_by_side<const N: usize>(parameters: [&Parameters; N]) -> [f64; N] {
     let mut runs = parameters.map(|parameters| Braking::through(parameters, braking::manoeuvre()));
-    let mut times = [(); 3].map(|()| Vec::with_capacity(STEPS));
+    let mut times = [(); N].map(|()| Vec::with_capacity(STEPS));
     for turn in 0..STEPS / TURN {
         for place in 0..runs.len() {
             let next = (turn + place) % runs.len();

@@ -54,6 +54,7 @@ pub struct Yielding {
 
 impl Yielding {
     /// No layer that could.
+    #[inline(always)]
     pub fn none(coefficient: f64) -> Yielding {
         Yielding {
             coefficient,

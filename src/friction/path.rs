@@ -178,6 +178,52 @@ impl NodeFriction {
         };
         (linked, passed)
     }
+
+    /// [`NodeFriction::change`] of several changes side by side: of what is passed on, and in place of the slip velocities the linked changes
+    /// of the coefficient. Each waits for that of the node before: side by side they wait together. `flows` says whether a layer may.
+    pub fn changes<const N: usize>(
+        &self,
+        flows: bool,
+        passed: &mut PassedTogether<N>,
+        speed: &mut [f64; N],
+        pressure: &[f64; N],
+    ) {
+        for k in 0..N {
+            let before = Passed {
+                friction: passed.friction[k],
+                speed: passed.speed[k],
+                flow: passed.flow[k],
+            };
+            passed.speed[k] = speed[k];
+            if flows {
+                let (linked, now) = self.change(&before, speed[k], pressure[k]);
+                (speed[k], passed.friction[k], passed.flow[k]) = (linked, now.friction, now.flow);
+            } else {
+                let linked = self.by_before * before.friction + self.by_speed_before * before.speed;
+                passed.friction[k] = linked + self.by_speed * speed[k];
+                speed[k] = linked;
+            }
+        }
+    }
+}
+
+/// [`Passed`] of several changes side by side.
+#[derive(Debug, Clone, Copy)]
+pub struct PassedTogether<const N: usize> {
+    friction: [f64; N],
+    speed: [f64; N],
+    flow: [f64; N],
+}
+
+impl<const N: usize> Default for PassedTogether<N> {
+    fn default() -> Self {
+        let nothing = [0.0; N];
+        PassedTogether {
+            friction: nothing,
+            speed: nothing,
+            flow: nothing,
+        }
+    }
 }
 
 /// The law of all nodes in a step.
@@ -266,7 +312,14 @@ impl PathLaw {
         self.own * speed + (1.0 - self.own) * (node.speed + node.speed_carry * speed_before)
     }
 
+    /// Whether a layer may flow.
+    pub fn flows(&self) -> bool {
+        self.layer.is_some()
+    }
+
     /// μ at a node with this slip velocity `m/s` and pressure, after a node that passes on the given.
+    // Called, it copies its result: 3 % of a step.
+    #[inline(always)]
     pub fn friction(&self, node: &PathNode, before: &Passed, speed: f64, pressure: f64) -> NodeFriction {
         let felt = self.felt(node, before.speed, speed);
         let (factor, factor_slope) = self.slip.factor(felt);

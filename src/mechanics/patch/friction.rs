@@ -8,7 +8,7 @@
 mod on_path;
 mod tangent;
 
-pub use on_path::{Linked, PathOfCells};
+pub use on_path::PathOfCells;
 pub use tangent::{FrictionChange, LEAST_CHANGE};
 
 use super::blocks::{Blocks, OwnResponse};
@@ -337,9 +337,8 @@ impl Friction {
             behind: if response.forward { -1 } else { 1 },
         };
         let n = problem.contact.cells();
-        let path = problem.path.as_ref().and_then(|path| self.on_path.linked(path));
         self.blocks
-            .factorise(problem.contact, &self.rows[..n], problem.edge, &own, path)
+            .factorise(problem.contact, &self.rows[..n], problem.edge, &own)
     }
 
     /// The correction of the shear on the grid. Returns the iterations that it took.

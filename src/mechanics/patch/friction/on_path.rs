@@ -3,7 +3,6 @@
 
 use crate::friction::path::{NodeFriction, Passed, PathLaw, PathNode};
 use crate::mechanics::patch::law::{Cell, Row, Scheme, Vector, dot, outer};
-use std::ops::Range;
 
 /// The law of μ of all cells.
 #[derive(Clone, Copy)]
@@ -114,46 +113,5 @@ impl OnPath {
     pub(super) fn keep(&mut self, index: usize, (ahead, behind): (Vector, Vector)) {
         let [by_ahead, by_behind] = self.by_slip[index];
         self.change[index] = dot(by_ahead, ahead) + dot(by_behind, behind);
-    }
-
-    /// What links the cells of a strip; none where μ does not remember.
-    pub(super) fn linked<'a>(&'a self, path: &PathOfCells<'a>) -> Option<Linked<'a>> {
-        path.law.remembers().then_some(Linked {
-            law: path.law,
-            pressure: path.pressure,
-            friction: &self.friction,
-            by_slip: &self.by_slip,
-        })
-    }
-}
-
-/// How μ of the cells of a strip follows from the slip of those before them.
-#[derive(Clone, Copy)]
-pub struct Linked<'a> {
-    law: PathLaw,
-    pressure: &'a [f64],
-    friction: &'a [NodeFriction],
-    by_slip: &'a [[Vector; 2]],
-}
-
-impl Linked<'_> {
-    /// The changes of the bounds of a run's cells by the slip of the cells before them, from the change of the slip of a cell: its component,
-    /// ahead and behind.
-    pub fn follow(
-        &self,
-        run: Range<usize>,
-        slip: impl Fn(usize) -> (usize, f64, f64),
-        mut take: impl FnMut(usize, f64),
-    ) {
-        let mut before = Passed::default();
-        for line in self.law.order(run.len()) {
-            let index = run.start + line;
-            let (friction, [by_ahead, by_behind]) = (&self.friction[index], self.by_slip[index]);
-            let (component, ahead, behind) = slip(line);
-            let speed = by_ahead[component] * ahead + by_behind[component] * behind;
-            let (by_before, passed) = friction.change(&before, speed, 0.0);
-            take(line, self.pressure[index] * by_before);
-            before = passed;
-        }
     }
 }
