@@ -23,7 +23,11 @@ impl Tangential {
         }
         match end {
             Ended::Converged(_) => {
-                self.take_saturation(shear);
+                // Stiff bodies need it not, and keep the digits that they had before there was a layer.
+                let layer = problem.edge.front.near_field.layer > 0.0;
+                if layer || problem.path.is_some() {
+                    self.take_saturation(shear);
+                }
                 Ended::Converged(iterations)
             }
             Ended::Stalled(_) => Ended::Stalled(iterations),
