@@ -8,7 +8,7 @@ from scipy.special import chdtri, ndtri
 
 BASE = next(name for name, settings in SCENARIOS.items() if settings == AS_IT_IS)
 ALONE = next(name for name, settings in SCENARIOS.items() if settings["weather"] == 0.0)
-LIMIT = 0.3e-3  # m, taken as an example: about what a cycle of grinding takes off
+LIMIT = 0.3e-3  # m, an example of a limit
 HERMITE = 60  # polynomials for the wear over the weather
 MICROMETRE = 1e-6
 COLOURS = dict(zip(SCENARIOS, (BLACK, GREEN, BLUE, ORANGE, RED, SKY), strict=True))

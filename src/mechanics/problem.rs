@@ -75,7 +75,7 @@ pub struct Tractions<'a> {
     pub saturation: &'a mut [f64],
     /// μ; where a layer flows, its bound over the pressure.
     pub friction: &'a mut [f64],
-    /// Where μ depends on more than the temperature: μ of the surfaces.
+    /// Where μ depends on more than the temperature: μ of the surfaces, of the nodes in contact; that of the others stays.
     pub surfaces: &'a mut [f64],
     /// u_pl of a layer that flows, `m`, 0 outside the contact.
     pub flow: &'a mut [f64],

@@ -271,7 +271,6 @@ impl Mechanics {
             if problem.path.is_some() {
                 tractions.speed.fill(0.0);
                 tractions.flow.fill(0.0);
-                tractions.surfaces.copy_from_slice(problem.friction);
             }
             return Ok(clamped);
         }
@@ -322,7 +321,6 @@ impl Mechanics {
         if problem.path.is_some() {
             tractions.speed.fill(0.0);
             tractions.flow.fill(0.0);
-            tractions.surfaces.copy_from_slice(problem.friction);
             for (row, &node) in self.nodes.iter().enumerate() {
                 tractions.friction[node] = point.friction[row];
                 tractions.surfaces[node] = point.of_slip[row].surfaces;

@@ -83,3 +83,22 @@ proptest! {
         prop_assert!(compared.unwrap() >= 150);
     }
 }
+
+/// What the rail ahead of the contact remembers is carried in by more of it at a higher speed.
+#[test]
+fn sensitivities_of_a_line_to_what_the_rail_ahead_remembers() {
+    let parameters = Parameters {
+        friction_law: FrictionLaw::Constant,
+        wheel: Wheel::Rigid,
+        strip_half_length: 0.3,
+        ..Parameters::default()
+    };
+    let mut inputs = rolling(2.0, [-0.005, 0.0, 0.0]);
+    (
+        inputs.lateral_creepage,
+        inputs.spin_creepage,
+        inputs.lateral_speed,
+        inputs.spin_rate,
+    ) = (0.0, 0.0, 0.0, 0.0);
+    assert!(check(falling(parameters, [0.3, 0.1, 3e-7]), inputs, 1e-3).unwrap() >= 96);
+}
