@@ -54,6 +54,8 @@ def main():
     for folder in (SOURCE, output):
         shutil.rmtree(folder, ignore_errors=True)
     shutil.copytree(update_docs.REPOSITORY / "docs", SOURCE)
+    # Where docs/presets.md, seen from there, has them.
+    shutil.copytree(update_docs.REPOSITORY / "presets", SOURCE.parent / "presets", dirs_exist_ok=True)
     if not (SOURCE / "performance.md").exists():
         (SOURCE / "performance.md").write_text(PERFORMANCE)
     generated = SOURCE / "generated"

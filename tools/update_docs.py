@@ -23,8 +23,9 @@ VARIABLES = REPOSITORY / "docs" / "variables.md"
 INDEX = REPOSITORY / "docs" / "index.md"
 PAGE = REPOSITORY / "modelDescription" / "documentation" / "index.html"
 VERIFICATION = REPOSITORY / "target" / "verification.txt"
-TABLED = ("stiff", "hunting", "adhesion", "maintenance")
-COUPLING_PAGES = tuple(REPOSITORY / "docs" / "couplings" / f"{name}.md" for name in TABLED)
+STIFF, *_ = COUPLING_PAGES = tuple(
+    REPOSITORY / "docs" / "couplings" / f"{name}.md" for name in ("stiff", "hunting", "adhesion", "maintenance")
+)
 MEASUREMENTS = REPOSITORY / "docs" / "measurements.md"
 MEASURED = ("measurements_eurosprinter.md", "measurements_twin_disc.md")
 PAPER_CASES = REPOSITORY / "results" / "paper_cases.csv"
