@@ -3,6 +3,7 @@
 pub mod coulomb;
 pub mod layer;
 pub mod memory;
+mod node;
 mod passage;
 pub mod path;
 

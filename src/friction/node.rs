@@ -1,0 +1,165 @@
+//! The friction law at one node of a path, and what a particle takes from there to the next one: see [`super::path`].
+
+use super::layer::Yielding;
+
+/// The law at a node for given temperature, all that the slip in the step does not change.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct PathNode {
+    /// M.
+    pub(super) steady: f64,
+    /// T μ without the share of the node before it.
+    pub(super) arrived: f64,
+    /// Share of the μ of the node before it.
+    pub(super) carry: f64,
+    /// T s without the share of the node before it, `m/s`.
+    pub(super) speed: f64,
+    /// Share of the slip velocity of the node before it.
+    pub(super) speed_carry: f64,
+    /// T u_pl without the share of the node before it, `m`.
+    pub(super) flow: f64,
+    /// Share of the u_pl of the node before it.
+    pub(super) flow_carry: f64,
+}
+
+/// What a particle takes from a node in contact to the next one, or a change of it.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Passed {
+    /// μ of the surfaces.
+    pub friction: f64,
+    /// Magnitude of the slip velocity, `m/s`.
+    pub speed: f64,
+    /// u_pl, `m`.
+    pub flow: f64,
+}
+
+/// μ at a node, and its derivatives.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct NodeFriction {
+    /// The bound on the shear over the pressure: μ of the surfaces where no layer flows.
+    pub coefficient: f64,
+    /// μ of the surfaces.
+    pub surfaces: f64,
+    /// Its derivative by μ(θ) at the node's temperature.
+    pub share: f64,
+    /// By the μ of the node before it.
+    pub(super) by_before: f64,
+    /// By the magnitude of the slip velocity of the node before it, `s/m`.
+    pub(super) by_speed_before: f64,
+    /// By that of its own, `s/m`.
+    pub(super) by_speed: f64,
+    /// The layer.
+    pub(super) layer: Yielding,
+    /// Derivative of u_pl by that of the node before it.
+    pub(super) flow_by_before: f64,
+}
+
+impl Default for NodeFriction {
+    fn default() -> NodeFriction {
+        NodeFriction {
+            coefficient: 0.0,
+            share: 0.0,
+            surfaces: 0.0,
+            by_before: 0.0,
+            by_speed_before: 0.0,
+            by_speed: 0.0,
+            layer: Yielding::none(0.0),
+            flow_by_before: 0.0,
+        }
+    }
+}
+
+impl NodeFriction {
+    /// u_pl, `m`.
+    pub fn flow(&self) -> f64 {
+        self.layer.flow
+    }
+
+    /// The layer's bound over the pressure; 0 without a layer.
+    pub fn cap(&self) -> f64 {
+        self.layer.cap
+    }
+
+    /// The coefficient by the node's own slip velocity, `s/m`.
+    pub fn by_speed(&self) -> f64 {
+        self.layer.by_friction * self.by_speed + self.layer.by_flow * self.layer.flow_by_speed
+    }
+
+    /// The coefficient by the node's own pressure.
+    pub fn by_pressure(&self) -> f64 {
+        self.layer.by_pressure
+    }
+
+    /// What the node passes on.
+    pub fn passed(&self, speed: f64) -> Passed {
+        Passed {
+            friction: self.surfaces,
+            speed,
+            flow: self.layer.flow,
+        }
+    }
+
+    /// Changes of the coefficient with those of what comes from the node before, and of what it passes on with those of its own slip velocity
+    /// and pressure besides.
+    pub fn change(&self, before: &Passed, speed: f64, pressure: f64) -> (f64, Passed) {
+        let layer = &self.layer;
+        let friction = self.by_before * before.friction + self.by_speed_before * before.speed;
+        let flow = self.flow_by_before * before.flow;
+        let linked = layer.by_friction * friction + layer.by_flow * flow;
+        let friction = friction + self.by_speed * speed;
+        let passed = Passed {
+            friction,
+            speed,
+            flow: flow
+                + layer.flow_by_speed * speed
+                + layer.flow_by_friction * friction
+                + layer.flow_by_pressure * pressure,
+        };
+        (linked, passed)
+    }
+
+    /// [`NodeFriction::change`] of several changes side by side: of what is passed on, and in place of the slip velocities the linked changes
+    /// of the coefficient. Each waits for that of the node before: side by side they wait together. `flows` says whether a layer may.
+    pub fn changes<const N: usize>(
+        &self,
+        flows: bool,
+        passed: &mut PassedTogether<N>,
+        speed: &mut [f64; N],
+        pressure: &[f64; N],
+    ) {
+        for k in 0..N {
+            let before = Passed {
+                friction: passed.friction[k],
+                speed: passed.speed[k],
+                flow: passed.flow[k],
+            };
+            passed.speed[k] = speed[k];
+            if flows {
+                let (linked, now) = self.change(&before, speed[k], pressure[k]);
+                (speed[k], passed.friction[k], passed.flow[k]) = (linked, now.friction, now.flow);
+            } else {
+                let linked = self.by_before * before.friction + self.by_speed_before * before.speed;
+                passed.friction[k] = linked + self.by_speed * speed[k];
+                speed[k] = linked;
+            }
+        }
+    }
+}
+
+/// [`Passed`] of several changes side by side.
+#[derive(Debug, Clone, Copy)]
+pub struct PassedTogether<const N: usize> {
+    pub(super) friction: [f64; N],
+    pub(super) speed: [f64; N],
+    pub(super) flow: [f64; N],
+}
+
+impl<const N: usize> Default for PassedTogether<N> {
+    fn default() -> Self {
+        let nothing = [0.0; N];
+        PassedTogether {
+            friction: nothing,
+            speed: nothing,
+            flow: nothing,
+        }
+    }
+}
