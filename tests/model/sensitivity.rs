@@ -5,7 +5,7 @@ use proptest::prelude::*;
 use wheelrail::Error;
 use wheelrail::parameters::{ContactModel, FrictionLaw, Parameters, SlipSource, Wheel, WheelHeating};
 use wheelrail::settings::Settings;
-use wheelrail::signals::{INPUTS, Inputs, OUTPUTS, OutputKind, Outputs};
+use wheelrail::signals::{INPUTS, Inputs, OUTPUTS, OutputKind, OutputSignal, Outputs};
 use wheelrail::wheel_rail::{Model, State, Workspace};
 
 /// Relative change of the inputs in the step that is differentiated. Without it the operator split would rest after two
@@ -15,6 +15,12 @@ const MOVE: f64 = 0.02;
 /// split rests at the fourth iteration (measured: 3e-4 off at the third, 2e-7 at the fourth).
 const LARGE_MOVE: f64 = -0.1;
 const LONG: f64 = 0.05;
+/// Derivatives that are compared at least, of the 232 and 348 that there are: the rest crosses a corner. In 700 random cases of each contact
+/// they were 87 and 145 at least, 219 and 232 in all but one each.
+pub const LEAST_OF_A_LINE: usize = 64;
+pub const LEAST_OF_A_PATCH: usize = 128;
+/// Share of Coulomb's bound above which a node slides: 1 but for what the solvers leave.
+const SLIDES: f64 = 1.0 - 1e-9;
 
 fn settled(model: &Model, workspace: &mut Workspace, inputs: &Inputs, step: f64) -> State {
     try_settle(model, workspace, inputs, step).unwrap()
@@ -35,6 +41,16 @@ fn nominal(model: &Model, input: usize) -> f64 {
         "creepage" => 1e-3,
         "wheel_speed" | "vehicle_speed" if model.parameters().slip_source == SlipSource::VehicleSpeed => 1e-2,
         _ => INPUTS[input].nominal,
+    }
+}
+
+/// Size of an output in a step, that deviations are measured by. A total is judged by what the step adds to it: of its nominal value, that of a
+/// whole run, a step is so small a part that a corner of its rate would not show.
+fn size(output: &OutputSignal, before: &State, after: &State) -> f64 {
+    let value = (output.get)(&after.outputs);
+    match output.kind {
+        OutputKind::Total => (value - (output.get)(&before.outputs)).abs(),
+        OutputKind::Instantaneous | OutputKind::Counted => output.nominal.max(value.abs()),
     }
 }
 
@@ -63,14 +79,17 @@ fn difference(
     let h = share * nominal;
     let (here, ahead, behind) = (run(0.0)?, run(h)?, run(-h)?);
     let (further_ahead, further_behind) = (run(2.0 * h)?, run(-2.0 * h)?);
-    let in_contact = |state: &State| -> Vec<bool> {
+    // Several nodes that begin to slide one after the other may hide their corners from the differences.
+    let sets = |state: &State| -> Vec<(bool, bool)> {
         let nodes = model.contact_nodes(state);
-        nodes.iter().map(|node| node.pressure > 0.0).collect()
+        nodes
+            .iter()
+            .map(|node| (node.pressure > 0.0, node.saturation.abs() > SLIDES))
+            .collect()
     };
-    let same_set = |a: &State, b: &State| in_contact(a) == in_contact(b);
     let smooth_set = [&ahead, &behind, &further_ahead, &further_behind]
         .iter()
-        .all(|state| same_set(&here, state));
+        .all(|state| sets(&here) == sets(state));
     let mut smooth = Vec::new();
     let mut derivative = Vec::new();
     for output in OUTPUTS {
@@ -87,7 +106,7 @@ fn difference(
         // A corner shows in the first or second differences over one and two steps, wherever it lies between.
         let further = further_ahead - further_behind;
         let further_curvature = further_ahead - 2.0 * c + further_behind;
-        let allowed = 3e-5 * further.abs() + 1e-5 * share * output.nominal.max(c.abs());
+        let allowed = 3e-5 * further.abs() + 1e-5 * share * size(output, state, &here);
         smooth.push(
             smooth_set
                 && (further - 2.0 * (forward + backward)).abs() <= allowed
@@ -146,7 +165,7 @@ pub fn check(parameters: Parameters, inputs: Inputs, step: f64) -> Result<usize,
         let (differences, smooth) = difference(&model, &mut workspace, &before, &inputs, (row, step))?;
         for (index, output) in OUTPUTS.iter().enumerate() {
             let exact = (output.get)(&sensitivities[row]);
-            let scale = output.nominal.max((output.get)(&state.outputs).abs()) / nominal(&model, row);
+            let scale = size(output, &before, &state) / nominal(&model, row);
             if !smooth[index] {
                 continue;
             }
@@ -215,9 +234,33 @@ proptest! {
             incoming_wear_depth: 2e-7,
             ..Inputs::default()
         };
-        // In a long step what comes in reaches the contact and the other end. 192 pairs; the rest crosses a corner.
+        // In a long step what comes in reaches the contact and the other end.
         let step = if long { LONG } else { 1e-3 };
-        prop_assert!(check(parameters, inputs, step).unwrap() >= 96);
+        let compared = check(parameters, inputs, step).unwrap();
+        prop_assert!(compared >= LEAST_OF_A_LINE, "{compared}");
+    }
+}
+
+/// [`check`] where the step rests at its settings: how many derivatives were compared. Settings this tight are no promise of the solvers; what is
+/// promised is that the same steps succeed at those that everybody has, and that is asserted where they fail at the tight ones. Not of a line on a
+/// layer, which may refuse a step: docs/limits.md says where.
+pub fn check_where_it_rests(parameters: Parameters, inputs: Inputs, step: f64) -> Option<usize> {
+    match check(parameters.clone(), inputs, step) {
+        Ok(compared) => Some(compared),
+        Err(
+            Error::TangentialNotConverged { .. }
+            | Error::SplitNotConverged { .. }
+            | Error::MechanicsNotConverged { .. },
+        ) => {
+            let on_a_layer = parameters.layer_compliance > 0.0 || parameters.layer_yield_stress > 0.0;
+            if parameters.contact_model == ContactModel::Line && on_a_layer {
+                return None;
+            }
+            let model = Model::new(parameters).unwrap();
+            settled(&model, &mut model.workspace(), &inputs, step);
+            None
+        }
+        Err(error) => panic!("{error}, at {inputs:?}"),
     }
 }
 
@@ -283,6 +326,32 @@ pub fn patch(slip_source: SlipSource, wheel: Wheel) -> Parameters {
     }
 }
 
+/// A line under a warm wheel that is rigid or softer than the rail, so that pressure and shear are coupled, on a short piece of rail.
+pub fn line(slip_source: SlipSource, wheel: Wheel) -> Parameters {
+    Parameters {
+        slip_source,
+        wheel,
+        wheel_shear_modulus: 6e10,
+        wheel_heating: WheelHeating::On,
+        rim_depth: 1e-3,
+        rim_width: 5e-3,
+        contact_thermal_resistance: 200.0,
+        strip_half_length: 0.3,
+        ..Parameters::default()
+    }
+}
+
+/// Rolling at V with longitudinal creepage alone, as a line takes it.
+pub fn rolling_straight(speed: f64, creepage: f64) -> Inputs {
+    Inputs {
+        lateral_creepage: 0.0,
+        spin_creepage: 0.0,
+        lateral_speed: 0.0,
+        spin_rate: 0.0,
+        ..rolling(speed, [creepage, 0.0, 0.0])
+    }
+}
+
 /// Rolling at V with all three creepages, by the creepages and by the speeds.
 pub fn rolling(speed: f64, [creepage, lateral, spin]: [f64; 3]) -> Inputs {
     Inputs {
@@ -326,11 +395,9 @@ proptest! {
         let direction = if reverse { -1.0 } else { 1.0 };
         let inputs = Inputs { normal_load: load, ..rolling(direction * speed, [creepage, lateral, spin]) };
         let step = if long { LONG } else { 1e-3 };
-        // 336 pairs; the rest crosses a corner.
-        let compared = check(parameters, inputs, step);
-        // Settings this tight are no promise of the solver of the friction law.
-        prop_assume!(!matches!(compared, Err(Error::TangentialNotConverged { .. } | Error::SplitNotConverged { .. })));
-        prop_assert!(compared.unwrap() >= 150);
+        if let Some(compared) = check_where_it_rests(parameters, inputs, step) {
+            prop_assert!(compared >= LEAST_OF_A_PATCH, "{compared}");
+        }
     }
 }
 

@@ -1,9 +1,10 @@
 //! A layer between wheel and rail that flows: its sensitivities against differences of the step, and what it must not change.
 
-use crate::sensitivity::{check, patch, rolling};
+use crate::sensitivity::{
+    LEAST_OF_A_LINE, LEAST_OF_A_PATCH, check, check_where_it_rests, line, patch, rolling, rolling_straight,
+};
 use proptest::prelude::*;
-use wheelrail::Error;
-use wheelrail::parameters::{ContactModel, FrictionLaw, Parameters, SlipSource, Wheel, WheelHeating};
+use wheelrail::parameters::{ContactModel, FrictionLaw, Parameters, SlipSource, Wheel};
 use wheelrail::signals::Inputs;
 use wheelrail::simulation::Simulation;
 
@@ -53,28 +54,14 @@ proptest! {
         long in any::<bool>(),
         friction_law in prop_oneof![Just(FrictionLaw::Constant), Just(FrictionLaw::PiecewiseLinear), Just(FrictionLaw::FlowStress)],
     ) {
-        let parameters = Parameters {
-            slip_source: if vehicle { SlipSource::VehicleSpeed } else { SlipSource::Creepage },
-            friction_law,
-            wheel,
-            wheel_shear_modulus: 6e10,
-            wheel_heating: WheelHeating::On,
-            slip_regularisation: regularisation,
-            rim_depth: 1e-3,
-            rim_width: 5e-3,
-            contact_thermal_resistance: 200.0,
-            strip_half_length: 0.3,
-            ..Parameters::default()
-        };
+        let source = if vehicle { SlipSource::VehicleSpeed } else { SlipSource::Creepage };
+        let parameters = Parameters { friction_law, slip_regularisation: regularisation, ..line(source, wheel) };
         let direction = if reverse { -1.0 } else { 1.0 };
-        let mut inputs = rolling(direction * speed, [creepage, 0.0, 0.0]);
-        (inputs.lateral_creepage, inputs.spin_creepage, inputs.lateral_speed, inputs.spin_rate) = (0.0, 0.0, 0.0, 0.0);
+        let inputs = rolling_straight(direction * speed, creepage);
         let step = if long { 0.05 } else { 1e-3 };
-        let compared = check(yielding(parameters, layer), inputs, step);
-        // Settings this tight are no promise of the solvers.
-        prop_assume!(!matches!(compared, Err(Error::TangentialNotConverged { .. } | Error::SplitNotConverged { .. })));
-        let compared = compared.unwrap();
-        prop_assert!(compared >= 96, "{compared}");
+        if let Some(compared) = check_where_it_rests(yielding(parameters, layer), inputs, step) {
+            prop_assert!(compared >= LEAST_OF_A_LINE, "{compared}");
+        }
     }
 
     #[test]
@@ -95,9 +82,76 @@ proptest! {
         let direction = if reverse { -1.0 } else { 1.0 };
         let inputs = rolling(direction * speed, [creepage, lateral, spin]);
         let step = if long { 0.05 } else { 1e-3 };
-        let compared = check(yielding(parameters, layer), inputs, step);
-        prop_assume!(!matches!(compared, Err(Error::TangentialNotConverged { .. } | Error::SplitNotConverged { .. })));
-        prop_assert!(compared.unwrap() >= 150);
+        if let Some(compared) = check_where_it_rests(yielding(parameters, layer), inputs, step) {
+            prop_assert!(compared >= LEAST_OF_A_PATCH, "{compared}");
+        }
+    }
+}
+
+/// The slip below which a cell's slip counts as noise changes with the load, and with it what a layer has flowed and how strong it is: left
+/// out, peak_temperature by normal_load was off by 6e-4 of itself.
+#[test]
+fn sensitivities_of_a_patch_on_a_compliant_layer_that_hardens() {
+    for (source, wheel, regularisation, layer, speed, creepages) in [
+        (
+            SlipSource::VehicleSpeed,
+            Wheel::Rigid,
+            1e-3,
+            (2.942e8, 2.048e13, 4.195e-13, false),
+            -35.27,
+            [0.02318, -2.765e-4, 0.05475],
+        ),
+        (
+            SlipSource::Creepage,
+            Wheel::Rigid,
+            1e-3,
+            (1.832e8, 6.559e12, 6.268e-14, false),
+            28.39,
+            [3e-4, 1.764e-3, 0.0],
+        ),
+        (
+            SlipSource::Creepage,
+            Wheel::Rigid,
+            0.0,
+            (2.942e8, 2.048e13, 4.195e-13, false),
+            2.0,
+            [0.02318, 0.0, 0.0],
+        ),
+        (
+            SlipSource::VehicleSpeed,
+            Wheel::Elastic,
+            1e-3,
+            (7.711e7, 2.187e13, 6.958e-13, true),
+            5.589,
+            [0.01489, 9.754e-4, 0.3899],
+        ),
+    ] {
+        let parameters = Parameters {
+            slip_regularisation: regularisation,
+            ..patch(source, wheel)
+        };
+        let compared = check(yielding(parameters, layer), rolling(speed, creepages), 1e-3).unwrap();
+        assert!(compared >= LEAST_OF_A_PATCH, "{compared}");
+    }
+}
+
+/// As the cases of falling friction that rest at the default settings alone.
+#[test]
+fn patches_on_a_layer_that_rest_at_the_default_settings_alone() {
+    for (layer, speed, creepages) in [
+        (
+            (372028876.4881518, 14383939816692.436, 0.0, true),
+            -29.920441930621703,
+            [0.023060639935514594, 0.0010144556267709594, 0.7003597771051288],
+        ),
+        (
+            (294739875.33622766, 0.0, 0.0, true),
+            35.57674212285076,
+            [-0.0015845668314110686, 0.0005215666636398003, 0.5911027021783625],
+        ),
+    ] {
+        let parameters = patch(SlipSource::Creepage, Wheel::Rigid);
+        check_where_it_rests(yielding(parameters, layer), rolling(speed, creepages), 1e-3);
     }
 }
 

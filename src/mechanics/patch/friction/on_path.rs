@@ -22,6 +22,8 @@ pub struct OnPath {
     pub(super) speed: Vec<f64>,
     /// Its derivatives by the slip ahead and behind.
     by_slip: Vec<[Vector; 2]>,
+    /// Its derivative by the slip w below which the law takes all slip ahead.
+    by_noise: Vec<f64>,
     /// Change of the magnitude.
     change: Vec<f64>,
     /// The cell before, of those that [`OnPath::row`] has gone through.
@@ -34,6 +36,7 @@ impl OnPath {
             friction: vec![NodeFriction::default(); cells],
             speed: vec![0.0; cells],
             by_slip: vec![[[0.0; 2]; 2]; cells],
+            by_noise: vec![0.0; cells],
             change: vec![0.0; cells],
             before: Passed::default(),
         }
@@ -47,7 +50,7 @@ impl OnPath {
     /// The law of a cell, in the order in which particles come to the cells of a run. Its bound follows from its slip; what it has of the
     /// slip of cells before is not in the row.
     pub(super) fn row(&mut self, path: &PathOfCells, scheme: &Scheme, index: usize, mut cell: Cell) -> Row {
-        let (slip, by_ahead, by_behind, _) = scheme.slip(&cell);
+        let (slip, by_ahead, by_behind, slip_by_noise) = scheme.slip(&cell);
         let speed = dot(slip, slip).sqrt();
         // sᵀ/|s| times the slip's derivatives.
         let along = |matrix: [Vector; 2]| {
@@ -60,10 +63,16 @@ impl OnPath {
             })
         };
         let by_slip = [along(by_ahead), along(by_behind)];
+        let by_noise = if speed > 0.0 {
+            dot(slip, slip_by_noise) / speed
+        } else {
+            0.0
+        };
         let pressure = path.pressure[index];
         let friction = path.law.friction(&path.nodes[index], &self.before, speed, pressure);
         self.before = friction.passed(speed);
-        (self.friction[index], self.speed[index], self.by_slip[index]) = (friction, speed, by_slip);
+        (self.friction[index], self.speed[index]) = (friction, speed);
+        (self.by_slip[index], self.by_noise[index]) = (by_slip, by_noise);
         cell.bound = friction.coefficient * pressure;
         let mut row = scheme.row(&cell);
         let own = row.by_bound.map(|by_bound| by_bound * pressure * friction.by_speed());
@@ -72,6 +81,9 @@ impl OnPath {
                 line[0] += added[0];
                 line[1] += added[1];
             }
+        }
+        for (total, own) in row.by_noise.iter_mut().zip(own) {
+            *total += own * by_noise;
         }
         row
     }
@@ -109,9 +121,10 @@ impl OnPath {
         }
     }
 
-    /// Keeps the change of a cell's slip velocity, whether or not friction remembers.
-    pub(super) fn keep(&mut self, index: usize, (ahead, behind): (Vector, Vector)) {
+    /// Keeps the change of a cell's slip velocity with that of the slip ahead and behind and with that of w, whether or not friction
+    /// remembers.
+    pub(super) fn keep(&mut self, index: usize, (ahead, behind): (Vector, Vector), noise: f64) {
         let [by_ahead, by_behind] = self.by_slip[index];
-        self.change[index] = dot(by_ahead, ahead) + dot(by_behind, behind);
+        self.change[index] = dot(by_ahead, ahead) + dot(by_behind, behind) + self.by_noise[index] * noise;
     }
 }

@@ -137,7 +137,7 @@ impl Friction {
                             [0, 1].map(|i: usize| free(place, i) + edge[i] * shear[i] + ahead[i]),
                             [0, 1].map(|i: usize| free(last, i) + after[i]),
                         );
-                        self.on_path.keep(index, slips);
+                        self.on_path.keep(index, slips, change.noise);
                     }
                 }
             }
