@@ -8,6 +8,8 @@
 #   make measurements  fits to measured creep curves, a twin disc, wear: results/ and docs/measurements.md
 #   make couplings  the component in vehicle models, masters and sweeps: results/, one page each in docs/couplings/
 #   make test    formatting, lints, order of the modules, documentation, all Rust tests, `wheelrail verify`, all Python tests
+#   make test-debug  the Rust tests in the debug build: overflow and debug assertions are checked
+#   make soak [MINUTES=60] [SEED=7]  random tests drawn anew, round after round; a seed draws one of them again
 #   make description  the XML files in modelDescription/, after a change of a variable
 #   make docs    the generated tables and pictures of README.md and of the documentation
 #   make site    the documentation as a site: target/site/index.html
@@ -47,7 +49,7 @@ install = $(PY) -m uv pip install --quiet --python $(PY) -r $(1) \
 COUPLINGS := longitudinal stiff multibody train sweep hunting adhesion maintenance
 WHEELSET := target/Wheelset.fmu
 
-.PHONY: fmu fmu3 platforms wheel demo measurements measurements-docs test docs site bench clean lint rust-test verify python-test hosts library command couplings packages
+.PHONY: fmu fmu3 platforms wheel demo measurements measurements-docs test test-debug soak docs site bench clean lint rust-test verify python-test hosts library command couplings packages
 .PHONY: pytest couplings-set-up couplings-docs sweep-scaling description $(addprefix coupling-,$(COUPLINGS))
 
 # ---- set-up -------------------------------------------------------------------------------------------------------
@@ -197,6 +199,16 @@ lint: $(VENV)/ready
 rust-test: $(VENV)/build
 	$(call say,Rust tests)
 	$(CARGO) test --no-fail-fast
+
+# What a release build leaves out: overflow of integers, debug assertions.
+test-debug:
+	$(call say,Rust tests in the debug build)
+	cargo test --no-fail-fast
+
+# Not a part of `make test`, whose verdict is the same in every run.
+soak: fmu fmu3 $(VENV)/ready
+	$(call say,Random tests - new in every round)
+	@$(PY) tools/soak.py $(if $(MINUTES),--minutes $(MINUTES)) $(if $(SEED),--seed $(SEED)) -- --target $(PORTABLE) --glibc $(GLIBC)
 
 # target/verification.txt is what the tables of the documentation are made of and compared with.
 verify: command

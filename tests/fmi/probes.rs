@@ -17,7 +17,7 @@ use std::time::{Duration, Instant};
 /// Names the probe that a child process is to run.
 const CHILD: &str = "WHEELRAIL_PROBE";
 /// A probe takes some hundredths of a second; a machine may be loaded.
-const PATIENCE: Duration = Duration::from_secs(60);
+const PATIENCE: Duration = Duration::from_secs(600);
 
 /// An error with a message; a reset leads on.
 #[track_caller]

@@ -5,7 +5,6 @@ use super::importer::{
 };
 use std::ffi::c_int;
 use std::ptr::{dangling_mut, null_mut};
-use std::time::Instant;
 
 const START: [(&str, f64); 2] = [("creepage", 0.004), ("friction_temperature_cold", 310.0)];
 
@@ -392,51 +391,5 @@ fn locals_are_those_of_the_restored_state() {
         assert!(read().iter().zip(&cold).all(|(warm, cold)| warm > cold));
         client.expect(OK, client.restore(handle));
         assert_eq!(read(), cold);
-    });
-}
-
-/// `cargo test --release --test fmi saving_and_restoring -- --nocapture` prints the numbers of the documentation.
-#[test]
-fn saving_and_restoring_takes_microseconds() {
-    with_each(|api, contact| {
-        let client = Client::new(api);
-        client.expect(
-            OK,
-            client.set_integers(&[("contact_model", 1 + c_int::from(contact == Patch))]),
-        );
-        client.expect(OK, client.set(&START));
-        client.start();
-        client.expect(OK, client.step(0.0, 0.01));
-        let mut handle = client.save();
-        let bytes = client.serialize(handle);
-        let mut buffer = bytes.clone();
-        let mut copy = null_mut();
-        let microseconds = |call: &mut dyn FnMut() -> c_int| {
-            let mut times: Vec<f64> = (0..501)
-                .map(|_| {
-                    let start = Instant::now();
-                    let status = call();
-                    let time = start.elapsed();
-                    client.expect(OK, status);
-                    1e6 * time.as_secs_f64()
-                })
-                .collect();
-            times.sort_by(f64::total_cmp);
-            times[times.len() / 2]
-        };
-        // SAFETY: a live instance, valid places and bytes.
-        unsafe {
-            let save = microseconds(&mut || api.get_state(client.component, &mut handle));
-            let restore = microseconds(&mut || client.restore(handle));
-            let serialize =
-                microseconds(&mut || api.serialize(client.component, handle, buffer.as_mut_ptr().cast(), buffer.len()));
-            let deserialize = microseconds(&mut || client.deserialize(&bytes, &mut copy));
-            println!(
-                "a state: {} bytes serialized; medians: save {save:.1} µs, restore {restore:.1} µs, serialize {serialize:.0} µs, deserialize {deserialize:.0} µs",
-                bytes.len()
-            );
-            // The target is 20 µs; a loaded machine may take longer.
-            assert!(save.max(restore) < 200.0, "{save} {restore}");
-        }
     });
 }
