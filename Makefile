@@ -203,7 +203,7 @@ rust-test: $(VENV)/build
 # What a release build leaves out: overflow of integers, debug assertions.
 test-debug:
 	$(call say,Rust tests in the debug build)
-	cargo test --no-fail-fast
+	cargo test --locked --no-fail-fast
 
 # Not a part of `make test`, whose verdict is the same in every run.
 soak: fmu fmu3 $(VENV)/ready

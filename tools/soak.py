@@ -1,11 +1,10 @@
 """Draw the random tests anew, round after round, and say how to draw again what failed.
 
-`make test` draws the same cases in every run. Here each round has a seed of its own, for the property tests of the model
-and of the interface, for wheels driven at random (`wheelrail torture`) and for random calls of the Python package. The
-first round takes the debug build, whose arithmetic is checked for overflow and whose assertions hold.
+`make test` draws the same cases in every run. Here each round has a seed of its own: for the property tests of the
+model and of the interface, for wheels driven at random (`wheelrail torture`), for random calls of the Python package.
 
-A round that fails is drawn again by its seed; what it found becomes a named test. Two kinds of failure of the torture
-are no news: docs/limits.md names the steps that a contact may refuse.
+A round that fails is drawn again by its seed; what it found becomes a named test. The torture also finds the steps that
+a contact may refuse by docs/limits.md.
 """
 
 import argparse
