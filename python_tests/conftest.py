@@ -115,7 +115,7 @@ def host_process(fmu, tmp_path_factory):
         file = tmp_path_factory.mktemp("host") / "scenario.json"
         file.write_text(json.dumps(scenario))
         path = REPOSITORY / "python_tests" / "hosts" / script
-        done = subprocess.run([python, path, fmu, file], capture_output=True, text=True, timeout=300)
+        done = subprocess.run([python, path, fmu, file], capture_output=True, text=True, timeout=900)
         assert done.returncode == 0, done.stdout[-2000:] + done.stderr[-2000:]
         return json.loads(done.stdout.splitlines()[-1])
 

@@ -92,7 +92,7 @@ def test_unconnected_inputs_of_zero_are_refused(script, fmu, tmp_path):
     file = tmp_path / "scenario.json"
     file.write_text(json.dumps({"start": {}, "step": STEP, "steps": 2, "outputs": [], "connected": False}))
     path = REPOSITORY / "python_tests" / "hosts" / script
-    done = subprocess.run([sys.executable, path, fmu, file], capture_output=True, text=True, timeout=300)
+    done = subprocess.run([sys.executable, path, fmu, file], capture_output=True, text=True, timeout=900)
     assert done.returncode != 0
     assert "ambient_temperature = 0: allowed is 100 to 1000 K" in done.stdout + done.stderr
 
