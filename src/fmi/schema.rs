@@ -129,9 +129,9 @@ pub fn default_experiment() -> DefaultExperiment {
     }
 }
 
-/// The units that variables have.
+/// The units that variables have, and that of time, which FMI 2.0 lists among no variables: who reads a table of inputs needs it.
 pub fn unit_definitions(used: &HashSet<&str>) -> UnitDefinitions {
-    let units = UNITS.iter().filter(|unit| used.contains(unit.name));
+    let units = UNITS.iter().filter(|unit| unit.name == "s" || used.contains(unit.name));
     let units = units.map(|unit| Unit {
         name: unit.name,
         base_unit: BaseUnit {
