@@ -6,7 +6,11 @@ use thiserror::Error;
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum Error {
     /// A single value that is not finite or lies outside its range.
-    #[error("{name} = {value}: allowed is {minimum} to {maximum} {unit}")]
+    #[error(
+        "{name} = {value}: allowed is {minimum} to {maximum}{}{}",
+        after(" ", if *unit == "1" { "" } else { unit }),
+        after("; ", because)
+    )]
     OutOfRange {
         /// Variable or parameter.
         name: &'static str,
@@ -16,8 +20,10 @@ pub enum Error {
         minimum: f64,
         /// Largest allowed value.
         maximum: f64,
-        /// Unit of all three.
+        /// Unit of all three; empty, or `1`, of a number without one.
         unit: &'static str,
+        /// Which parameters set the limits, and how; empty where none does.
+        because: &'static str,
     },
     /// Two values, each allowed by itself, that cannot stand together.
     #[error("{first} = {first_value} and {second} = {second_value}: {requirement}")]
@@ -42,6 +48,24 @@ pub enum Error {
         name: &'static str,
         /// The refused value.
         value: f64,
+    },
+    /// An input that the motion does not follow from under this `slip_source`.
+    #[error(
+        "{name} = {value} has no effect with slip_source = {number} ({choice}); with slip_source = {other_number} ({other}) it is used"
+    )]
+    NotUsed {
+        /// The input.
+        name: &'static str,
+        /// Its value.
+        value: f64,
+        /// The number of the `slip_source` that is chosen.
+        number: i32,
+        /// Its name.
+        choice: &'static str,
+        /// The number of the one that uses the input.
+        other_number: i32,
+        /// Its name.
+        other: &'static str,
     },
     /// State or workspace come from a model with another `contact_model`.
     #[error("the state or the workspace is not one of this contact_model")]
@@ -176,6 +200,15 @@ pub enum Error {
         /// The load that sized it, `N`.
         largest_load: f64,
     },
+}
+
+/// A part of a message behind what separates it from the rest; nothing where the part is empty.
+fn after(separator: &str, part: &str) -> String {
+    if part.is_empty() {
+        String::new()
+    } else {
+        format!("{separator}{part}")
+    }
 }
 
 /// `Result` of the physical model.

@@ -8,10 +8,20 @@
 //! ```
 //!
 //! where the symbol is that of the equations, where there is one. The order is that of the table and of a saved state.
+//!
+//! An input that only one slip_source uses has the column `by creepage` or `by vehicle_speed`; the end of its description
+//! follows from it, and from the column `patch only`.
+
+mod motion;
+#[cfg(test)]
+mod tests;
 
 use crate::error::{Error, Result};
 use crate::parameters::{ContactModel, Parameters, SlipSource, check_range};
 use serde::{Deserialize, Serialize};
+
+use motion::LARGEST_SPEED;
+pub use motion::Motion;
 
 /// One row of the table of inputs.
 pub struct InputSignal {
@@ -29,6 +39,10 @@ pub struct InputSignal {
     pub maximum: f64,
     /// The range that the parameters leave; [`InputSignal::range`] reads it.
     limits: fn(&Parameters) -> (f64, f64),
+    /// Which parameters narrow the range, and how, in words for a refusal; empty where none does.
+    pub narrowed_by: &'static str,
+    /// The only `slip_source` that uses it; `None` where each does.
+    pub slip_source: Option<SlipSource>,
     /// Whether only a patch takes another value than 0.
     pub patch_only: bool,
     /// Typical magnitude.
@@ -95,6 +109,32 @@ macro_rules! limits {
     };
 }
 
+/// The choice that an input's column `by` names.
+macro_rules! slip_source {
+    () => {
+        None
+    };
+    (creepage) => {
+        Some(SlipSource::Creepage)
+    };
+    (vehicle_speed) => {
+        Some(SlipSource::VehicleSpeed)
+    };
+}
+
+/// What the columns say at the end of an input's description.
+macro_rules! used_where {
+    () => {
+        ""
+    };
+    (patch) => {
+        "; 0 unless contact_model is patch"
+    };
+    ($source:ident) => {
+        concat!(", used where slip_source is ", stringify!($source))
+    };
+}
+
 macro_rules! is_there {
     () => {
         false
@@ -104,17 +144,26 @@ macro_rules! is_there {
     };
 }
 
+macro_rules! narrowed_by {
+    () => {
+        ""
+    };
+    ($because:expr) => {
+        $because
+    };
+}
+
 macro_rules! inputs {
     ($(
         $(#[doc = $description:literal])+
-        $field:ident $($symbol:literal)?: $unit:literal $(shown in $display:literal)?, start $default:expr,
-        range [$minimum:expr, $maximum:expr $(; $narrowed:expr)?], nominal $nominal:expr $(, $patch:ident only)?;
+        $field:ident $($symbol:literal)?: $unit:literal $(shown in $display:literal)?, $(by $source:ident,)? start $default:expr,
+        range [$minimum:expr, $maximum:expr $(; $narrowed:expr, $because:expr)?], nominal $nominal:expr $(, $patch:ident only)?;
     )+) => {
         /// The continuous inputs at one instant.
         #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
         pub struct Inputs {
             $(
-                #[doc = concat!($($description),+)]
+                #[doc = concat!($($description,)+ used_where!($($source)?), used_where!($($patch)?))]
                 $(#[doc = concat!("\n\nSymbol: ", $symbol)])?
                 #[doc = concat!("\n\nUnit: `", $unit, "`")]
                 pub $field: f64,
@@ -143,9 +192,11 @@ macro_rules! inputs {
                 minimum: $minimum,
                 maximum: $maximum,
                 limits: limits!($minimum, $maximum $(, $narrowed)?),
+                narrowed_by: narrowed_by!($($because)?),
+                slip_source: slip_source!($($source)?),
                 patch_only: is_there!($($patch)?),
                 nominal: $nominal,
-                description: concat!($($description),+).trim_ascii(),
+                description: concat!($($description,)+ used_where!($($source)?), used_where!($($patch)?)).trim_ascii(),
                 get: |inputs| inputs.$field,
                 set: |inputs, value| inputs.$field = value,
             },
@@ -192,11 +243,12 @@ inputs! {
     /// Angular speed of the wheel, positive when it rolls in the direction of travel
     wheel_speed "ω": "rad/s" shown in "rpm", start 10.0 / 0.46, range [-1e4, 1e4], nominal 20.0;
     /// Normal load of the wheel on the rail, at most largest_load; 0 is a lifted wheel
-    normal_load "N": "N" shown in "kN", start 60e3, range [0.0, 1e7; |parameters| (0.0, parameters.largest_load)], nominal 6e4;
-    /// Creepage (wheel_speed*wheel_radius - V)/V, used where slip_source is creepage
-    creepage "ξ": "1", start 0.0, range [-0.99, 100.0], nominal 1e-2;
-    /// Speed of the wheel's axle along the rail, used where slip_source is vehicle_speed
-    vehicle_speed "V": "m/s" shown in "km/h", start 10.0, range [-1e3, 1e3; |parameters| (-parameters.largest_speed(), parameters.largest_speed())], nominal 10.0;
+    normal_load "N": "N" shown in "kN", start 60e3, range [0.0, 1e7; |parameters| (0.0, parameters.largest_load), "largest_load sets the upper limit"], nominal 6e4;
+    /// Creepage (wheel_speed*wheel_radius - V)/V
+    creepage "ξ": "1", by creepage, start 0.0, range [-0.99, 100.0], nominal 1e-2;
+    /// Speed of the wheel's axle along the rail
+    vehicle_speed "V": "m/s" shown in "km/h", by vehicle_speed, start 10.0,
+        range [-1e3, 1e3; |parameters| (-parameters.largest_speed(), parameters.largest_speed()), LARGEST_SPEED], nominal 10.0;
     /// Factor on the friction coefficient for a wet, contaminated or sanded rail
     friction_scale: "1", start 1.0, range [0.0, 2.0], nominal 1.0;
     /// Ambient temperature, the temperature of rail and wheel away from the contact
@@ -208,17 +260,16 @@ inputs! {
     /// front
     incoming_wear_depth: "m" shown in "µm", start 0.0, range [0.0, 1e-2], nominal 1e-7;
     /// Lateral creepage: lateral velocity of the wheel relative to the rail over the speed of its axle, positive to the
-    /// left in the direction of x with z upward, used where slip_source is creepage; 0 unless contact_model is patch
-    lateral_creepage "η": "1", start 0.0, range [-10.0, 10.0], nominal 1e-2, patch only;
+    /// left in the direction of x with z upward
+    lateral_creepage "η": "1", by creepage, start 0.0, range [-10.0, 10.0], nominal 1e-2, patch only;
     /// Spin creepage: angular velocity of the wheel relative to the rail about the upward normal over the speed of its
-    /// axle, positive anticlockwise seen from above, used where slip_source is creepage; 0 unless contact_model is patch
-    spin_creepage "φ": "1/m", start 0.0, range [-1e3, 1e3], nominal 1.0, patch only;
-    /// Lateral velocity of the wheel relative to the rail, positive to the left, used where slip_source is
-    /// vehicle_speed; 0 unless contact_model is patch
-    lateral_speed "v_y": "m/s", start 0.0, range [-100.0, 100.0], nominal 0.1, patch only;
+    /// axle, positive anticlockwise seen from above
+    spin_creepage "φ": "1/m", by creepage, start 0.0, range [-1e3, 1e3], nominal 1.0, patch only;
+    /// Lateral velocity of the wheel relative to the rail, positive to the left
+    lateral_speed "v_y": "m/s", by vehicle_speed, start 0.0, range [-100.0, 100.0], nominal 0.1, patch only;
     /// Angular velocity of the wheel relative to the rail about the upward normal, positive anticlockwise seen from
-    /// above, used where slip_source is vehicle_speed; 0 unless contact_model is patch
-    spin_rate "ω_z": "rad/s", start 0.0, range [-1e3, 1e3], nominal 1.0, patch only;
+    /// above
+    spin_rate "ω_z": "rad/s", by vehicle_speed, start 0.0, range [-1e3, 1e3], nominal 1.0, patch only;
 }
 
 outputs! {
@@ -286,19 +337,6 @@ outputs! {
 /// Rounding of a value at the end of a ramp, relative to the range.
 const ROUNDING: f64 = 1e-12;
 
-/// Rolling of the wheel at one instant.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Motion {
-    /// Speed V of the axle along the rail, `m/s`.
-    pub rolling_speed: f64,
-    /// Rigid slip ω r₀ − V, `m/s`.
-    pub rigid_slip: f64,
-    /// Lateral velocity v_y of the wheel relative to the rail, to the left, `m/s`.
-    pub lateral_speed: f64,
-    /// Angular velocity ω_z of the wheel relative to the rail about the upward normal, `rad/s`.
-    pub spin_rate: f64,
-}
-
 impl Outputs {
     /// The rows of the outputs that are sums over the steps.
     pub fn totals() -> impl Iterator<Item = &'static OutputSignal> {
@@ -330,7 +368,27 @@ impl InputSignal {
     /// [`Error::OutOfRange`].
     pub fn check_range(&self, value: f64, parameters: &Parameters) -> Result<()> {
         let (minimum, maximum) = self.range(parameters);
-        check_range(self.name, value, minimum, maximum, self.unit)
+        check_range(self.name, value, minimum, maximum, self.unit, self.narrowed_by)
+    }
+
+    /// Refuses a value other than the start value where the motion does not follow from this input. The model itself takes
+    /// any: only who asked the user for the inputs knows that one was meant.
+    ///
+    /// # Errors
+    /// [`Error::NotUsed`].
+    pub fn check_used(&self, value: f64, parameters: &Parameters) -> Result<()> {
+        let chosen = parameters.slip_source;
+        match self.slip_source {
+            Some(source) if source != chosen && value != self.default => Err(Error::NotUsed {
+                name: self.name,
+                value,
+                number: chosen as i32 + 1,
+                choice: SlipSource::NAMES[chosen as usize],
+                other_number: source as i32 + 1,
+                other: SlipSource::NAMES[source as usize],
+            }),
+            _ => Ok(()),
+        }
     }
 }
 
@@ -345,72 +403,6 @@ impl Inputs {
             signal.check((signal.get)(self), parameters)?;
         }
         self.check_motion(parameters)
-    }
-
-    /// Checks the rolling speed that the inputs make.
-    ///
-    /// # Errors
-    /// [`crate::error::Error::OutOfRange`].
-    pub fn check_motion(&self, parameters: &Parameters) -> Result<()> {
-        let largest = parameters.largest_speed();
-        let speed = self.motion(parameters).rolling_speed;
-        check_range(
-            "rolling speed V of wheel_speed and creepage",
-            speed,
-            -largest,
-            largest,
-            "m/s",
-        )
-    }
-
-    /// The motion that the inputs define: V, ω r₀ − V, v_y and ω_z.
-    pub fn motion(&self, parameters: &Parameters) -> Motion {
-        let circumferential = self.wheel_speed * parameters.wheel_radius;
-        let rolling_speed = match parameters.slip_source {
-            SlipSource::Creepage => circumferential / (1.0 + self.creepage),
-            SlipSource::VehicleSpeed => self.vehicle_speed,
-        };
-        let rigid_slip = match parameters.slip_source {
-            // Not the difference of two large numbers.
-            SlipSource::Creepage => rolling_speed * self.creepage,
-            SlipSource::VehicleSpeed => circumferential - rolling_speed,
-        };
-        let (lateral_speed, spin_rate) = match parameters.slip_source {
-            SlipSource::Creepage => (
-                rolling_speed * self.lateral_creepage,
-                rolling_speed * self.spin_creepage,
-            ),
-            SlipSource::VehicleSpeed => (self.lateral_speed, self.spin_rate),
-        };
-        Motion {
-            rolling_speed,
-            rigid_slip,
-            lateral_speed,
-            spin_rate,
-        }
-    }
-
-    /// The change of [`Inputs::motion`] with that of the inputs: dV, d(ω r₀ − V), dv_y and dω_z.
-    pub fn motion_tangent(&self, change: &Inputs, parameters: &Parameters) -> Motion {
-        let circumferential = change.wheel_speed * parameters.wheel_radius;
-        let (rolling_speed, lateral_speed, spin_rate) = match parameters.slip_source {
-            SlipSource::VehicleSpeed => (change.vehicle_speed, change.lateral_speed, change.spin_rate),
-            SlipSource::Creepage => {
-                let speed = self.motion(parameters).rolling_speed;
-                let rolling_speed = (circumferential - speed * change.creepage) / (1.0 + self.creepage);
-                (
-                    rolling_speed,
-                    rolling_speed * self.lateral_creepage + speed * change.lateral_creepage,
-                    rolling_speed * self.spin_creepage + speed * change.spin_creepage,
-                )
-            }
-        };
-        Motion {
-            rolling_speed,
-            rigid_slip: circumferential - rolling_speed,
-            lateral_speed,
-            spin_rate,
-        }
     }
 
     /// The inputs after `time` at the given rates of change.

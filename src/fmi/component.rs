@@ -56,6 +56,8 @@ pub struct Component {
     /// Computed from `state` when they are asked for.
     pub(super) plots: Plots,
     pub(super) saved: SavedStates,
+    /// The inputs without effect that were told of, a bit for each.
+    pub(super) told: u32,
     /// Messages that wait for the end of a call.
     pub journal: Journal,
 }
@@ -75,6 +77,7 @@ impl Component {
             state: None,
             plots: Plots::default(),
             saved: SavedStates::default(),
+            told: 0,
             journal,
         }
     }
@@ -179,6 +182,7 @@ impl Component {
         self.parameters = Parameters::default();
         self.inputs = Inputs::default();
         self.rates = Inputs::ZERO;
+        self.told = 0;
         self.time = 0.0;
         self.state = None;
         self.plots = Plots::default();

@@ -1,10 +1,10 @@
 //! The step.
 
 use super::component::{Built, Component, Plots};
-use super::failures::Failure;
+use super::failures::{Blame, Failure};
 use super::logging::Category;
 use super::modes::Mode;
-use crate::signals::Inputs;
+use crate::signals::{INPUTS, Inputs};
 
 /// Room for rounding in times that a master adds up step by step: relative, some 10⁶ roundings.
 const TIME_TOLERANCE: f64 = 1e-9;
@@ -39,6 +39,7 @@ impl Component {
                 stop,
             });
         }
+        self.warn_of_inputs_without_effect();
         let (Some(Built { model, workspace }), Some(state)) = (&mut self.built, &mut self.state) else {
             return Err(Failure::NothingComputed);
         };
@@ -67,6 +68,25 @@ impl Component {
                 time: self.time,
                 error: interrupted.error,
             }),
+        }
+    }
+
+    /// Tells once of each input that slip_source leaves without effect and that has another value than at the start: the importer
+    /// will have meant it, and nothing else would show that it does nothing. The status of the step is not touched.
+    fn warn_of_inputs_without_effect(&mut self) {
+        if !self.journal.hears(Category::StatusWarning) {
+            return;
+        }
+        for (row, signal) in INPUTS.iter().enumerate() {
+            let unused = signal.check_used((signal.get)(&self.inputs), &self.parameters);
+            if let Err(unused) = unused
+                && self.told & 1 << row == 0
+            {
+                self.told |= 1 << row;
+                let time = self.time;
+                self.journal
+                    .failure(Blame::Unused, || format!("t = {time} s: {unused}"));
+            }
         }
     }
 
@@ -100,7 +120,6 @@ impl Component {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::fmi::failures::Blame;
     use crate::fmi::logging::{Journal, Rules};
     use crate::parameters::{ContactModel, WheelHeating};
     use crate::settings::Settings;

@@ -90,7 +90,7 @@ impl RealParameter {
     /// # Panics
     /// When there is no such element.
     pub fn check(&self, element: usize, value: f64) -> Result<()> {
-        check_range(self.elements[element], value, self.minimum, self.maximum, self.unit)
+        check_range(self.elements[element], value, self.minimum, self.maximum, self.unit, "")
     }
 }
 
@@ -109,7 +109,7 @@ impl IntegerParameter {
     /// [`Error::OutOfRange`].
     pub fn check_any(&self, value: f64) -> Result<()> {
         let [minimum, maximum] = [self.minimum, self.maximum].map(f64::from);
-        check_range(self.name, value, minimum, maximum, "")
+        check_range(self.name, value, minimum, maximum, "", "")
     }
 }
 

@@ -109,7 +109,8 @@ fn the_archive_is_as_the_standard_wants_it() {
     for name in ["modelDescription.xml", "model.png", "documentation/index.html"] {
         assert!(names.iter().any(|n| n == name), "{name}");
     }
-    for name in ["LICENSE-APACHE", "LICENSE-MIT", "THIRD-PARTY.txt"] {
+    // Where the folder is there, the standard asks for license.txt as the way in.
+    for name in ["license.txt", "LICENSE-APACHE", "LICENSE-MIT", "THIRD-PARTY.txt"] {
         assert!(names.contains(&format!("documentation/licenses/{name}")), "{name}");
     }
     assert!(names.contains(&format!("binaries/{}", own())));

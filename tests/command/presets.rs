@@ -33,7 +33,7 @@ fn traction_coefficient(name: &str, creepage: &str, options: &[&str]) -> f64 {
         .next()
         .unwrap()
         .split(',')
-        .position(|name| name == "traction_coefficient");
+        .position(|name| name == "traction_coefficient [1]");
     lines
         .next()
         .unwrap()
@@ -132,6 +132,13 @@ fn a_file_serves_as_well_and_what_does_not_is_refused() {
     assert!(
         message.contains("\"icy\"") && message.contains("dry, wet, contaminated, eurosprinter"),
         "{message}"
+    );
+    let output = wheelrail(&["simulate", "none.csv", "-o", "out.csv", "--preset", "contaminatd"]);
+    let message = String::from_utf8(output.stderr).unwrap();
+    assert!(message.contains("did you mean contaminated?"), "{message}");
+    refused(
+        &format!("{head}friction_colt = 0.3"),
+        &["\"friction_colt\"", "did you mean friction_cold?"],
     );
     // Choices by name; what the command line sets goes before.
     fs::write(

@@ -3,7 +3,7 @@
 
 use std::fs::{create_dir_all, read_to_string, remove_file, write};
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::process::{Command, Output, Stdio};
 use wheelrail::signals::{INPUTS, OUTPUTS};
 
 const GOOD: &str = "time,normal_load,creepage\n0,60e3,0\n0.002,60e3,0.001\n";
@@ -73,15 +73,16 @@ fn a_scenario_becomes_a_table_of_inputs_and_outputs() {
         assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
         let table = read_to_string(&place.output).unwrap();
         let mut lines = table.lines();
-        let inputs = INPUTS.iter().map(|row| row.name);
-        let outputs = OUTPUTS.iter().map(|row| row.name);
-        let headings: Vec<&str> = ["time"].into_iter().chain(inputs).chain(outputs).collect();
+        let inputs = INPUTS.iter().map(|row| (row.name, row.unit));
+        let outputs = OUTPUTS.iter().map(|row| (row.name, row.unit));
+        let all = [("time", "s")].into_iter().chain(inputs).chain(outputs);
+        let headings: Vec<_> = all.map(|(name, unit)| format!("{name} [{unit}]")).collect();
         assert_eq!(lines.next().unwrap().split(',').collect::<Vec<_>>(), headings);
         let rows: Vec<Vec<f64>> = lines
             .map(|line| line.split(',').map(|cell| cell.parse().unwrap()).collect())
             .collect();
         assert_eq!(rows.iter().map(|row| row[0]).collect::<Vec<_>>(), [0.0, 1e-3, 2e-3]);
-        let creepage = headings.iter().position(|name| *name == "creepage").unwrap();
+        let creepage = headings.iter().position(|name| *name == "creepage [1]").unwrap();
         assert_eq!(rows[1][creepage], 5e-4);
     }
 }
@@ -105,7 +106,7 @@ fn a_line_takes_no_lateral_and_no_spin_motion() {
         assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
         let table = read_to_string(&place.output).unwrap();
         let heading = table.lines().next().unwrap();
-        let force = heading.split(',').position(|name| name == "lateral_force").unwrap();
+        let force = heading.split(',').position(|name| name == "lateral_force [N]").unwrap();
         let last = table.lines().last().unwrap().split(',').nth(force).unwrap();
         assert_ne!(last.parse::<f64>().unwrap(), 0.0);
     }
@@ -161,7 +162,8 @@ fn the_fields_of_a_patch_sum_up_to_its_outputs() {
         .split(',')
         .map(|cell| cell.parse().unwrap())
         .collect();
-    let output = |name: &str| last[headings.iter().position(|heading| *heading == name).unwrap()];
+    let is = |heading: &str, name: &str| heading.split(' ').next() == Some(name);
+    let output = |name: &str| last[headings.iter().position(|heading| is(heading, name)).unwrap()];
     for (name, value) in [
         ("normal_load", sum(|row| row[2])),
         ("traction_force", -sum(|row| row[3])),
@@ -181,12 +183,219 @@ fn fields_that_cannot_be_written_are_refused() {
     let missing = place.output.with_file_name("missing").join("fields.csv");
     place.refused(
         &["--fields", missing.to_str().unwrap()],
-        &["missing/fields.csv", "No such file"],
+        &["missing/fields.csv", "the folder", "missing is not there"],
     );
     place.refused(
         &["--fields", place.output.to_str().unwrap()],
         &["--fields", "where the outputs go"],
     );
+    // Through another name.
+    let around = place.output.parent().unwrap().join(".").join("out.csv");
+    place.refused(
+        &["--fields", around.to_str().unwrap()],
+        &["--fields", "where the outputs go"],
+    );
+    place.refused(
+        &["--fields", place.scenario.to_str().unwrap()],
+        &["--fields", "this is the scenario"],
+    );
+}
+
+#[test]
+fn a_scenario_is_not_written_over() {
+    let place = Place::new("written_over", GOOD);
+    let place = Place {
+        output: place.scenario.clone(),
+        ..place
+    };
+    let output = place.simulate(&[]);
+    assert_eq!(output.status.code(), Some(1));
+    assert!(
+        String::from_utf8(output.stderr)
+            .unwrap()
+            .contains("this is the scenario")
+    );
+    assert_eq!(read_to_string(&place.scenario).unwrap(), GOOD);
+}
+
+/// The table of inputs of a run: the rows up to the column of the last input.
+fn inputs_of(place: &Place) -> String {
+    let table = read_to_string(&place.output).unwrap();
+    let inputs = table.lines().map(|line| {
+        let cells: Vec<_> = line.split(',').take(1 + INPUTS.len()).collect();
+        cells.join(",") + "\n"
+    });
+    inputs.collect()
+}
+
+/// The table of results in the scenario's own words.
+fn results(name: &str, scenario: &str, options: &[&str]) -> String {
+    let place = Place::new(name, scenario);
+    let output = place.simulate(options);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    read_to_string(&place.output).unwrap()
+}
+
+#[test]
+fn headings_have_units() {
+    let si =
+        "time,normal_load,creepage,ambient_temperature,spin_creepage\n0,60e3,0,293.15,0\n0.002,61e3,0.001,295.15,0.5\n";
+    let expected = results("units_si", si, &PATCH);
+    for (name, headings, rows) in [
+        (
+            "units",
+            "time [s],normal_load [N],creepage [1],ambient_temperature [K],spin_creepage [1/m]",
+            "0,60e3,0,293.15,0\n0.002,61e3,0.001,295.15,0.5\n",
+        ),
+        (
+            "units_other",
+            "time [ms],normal_load [kN],creepage [%],ambient_temperature [degC],spin_creepage [1/km]",
+            "0,60,0,20,0\n2,61,0.1,22,500\n",
+        ),
+        (
+            "units_spelled",
+            "time[ µs ], normal_load[MN], creepage [-], ambient_temperature [°C], spin_creepage [1/mm]",
+            "0,0.06,0,20,0\n2000,0.061,0.001,22,5e-4\n",
+        ),
+    ] {
+        let table = results(name, &format!("{headings}\n{rows}"), &PATCH);
+        assert_eq!(table, expected, "{headings}");
+    }
+}
+
+#[test]
+fn units_that_are_none_of_the_variable_are_refused() {
+    for (name, heading, parts) in [
+        ("unit_other", "normal_load [mm]", ["\"mm\"", "normal_load", "N, kN, MN"]),
+        (
+            "unit_unknown",
+            "creepage [percent]",
+            ["\"percent\"", "creepage", "1, %, ‰"],
+        ),
+        (
+            "unit_case",
+            "wheel_speed [RPM]",
+            ["\"RPM\"", "wheel_speed", "rad/s, rpm"],
+        ),
+    ] {
+        let named = format!("column {heading:?}");
+        let parts = [&[named.as_str()], &parts[..]].concat();
+        Place::new(name, &format!("time,{heading}\n0,0\n1,0\n")).refused(&[], &parts);
+    }
+    Place::new("unit_time", "time [d]\n0\n1\n").refused(&[], &["column \"time [d]\"", "\"d\"", "s, ms, µs, min, h"]);
+    Place::new("unit_bracket", "time,normal_load (kN)\n0,60\n1,60\n")
+        .refused(&[], &["\"normal_load (kN)\"", "square brackets, normal_load [kN]"]);
+    // The value as it is used, beside the heading with the unit in which it was given.
+    Place::new("unit_value", "time [ms],normal_load [kN]\n0,60\n1,600\n").refused(
+        &[],
+        &[
+            "line 3",
+            "\"normal_load [kN]\"",
+            "normal_load = 600000",
+            "0 to 100000 N",
+            "largest_load",
+        ],
+    );
+    Place::new("unit_backwards", "time [ms]\n0\n5\n4\n")
+        .refused(&[], &["line 4", "\"time [ms]\"", "0.004 s is not after 0.005 s"]);
+}
+
+/// What a run writes of its inputs is a scenario, with the columns without effect, which are at their start values.
+#[test]
+fn the_inputs_that_are_written_can_be_read_back() {
+    for (name, scenario, options) in [
+        ("again", GOOD, &[][..]),
+        (
+            "again_by_speed",
+            "time,wheel_speed [rpm],vehicle_speed [km/h]\n0,200,36\n0.002,210,36.5\n",
+            &["--set", "slip_source=2"],
+        ),
+    ] {
+        let place = Place::new(name, scenario);
+        assert!(place.simulate(options).status.success());
+        let first = read_to_string(&place.output).unwrap();
+        write(&place.scenario, inputs_of(&place)).unwrap();
+        let output = place.simulate(options);
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        assert_eq!(read_to_string(&place.output).unwrap(), first);
+    }
+    let place = Place::new("again_whole", GOOD);
+    assert!(place.simulate(&[]).status.success());
+    let whole = read_to_string(&place.output).unwrap();
+    let place = Place::new("again_whole", &whole);
+    place.refused(&[], &["\"traction_force [N]\" is not an input but an output"]);
+}
+
+#[test]
+fn columns_without_effect_are_refused() {
+    let by_speed = ["--set", "slip_source=2"];
+    for (column, value, options) in [
+        ("vehicle_speed", "20", &[][..]),
+        ("lateral_speed", "0.1", &PATCH),
+        ("spin_rate", "0.1", &PATCH),
+        ("creepage", "0.01", &by_speed),
+        ("lateral_creepage", "0.01", &[&PATCH[..], &by_speed].concat()),
+        ("spin_creepage", "0.01", &[&PATCH[..], &by_speed].concat()),
+    ] {
+        let signal = INPUTS.iter().find(|signal| signal.name == column).unwrap();
+        let (name, start) = (format!("unused_{column}"), signal.default);
+        let place = Place::new(&name, &format!("time,{column}\n0,{start}\n0.001,{value}\n"));
+        let (chosen, other) = if options.contains(&"slip_source=2") {
+            (2, 1)
+        } else {
+            (1, 2)
+        };
+        place.refused(
+            options,
+            &[
+                "line 3",
+                &format!("column {column:?}"),
+                &format!("{column} = {value} has no effect with slip_source = {chosen}"),
+                &format!("--set slip_source={other}"),
+            ],
+        );
+        // At its start value it says nothing.
+        let place = Place::new(&name, &format!("time,{column}\n0,{start}\n0.001,{start}\n"));
+        let output = place.simulate(options);
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    }
+}
+
+/// A run that nobody waits for ends quietly, and no run is too short to show all of it.
+#[test]
+fn output_that_nobody_reads_is_no_failure() {
+    for arguments in [
+        &["describe"][..],
+        &["describe", "--xml"],
+        &["describe", "--terminals"],
+        &["describe", "--markdown", "--all"],
+        &["presets"],
+        &["presets", "dry"],
+        &["verify", "--only", "kalker"],
+    ] {
+        let mut child = Command::new(env!("CARGO_BIN_EXE_wheelrail"))
+            .args(arguments)
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap();
+        // Before it has written anything, or while it writes.
+        drop(child.stdout.take());
+        let output = child.wait_with_output().unwrap();
+        let message = String::from_utf8(output.stderr).unwrap();
+        assert_eq!((output.status.code(), message.as_str()), (Some(0), ""), "{arguments:?}");
+    }
+}
+
+#[test]
+fn help_says_that_set_wins_over_preset() {
+    let output = Command::new(env!("CARGO_BIN_EXE_wheelrail"))
+        .args(["simulate", "--help"])
+        .output()
+        .unwrap();
+    let help = String::from_utf8(output.stdout).unwrap();
+    let words: Vec<_> = help.split_whitespace().collect();
+    assert!(words.join(" ").contains("wins over every --preset"), "{help}");
 }
 
 #[test]
@@ -204,14 +413,48 @@ fn files_that_cannot_be_read_are_refused() {
 fn a_table_of_results_that_cannot_be_written_is_refused() {
     let mut place = Place::new("unwritable", GOOD);
     place.output = place.output.with_file_name("missing").join("out.csv");
-    place.refused(&[], &["missing/out.csv", "No such file"]);
+    place.refused(&[], &["missing/out.csv", "the folder", "missing is not there"]);
 }
 
 #[test]
 fn scenarios_that_are_none_are_refused() {
     let range = ["allowed is", " to "];
     let cases: &[(&str, &str, &[&str])] = &[
-        ("empty", "", &["there is no column \"time\""]),
+        ("empty", "", &["the file is empty"]),
+        ("only_comments", "# a\n# b\n", &["the file is empty"]),
+        (
+            "only_headings",
+            "time,creepage\n",
+            &["at least two rows, this one has 0"],
+        ),
+        (
+            "semicolons",
+            "time;normal_load\n0;60e3\n1;60e3\n",
+            &["\"time;normal_load\"", "commas separate"],
+        ),
+        (
+            "decimal_commas",
+            "time,creepage\n0,0,001\n1,0,002\n",
+            &["line 2", "3 cells under 2 headings", "a point stands before decimals"],
+        ),
+        (
+            "misspelt",
+            "time,creapage\n0,0\n1,0\n",
+            &["column \"creapage\" is not an input", "did you mean creepage?"],
+        ),
+        (
+            "parameter_column",
+            "time,friction_cold\n0,0.3\n1,0.3\n",
+            &[
+                "\"friction_cold\" is not an input but a parameter",
+                "--set friction_cold=VALUE",
+            ],
+        ),
+        (
+            "two_columns_by_unit",
+            "time,creepage,creepage [%]\n0,0,0\n1,0,0\n",
+            &["column \"creepage\" is there twice"],
+        ),
         (
             "missing_column",
             "normal_load\n1\n2\n",
@@ -235,7 +478,7 @@ fn scenarios_that_are_none_are_refused() {
         (
             "ragged",
             "time,creepage\n0,0\n1\n",
-            &["scenario.csv", "record", "fields"],
+            &["scenario.csv, line 3", "1 cells under 2 headings"],
         ),
         (
             "one_row",
@@ -245,11 +488,19 @@ fn scenarios_that_are_none_are_refused() {
         (
             "backwards",
             "time\n0\n1\n0.5\n",
-            &["line 4", "column \"time\"", "0.5 is not after 1"],
+            &["line 4", "column \"time\"", "0.5 s is not after 1 s"],
         ),
-        ("twice", "time\n0\n0\n", &["line 3", "0 is not after 0"]),
-        ("endless", "time\n0\ninf\n", &["line 3", "inf is not after 0"]),
-        ("no_time", "time\nnan\n1\n", &["line 2", "NaN is not after"]),
+        ("twice", "time\n0\n0\n", &["line 3", "0 s is not after 0 s"]),
+        (
+            "endless",
+            "time\n0\ninf\n",
+            &["line 3", "column \"time\"", "inf is not a time"],
+        ),
+        (
+            "no_time",
+            "time\nnan\n1\n",
+            &["line 2", "column \"time\"", "NaN is not a time"],
+        ),
         (
             "heavy",
             "time,normal_load\n0,6e4\n1,1e9\n",
@@ -263,7 +514,7 @@ fn scenarios_that_are_none_are_refused() {
         (
             "not_a_number",
             "time,creepage\n0,NaN\n1,0\n",
-            &[&["line 2", "creepage = NaN"], &range[..]].concat(),
+            &[&["line 2", "column \"creepage\"", "creepage = NaN"], &range[..]].concat(),
         ),
         (
             "infinite",
@@ -283,6 +534,22 @@ fn scenarios_that_are_none_are_refused() {
 fn parameters_that_cannot_be_are_refused() {
     let place = Place::new("parameters", GOOD);
     place.refused(&["--set", "mass=1"], &["\"mass\"", "wheelrail describe"]);
+    place.refused(
+        &["--set", "friction_colt=0.3"],
+        &["\"friction_colt\"", "did you mean friction_cold?"],
+    );
+    place.refused(
+        &["--set", "friction_law=linear"],
+        &[
+            "\"linear\"",
+            "1 (constant), 2 (piecewise_linear)",
+            "did you mean piecewise_linear?",
+        ],
+    );
+    place.refused(
+        &["--set", "creepage=0.1"],
+        &["\"creepage\"", "is an input, a column of the scenario"],
+    );
     place.refused(&["--set", "density"], &["--set \"density\"", "name=value"]);
     place.refused(
         &["--set", "density=heavy"],
@@ -327,6 +594,10 @@ fn steps_that_cannot_be_are_refused() {
     for step in ["0", "-1e-3", "NaN", "inf"] {
         place.refused(&[&format!("--step={step}")], &["--step", "positive, finite"]);
     }
+    place.refused(
+        &["--step=1e-12"],
+        &["--step 1e-12", "0.002 s", "2e9 steps, more than 1e9"],
+    );
 }
 
 /// What the command line itself cannot read is answered with status 2 and the usage.

@@ -1,8 +1,8 @@
 //! Messages: where they go, what they look like, when there are none.
 
 use super::importer::{
-    Api, Client, Component, DISCARD, ERROR, Fmi2, Fmi3, Message, NO_CALLBACKS, OK, RIGHT, Standard, with_each,
-    with_each_standard,
+    Api, Client, Component, ContactModel, DISCARD, ERROR, Fmi2, Fmi3, Message, NO_CALLBACKS, OK, RIGHT, Standard,
+    WARNING, with_each, with_each_standard,
 };
 use std::cell::Cell;
 use std::ffi::{CStr, c_char, c_int, c_void};
@@ -93,6 +93,71 @@ fn with_logging_on_solver_and_events_are_told_with_ok() {
         let messages = client.journal.take();
         assert_eq!(categories(&messages), ["logEvents", "logSolver"]);
         assert!(messages.iter().all(|message| message.status == OK));
+    });
+}
+
+/// A value that the chosen slip_source does not use is told of once, at the first step that has it, with a warning; the step is
+/// as it would be without.
+#[test]
+fn inputs_without_effect_are_told_of_once() {
+    with_each(|api, contact| {
+        for (number, used, unused) in [
+            (
+                1,
+                [("creepage", 0.004), ("wheel_speed", 22.0)],
+                [("vehicle_speed", 30.0), ("spin_rate", 0.5)],
+            ),
+            (
+                2,
+                [("vehicle_speed", 11.0), ("wheel_speed", 22.0)],
+                [("creepage", 0.02), ("spin_creepage", 0.5)],
+            ),
+        ] {
+            // A line takes no spin at all.
+            let unused = &unused[..if contact == ContactModel::Patch { 2 } else { 1 }];
+            let life = |unused: &[(&str, f64)]| {
+                let mut client = Client::new(api);
+                client.contact = contact;
+                client.make_coarse();
+                client.expect(OK, client.set_integers(&[("slip_source", number)]));
+                client.start();
+                client.expect(OK, client.set(&used));
+                client.expect(OK, client.step(0.0, 1e-3));
+                assert_eq!(client.journal.take(), []);
+                client.expect(OK, client.set(unused));
+                for step in 1..4 {
+                    client.expect(OK, client.step(f64::from(step) * 1e-3, 1e-3));
+                }
+                let told = client.journal.take();
+                let outputs = client.outputs();
+                // As new after a reset: told of again.
+                client.expect(OK, client.reset());
+                client.make_coarse();
+                client.expect(OK, client.set_integers(&[("slip_source", number)]));
+                client.expect(OK, client.set(unused));
+                client.start();
+                client.expect(OK, client.step(0.0, 1e-3));
+                assert_eq!(client.journal.take().len(), unused.len());
+                (told, outputs)
+            };
+            let (told, outputs) = life(unused);
+            assert_eq!(told.len(), unused.len());
+            for (message, (name, value)) in told.iter().zip(unused) {
+                assert_eq!(
+                    (message.status, message.category.as_str()),
+                    (WARNING, "logStatusWarning")
+                );
+                let (chosen, other) = (
+                    format!("slip_source = {number} ("),
+                    format!("slip_source = {} (", 3 - number),
+                );
+                for part in ["t = 0.001 s", &format!("{name} = {value}"), &chosen, &other] {
+                    assert!(message.text.contains(part), "{} lacks {part}", message.text);
+                }
+            }
+            let (silence, undisturbed) = life(&[]);
+            assert_eq!((silence.len(), undisturbed), (0, outputs));
+        }
     });
 }
 

@@ -3,8 +3,12 @@
 mod binary;
 mod describe;
 mod fields;
+mod files;
+mod names;
 mod pack;
 mod preset;
+mod progress;
+mod scenario;
 mod simulate;
 mod standard;
 mod table;
@@ -12,6 +16,8 @@ mod torture;
 mod verify;
 
 use clap::{Parser, Subcommand};
+use std::error::Error;
+use std::io;
 use std::process::ExitCode;
 
 /// Thermoelastic wheel-rail rolling contact: pack the FMU, describe its variables, simulate natively, verify.
@@ -30,9 +36,11 @@ enum Command {
     Describe(describe::Describe),
     /// Simulate a scenario natively, without FMI, and write inputs and outputs as CSV.
     ///
-    /// The scenario is a table with a header: a column `time` `s`, ascending, and a column for each input that changes,
-    /// in SI units. Between its rows the inputs are interpolated linearly; other inputs keep their start values. Lines
-    /// that begin with # are comments.
+    /// The scenario is a table with a header: a column `time`, ascending, and a column for each input that changes. A
+    /// heading may have a unit, `time [ms]`, `normal_load [kN]`, `creepage [%]`; without one it is that of `wheelrail
+    /// describe`. Between its rows the inputs are interpolated linearly; other inputs keep their start values. A column
+    /// that the chosen slip_source does not use is refused, unless it is everywhere at the input's start value. Lines that
+    /// begin with # are comments.
     ///
     /// Fields are written for one instant, the last one: place, pressure, shear on the rail, slip of the rail relative to
     /// the wheel, the share of Coulomb's bound, absolute temperature and wear depth.
@@ -46,7 +54,7 @@ enum Command {
 }
 
 fn main() -> ExitCode {
-    let result: Result<(), Box<dyn std::error::Error>> = match Arguments::parse().command {
+    let result: Result<(), Box<dyn Error>> = match Arguments::parse().command {
         Command::Pack(command) => command.run().map_err(Into::into),
         Command::Describe(command) => command.run().map_err(Into::into),
         Command::Simulate(command) => command.run().map_err(Into::into),
@@ -56,9 +64,20 @@ fn main() -> ExitCode {
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,
+        // Who reads has seen enough, as in `wheelrail describe | head`.
+        Err(error) if is_broken_pipe(&*error) => ExitCode::SUCCESS,
         Err(error) => {
             eprintln!("wheelrail: {error}");
             ExitCode::FAILURE
         }
     }
+}
+
+/// Whether an error comes from output that nobody reads any more.
+fn is_broken_pipe(error: &(dyn Error + 'static)) -> bool {
+    let mut causes = std::iter::successors(Some(error), |error| (*error).source());
+    causes.any(|error| {
+        let error = error.downcast_ref::<io::Error>();
+        error.is_some_and(|error| error.kind() == io::ErrorKind::BrokenPipe)
+    })
 }

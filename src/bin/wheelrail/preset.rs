@@ -1,5 +1,6 @@
 //! Named sets of parameters, `presets/*.toml`: `wheelrail presets` lists them, `wheelrail simulate --preset` takes one.
 
+use crate::names::{did_you_mean, hint};
 use clap::Args;
 use serde::Deserialize;
 use std::fs;
@@ -28,7 +29,11 @@ pub struct Presets {
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
     /// Neither a name nor a file.
-    #[error("preset {name:?}: there is none of this name ({known}), and the name of a file ends with .toml", known = names())]
+    #[error(
+        "preset {name:?}: there is none of this name ({known}), and the name of a file ends with .toml{meant}",
+        known = names().join(", "),
+        meant = did_you_mean(name, names())
+    )]
     Unknown {
         /// What was given.
         name: String,
@@ -60,7 +65,7 @@ pub enum Error {
         kind: &'static str,
     },
     /// A parameter that cannot be.
-    #[error("preset {name}: {source}")]
+    #[error("preset {name}: {source}{}", hint(source))]
     Parameter {
         /// Name or file.
         name: String,
@@ -127,9 +132,8 @@ fn text(name: &str) -> Result<String, Error> {
     })
 }
 
-fn names() -> String {
-    let names: Vec<_> = SHIPPED.iter().map(|(name, _)| *name).collect();
-    names.join(", ")
+fn names() -> Vec<&'static str> {
+    SHIPPED.iter().map(|(name, _)| *name).collect()
 }
 
 impl Presets {

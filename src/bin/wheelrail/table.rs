@@ -1,5 +1,6 @@
 //! Tables as CSV: what `wheelrail simulate` writes.
 
+use crate::files;
 use std::fs::File;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -43,6 +44,11 @@ impl Error {
     }
 }
 
+/// A heading: `normal_load [N]`, `creepage [1]`.
+pub fn heading(name: &str, unit: &str) -> String {
+    format!("{name} [{unit}]")
+}
+
 /// A table that is written row by row.
 pub struct Table {
     path: PathBuf,
@@ -51,13 +57,13 @@ pub struct Table {
 
 impl Table {
     /// A new file with its headings.
-    pub fn create<'a>(path: &Path, headings: impl Iterator<Item = &'a str>) -> Result<Table, Error> {
-        let file = File::create(path).map_err(Error::file(path))?;
+    pub fn create(path: &Path, headings: impl Iterator<Item = String>) -> Result<Table, Error> {
+        let file = files::create(path).map_err(Error::file(path))?;
         let mut table = Table {
             path: path.to_owned(),
             writer: csv::Writer::from_writer(file),
         };
-        table.record(headings.map(str::to_owned))?;
+        table.record(headings)?;
         Ok(table)
     }
 
