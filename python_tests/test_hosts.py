@@ -10,8 +10,8 @@ import subprocess
 import sys
 from pathlib import Path
 
-import numpy as np
 import pytest
+from wheelrail import read_table
 
 REPOSITORY = Path(__file__).resolve().parent.parent
 COFMUPY = REPOSITORY / ".venv-cofmupy" / "bin" / "python"
@@ -49,7 +49,7 @@ def native(simulate_natively, tmp_path_factory):
     scenario = tmp_path_factory.mktemp("scenario") / "constant.csv"
     values = ",".join(repr(value) for value in INPUTS.values())
     scenario.write_text(f"time,{','.join(INPUTS)}\n0.0,{values}\n{STEP * STEPS!r},{values}\n")
-    table = np.genfromtxt(simulate_natively(scenario, STEP, PARAMETERS), delimiter=",", names=True)
+    table = read_table(simulate_natively(scenario, STEP, PARAMETERS)).to_records(index=False)
     assert len(table) == STEPS + 1
     return table[-1]
 

@@ -8,6 +8,7 @@ from pathlib import Path
 import fmpy
 import numpy as np
 import pytest
+from wheelrail import read_table
 
 REPOSITORY = Path(__file__).resolve().parent.parent
 TOTALS = ["worn_volume", "friction_energy", "distance", "wheel_wear_depth"]
@@ -103,7 +104,7 @@ def test_braking_equals_native_simulation(instance, reference, outputs, simulate
     The interface drives the same model; what could differ is the rounding of time and step.
     """
     table = simulate_natively(REPOSITORY / "examples" / "braking.csv", 0.02, {"slip_source": 2})
-    native = np.genfromtxt(table, delimiter=",", names=True)
+    native = read_table(table).to_records(index=False)
     inputs = ["wheel_speed", "normal_load", "creepage", "vehicle_speed", "friction_scale", "ambient_temperature"]
     input_references, output_references = ([reference[n] for n in names] for names in (inputs, outputs))
 

@@ -257,6 +257,12 @@ fn headings_have_units() {
             "time[ µs ], normal_load[MN], creepage [-], ambient_temperature [°C], spin_creepage [1/mm]",
             "0,0.06,0,20,0\n2000,0.061,0.001,22,5e-4\n",
         ),
+        // As a spreadsheet writes it: the mark of UTF-8 first, lines that end as in Windows, cells in quotation marks.
+        (
+            "units_spreadsheet",
+            "\u{feff}time,\"normal_load [kN]\",creepage,ambient_temperature [K],spin_creepage\r",
+            "0,60,0,293.15,0\r\n0.002,\"61\",0.001,295.15,0.5\r\n",
+        ),
     ] {
         let table = results(name, &format!("{headings}\n{rows}"), &PATCH);
         assert_eq!(table, expected, "{headings}");

@@ -135,7 +135,7 @@ pub enum Error {
         /// The heading.
         column: String,
         /// Why.
-        source: ModelError,
+        source: Box<ModelError>,
     },
     /// Values that the model refuses together, or that of an input without a column.
     #[error("{path}, line {line}: {source}")]
@@ -145,7 +145,7 @@ pub enum Error {
         /// The line.
         line: u64,
         /// Which inputs and why.
-        source: ModelError,
+        source: Box<ModelError>,
     },
     /// A column without effect.
     #[error(
@@ -159,7 +159,7 @@ pub enum Error {
         /// The heading.
         column: String,
         /// Which input, and what uses it.
-        source: ModelError,
+        source: Box<ModelError>,
         /// The choice that uses it.
         number: i32,
     },
@@ -363,7 +363,7 @@ fn row(path: &Path, columns: &[Column], record: &csv::StringRecord, parameters: 
                     path: path(),
                     line,
                     column: heading(),
-                    source,
+                    source: Box::new(source),
                 })?;
                 (signal.set)(&mut inputs, value);
             }
@@ -372,7 +372,7 @@ fn row(path: &Path, columns: &[Column], record: &csv::StringRecord, parameters: 
     inputs.check(parameters).map_err(|source| Error::Row {
         path: path(),
         line,
-        source,
+        source: Box::new(source),
     })?;
     Ok(Row { line, time, inputs })
 }
@@ -394,7 +394,7 @@ fn check_used(path: &Path, columns: &[Column], rows: &[Row], parameters: &Parame
                     ModelError::NotUsed { other_number, .. } => other_number,
                     _ => 0,
                 },
-                source,
+                source: Box::new(source),
             })?;
         }
     }

@@ -46,7 +46,7 @@ pub enum Error {
     Table(#[from] table::Error),
     /// A file that does not serve as a scenario.
     #[error(transparent)]
-    Scenario(#[from] scenario::Error),
+    Scenario(#[from] Box<scenario::Error>),
     /// A file for two things.
     #[error("{option} {path}: this is {other}")]
     OneFile {
@@ -98,7 +98,7 @@ pub enum Error {
         /// The results.
         output: PathBuf,
         /// Which step, and why.
-        source: simulation::Error,
+        source: Box<simulation::Error>,
     },
 }
 
@@ -107,7 +107,7 @@ impl Simulate {
     pub fn run(&self) -> Result<(), Error> {
         self.check_files()?;
         let parameters = self.parameters()?;
-        let schedule = scenario::read(&self.scenario, &parameters)?;
+        let schedule = scenario::read(&self.scenario, &parameters).map_err(Box::new)?;
         self.check_steps(&schedule)?;
         let steps = schedule.steps(self.step).map_err(|_| Error::Step { step: self.step })?;
         let model = Arc::new(Model::new(parameters).map_err(Error::Parameter)?);
@@ -122,7 +122,7 @@ impl Simulate {
         let mut interrupted = None;
         for step in steps {
             if let Err(source) = simulation.follow(&step) {
-                interrupted = Some(source);
+                interrupted = Some(Box::new(source));
                 break;
             }
             write(&mut table, &step.to, simulation.outputs())?;
