@@ -10,6 +10,8 @@ import pytest
 from fmpy.fmi2 import FMU2Slave, fmi2CallbackFunctions, fmi2CallbackLoggerTYPE
 
 REPOSITORY = Path(__file__).resolve().parent.parent
+# The Python package as it is here, for every test.
+sys.path.insert(0, str(REPOSITORY / "python"))
 
 
 def built(path):
