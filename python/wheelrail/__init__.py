@@ -4,7 +4,7 @@
 - `simulate`: a table of inputs in, a table of outputs out, with units; parameters by name.
 - `creep_curves`: steady forces over longitudinal, lateral and spin creepage.
 - `preset`: a named set of parameters, for a wet rail for example.
-- `Instance`: the component step by step, for a master written by hand.
+- `Instance`: the component step by step, for a master written by hand; `SavedState`: what it can go back to.
 - `variables`: what there is to set and to read.
 - `wheelrail.plots`: pictures of a braking manoeuvre, of the patch in plan view, of creep curves.
 
@@ -16,8 +16,10 @@ from typing import TYPE_CHECKING, Any
 
 from .archive import example, fmu_path, preset
 from .creep import creep_curves
-from .instance import Instance, SimulationError
+from .errors import InstanceClosedError, SimulationError
+from .instance import Instance
 from .simulation import simulate
+from .states import SavedState
 from .tables import read_table
 from .variables import variables
 
@@ -26,6 +28,8 @@ if TYPE_CHECKING:
 
 __all__ = [
     "Instance",
+    "InstanceClosedError",
+    "SavedState",
     "SimulationError",
     "creep_curves",
     "example",

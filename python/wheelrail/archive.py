@@ -1,9 +1,11 @@
 """Where the FMUs are, unpacked once in a process."""
 
 import atexit
+import os
 import shutil
 import tempfile
 import tomllib
+import zipfile
 from functools import cache
 from os import PathLike, fspath
 from pathlib import Path
@@ -43,6 +45,12 @@ def fmu_path(version: str = "2.0") -> Path:
     return path
 
 
+def shipped(fmu: str) -> str:
+    """The version of an FMU that is the package's own, which another machine has too; the path of another one."""
+    own = {str(PACKAGE / "fmu" / file): version for version, file in ARCHIVES.items()}
+    return own.get(fmu, fmu)
+
+
 def example(name: str = "braking") -> Path:
     """Path of a table of inputs to begin with.
 
@@ -50,53 +58,105 @@ def example(name: str = "braking") -> Path:
     ----------
     name
         "braking": from 20 m/s, with a wheel slide; for `slip_source="vehicle_speed"`.
+
+    Raises
+    ------
+    ValueError
+        There is no such table.
+    FileNotFoundError
+        The package was built without tables.
     """
-    path = PACKAGE / "data" / f"{name}.csv"
-    if not path.exists():
-        there = sorted(file.stem for file in path.parent.glob("*.csv"))
-        raise FileNotFoundError(f"{path} is not there; tables in this package: {', '.join(there) or 'none'}")
-    return path
+    return named("table", name, PACKAGE / "data", ".csv")
 
 
-def preset(name: str) -> dict[str, Any]:
+def preset(name: str, /, **overrides: Any) -> dict[str, Any]:
     """A named set of parameters: `simulate(table, **preset("wet"))`.
 
     Parameters
     ----------
     name
         "dry", "wet", "contaminated" or "eurosprinter"; where each value comes from is in the package's presets.
+    **overrides
+        Parameters beside those of the set, or in their place: `simulate(table, **preset("wet", friction_cold=0.2))`.
+
+    Returns
+    -------
+    dict
+        Parameters by name.
+
+    Raises
+    ------
+    ValueError
+        There is no such set.
+    TypeError
+        The name is no text.
     """
     folder = PACKAGE / "presets"
     if not folder.exists():
         # A package that runs from the repository.
         folder = PACKAGE.parent.parent / "presets"
-    path = folder / f"{name}.toml"
-    if not path.exists():
-        there = sorted(file.stem for file in folder.glob("*.toml"))
-        raise FileNotFoundError(f"preset {name!r}: there is none of this name; presets: {', '.join(there) or 'none'}")
-    parameters: dict[str, Any] = tomllib.loads(path.read_text(encoding="utf-8"))["parameters"]
-    return parameters
+    parameters: dict[str, Any] = tomllib.loads(named("preset", name, folder, ".toml").read_text("utf-8"))["parameters"]
+    return parameters | overrides
+
+
+def named(what: str, name: str, folder: Path, suffix: str) -> Path:
+    """The file of a name in one of the package's folders."""
+    # It imports from here.
+    from .variables import near
+
+    if not isinstance(name, str):
+        raise TypeError(f"{what} {name!r}: its name is a text")
+    there = sorted(file.stem for file in folder.glob(f"*{suffix}"))
+    if not there:
+        raise FileNotFoundError(f"{what} {name!r}: this package was built without {folder.name}")
+    if name not in there:
+        raise ValueError(
+            f"{what} {name!r}: there is none of this name; choose one of {', '.join(there)}{near(name, there)}"
+        )
+    return folder / f"{name}{suffix}"
 
 
 def description(fmu: AnyPath) -> ModelDescription:
-    """Model description of an FMU, read once."""
+    """Model description of an FMU, read once.
+
+    Raises
+    ------
+    FileNotFoundError
+        The FMU is not there.
+    ValueError
+        The file is no FMU.
+    """
     return read_description(fspath(fmu))
 
 
 @cache
 def read_description(fmu: str) -> ModelDescription:
     """Read a model description; that the archive is valid is tested where it is built."""
-    return fmpy.read_model_description(fmu, validate=False)
+    if not Path(fmu).exists():
+        raise FileNotFoundError(f"{fmu} is not there")
+    if not zipfile.is_zipfile(fmu):
+        raise ValueError(f"{fmu} is no FMU: an FMU is a zip archive")
+    try:
+        return fmpy.read_model_description(fmu, validate=False)
+    # FMPy has no type of its own for what it cannot read.
+    except Exception as error:
+        raise ValueError(f"{fmu} is no FMU that can be read: {error}") from error
 
 
 def unpacked(fmu: AnyPath) -> str:
-    """Folder of an unpacked FMU: unpacked once, removed when the process ends."""
-    return unpack(fspath(fmu))
+    """Folder of an unpacked FMU: unpacked once by a process, removed when it ends."""
+    return unpack(fspath(fmu), os.getpid())
 
 
 @cache
-def unpack(fmu: str) -> str:
-    """Unpack an FMU."""
+def unpack(fmu: str, process: int) -> str:
+    """Unpack an FMU for a process: a fork of it has its own folder, as either may end first."""
     folder = tempfile.mkdtemp(prefix="fmu-")
-    atexit.register(shutil.rmtree, folder, ignore_errors=True)
+    atexit.register(remove, folder, process)
     return str(fmpy.extract(fmu, folder))
+
+
+def remove(folder: str, process: int) -> None:
+    """Remove a folder at the end of the process that made it, not at that of its forks."""
+    if os.getpid() == process:
+        shutil.rmtree(folder, ignore_errors=True)

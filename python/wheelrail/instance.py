@@ -1,112 +1,37 @@
-"""An instance of the component, its variables by name."""
+"""An instance of the component, step by step."""
 
-import itertools
 import math
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager, suppress
-from ctypes import byref
-from os import fspath
-from pathlib import Path
+import os
+from collections.abc import Sequence
+from contextlib import suppress
+from os import PathLike, fspath
+from types import TracebackType
 from typing import Any, Self
 
-import fmpy.logging
 import numpy as np
-from fmpy.fmi1 import FMICallException, printLogMessage
-from fmpy.fmi2 import FMU2Slave, fmi2CallbackFunctions, fmi2CallbackLoggerTYPE
-from fmpy.fmi3 import FMU3Slave
-from fmpy.model_description import ModelVariable
+from fmpy.fmi1 import FMICallException
 
-from .archive import AnyPath, description, fmu_path, unpacked
-from .variables import by_name, near, number, shape
+from .archive import AnyPath, description, fmu_path, shipped
+from .arguments import names_of, plain, seconds, values_of
+from .errors import InstanceClosedError, SimulationError
+from .native import FMU3Component, Phase, connect
+from .saving import Saving
+from .states import SavedState, state_of
+from .variables import bounds, by_name, choices, number, unit
 
+__all__ = ["Instance", "InstanceClosedError", "SimulationError"]
 
-class SimulationError(RuntimeError):
-    """The component refused a value or could not complete a step: its own words.
-
-    Attributes
-    ----------
-    table
-        The rows of a simulation up to there, or None.
-    """
-
-    table: Any = None
+# What a line about an instance shows, where it has them.
+SHOWN = ("contact_model", "slip_source", "normal_load", "vehicle_speed", "wheel_speed", "creepage")
+SHOWN_RUNNING = ("traction_force", "friction_coefficient", "peak_temperature")
 
 
-# ---- what the component says ----------------------------------------------------------------------------------------
-
-# Messages of each instance, by the environment that it was given.
-MESSAGES: dict[int, list[str]] = {}
-ENVIRONMENTS = itertools.count(1)
-
-
-def _keep(environment: int | None, name: bytes, status: int, category: bytes, message: bytes) -> None:
-    kept = MESSAGES.get(environment or 0)
-    if kept is None:
-        printLogMessage(environment, name, status, category, message)
-    else:
-        kept.append(message.decode(errors="replace"))
-
-
-# Never freed: FMPy's native part, which puts numbers into messages, goes on with the logger that it was told last, also
-# for instances that others make in this process.
-LOGGER = fmi2CallbackLoggerTYPE(_keep)
-
-
-def connect(fmu: AnyPath, name: str) -> tuple[Any, list[str]]:
-    """FMPy's instance of an FMU, instantiated, and the list that takes its messages."""
-    if not Path(fmu).exists():
-        raise FileNotFoundError(f"{fmu} is not there")
-    model = description(fmu)
-    arguments = {
-        "guid": model.guid,
-        "unzipDirectory": unpacked(fmu),
-        "modelIdentifier": model.coSimulation.modelIdentifier,
-        "instanceName": name,
-    }
-    messages: list[str] = []
-    if not model.fmiVersion.startswith("2."):
-        slave = FMU3Slave(**arguments)
-        slave.instantiate(logMessage=lambda _environment, _status, _category, text: messages.append(text.decode()))
-        # Nothing is said without; of a step that succeeds nothing need be.
-        refusals = [category.name for category in model.logCategories if category.name.startswith("logStatus")]
-        slave.setDebugLogging(True, refusals)
-        return slave, messages
-    slave = FMU2Slave(**arguments)
-    callbacks = fmi2CallbackFunctions()
-    callbacks.logger = LOGGER
-    callbacks.componentEnvironment = next(ENVIRONMENTS)
-    MESSAGES[callbacks.componentEnvironment] = messages
-    fmpy.logging.addLoggerProxy(byref(callbacks))
-    slave.instantiate(callbacks=callbacks)
-    # Both live as long as the instance, which calls them.
-    slave.wheelrail_callbacks = callbacks
-    return slave, messages
-
-
-def disconnect(slave: Any) -> None:
-    """Free FMPy's instance. The library stays loaded: another instance may be using it."""
-    if isinstance(slave, FMU3Slave):
-        slave.fmi3FreeInstance(slave.component)
-    else:
-        slave.fmi2FreeInstance(slave.component)
-        MESSAGES.pop(slave.wheelrail_callbacks.componentEnvironment, None)
-
-
-@contextmanager
-def reported(messages: list[str]) -> Iterator[None]:
-    """Turn a failed call into what the component said about it."""
-    messages.clear()
-    try:
-        yield
-    except FMICallException as error:
-        raise SimulationError("; ".join(messages) or str(error)) from error
-
-
-# ---- an instance ----------------------------------------------------------------------------------------------------
-
-
-class Instance:
+class Instance(Saving):
     """The component step by step, or another co-simulation FMU: what a master written by hand needs.
+
+    A call that is refused or fails changes nothing: the instance goes on from where it was. It is freed by `close`, at
+    the end of a `with`, or when nobody refers to it any more. Threads may share it; their calls take turns. A forked
+    process has a copy of its own. It is pickled and copied as `save` and `load` do it, with everything that it holds.
 
     FMPy's class below it speaks in value references and may be used beside it: `instance.slave`.
 
@@ -119,115 +44,231 @@ class Instance:
     start_time
         Time at which it starts [s].
     **start_values
-        Parameters and inputs by name; choices by name or number.
+        Parameters and inputs by name, in any order; choices by name or number, tables of parameters as a sequence:
+        `**{"friction_table.temperature": [300.0, 400.0]}`.
+
+    Attributes
+    ----------
+    time
+        Time of the instance [s].
+    variables
+        The FMU's variables by name, as FMPy describes them.
+    lengths
+        Lengths of the arrays of FMI 3.0, by the name of the parameter that gives them.
+
+    Raises
+    ------
+    ValueError
+        An unknown name or choice, a value out of range, a file that is no FMU for co-simulation.
+    TypeError
+        An argument of a wrong type.
+    FileNotFoundError
+        The FMU is not there.
+    SimulationError
+        The component refuses a value beside the others, or has no library for this platform.
 
     Examples
     --------
-    >>> contact = Instance(slip_source="vehicle_speed", normal_load=60e3).start()
-    >>> contact.set(vehicle_speed=10.0, wheel_speed=21.8)
-    >>> contact.step(1e-3)
-    >>> force, torque = contact.get("traction_force", "friction_torque")
-    >>> contact.close()
+    >>> with Instance(slip_source="vehicle_speed", normal_load=60e3).start() as contact:
+    ...     contact.set(vehicle_speed=10.0, wheel_speed=21.8)
+    ...     contact.step(1e-3)
+    ...     force, torque = contact.get("traction_force", "friction_torque")
     """
 
     def __init__(
         self, fmu: AnyPath | None = None, name: str = "instance", start_time: float = 0.0, **start_values: Any
     ) -> None:
         """Unpack, instantiate, set parameters and inputs, and initialise."""
-        self.fmu = fspath(fmu or fmu_path())
-        self.slave, self.messages = connect(self.fmu, name)
+        start_time = seconds("start_time", start_time)
+        if not isinstance(name, str):
+            raise TypeError(f"name = {name!r}: a text is needed")
+        if fmu is not None and not isinstance(fmu, str | PathLike):
+            raise TypeError(f"fmu = {fmu!r}: the path of an FMU is needed")
+        self.fmu: str = os.path.abspath(fspath(fmu_path() if fmu is None else fmu))
+        self.name = name
+        self.slave: Any = connect(self.fmu, name)
         self.variables = by_name(self.fmu)
-        self.time = start_time
-        # Lengths of arrays.
         self.lengths = {
             name: int(variable.start)
             for name, variable in self.variables.items()
             if variable.causality == "structuralParameter"
         }
+        self._first = start_time, dict(start_values)
+        # How groups of variables are read, and what inputs lie between.
+        self._plans: dict[tuple[str, ...], list[tuple[str, list[Any]]]] = {}
+        self._bounds: dict[str, tuple[float, float]] = {}
         try:
-            self._initialise(start_values)
-        except (SimulationError, ValueError):
-            disconnect(self.slave)
+            self._initialise()
+        except BaseException:
+            self.slave.free()
             raise
 
-    def _initialise(self, start_values: dict[str, Any]) -> None:
+    # ---- its life ----------------------------------------------------------------------------------------------------
+
+    def _initialise(self) -> None:
         """Enter the initialisation with start values."""
-        third = isinstance(self.slave, FMU3Slave)
-        if not third:
-            self.slave.setupExperiment(startTime=self.time)
-        self.set(**start_values)
-        with reported(self.messages):
-            self.slave.enterInitializationMode(**({"startTime": self.time} if third else {}))
+        time, values = self._first
+        with self._calls("initialise", Phase.INSTANTIATED):
+            self._set(values)
+            self.slave.initialise(time)
 
     def start(self) -> Self:
-        """Leave the initialisation: from here on, step."""
-        with reported(self.messages):
+        """Leave the initialisation: from here on, step.
+
+        Raises
+        ------
+        SimulationError
+            The parameters do not go together, the contact has no solution, or the instance was started before. Other
+            values may be set then, and `start` called again.
+        """
+        with self._calls("start", Phase.INITIALISING, undo=True):
             self.slave.exitInitializationMode()
         return self
 
-    def set(self, **values: Any) -> None:
-        """Set variables; choices by name or number, arrays of FMI 3.0 as a sequence."""
-        with reported(self.messages):
-            for name, value in values.items():
-                variable = self._variable(name)
-                plain: Any = number(variable, value) if isinstance(value, str) else value
-                kind = "Int64" if variable.type == "Enumeration" else variable.type
-                set_values = getattr(self.slave, f"set{kind}")
-                if name in self.lengths:
-                    self.slave.enterConfigurationMode()
-                    set_values([variable.valueReference], [plain])
-                    self.slave.exitConfigurationMode()
-                    self.lengths[name] = int(plain)
-                else:
-                    set_values([variable.valueReference], list(plain) if variable.dimensions else [plain])
+    def reset(self) -> Self:
+        """Go back to before `start`, with the start values that the instance was made with.
 
-    def get(self, *names: str) -> list[float]:
-        """Return the values of real variables, those of an array of FMI 3.0 one after another."""
-        variables = [self._variable(name) for name in names]
-        references = [variable.valueReference for variable in variables]
-        with reported(self.messages):
-            if isinstance(self.slave, FMU3Slave):
-                count = sum(math.prod(shape(variable, self.lengths)) for variable in variables)
-                return list(self.slave.getFloat64(references, count))
-            return list(self.slave.getReal(references))
+        It leads out of every state but a closed one; saved states are kept.
 
-    def fields(self) -> dict[str, np.ndarray]:
-        """Fields of the patch as they are now, each as an array of strips by cells: FMI 3.0 alone has them.
-
-        They are what `plots.patch_fields` draws: places `x`, `y` [m], `pressure`, `shear_x`, `shear_y` [Pa], `slip_x`,
-        `slip_y` [m/s], `temperature` [K], `wear_depth` [m].
+        Raises
+        ------
+        SimulationError
+            The instance is closed.
         """
-        names = [name for name in self.variables if name.startswith("patch.")]
-        if not names:
-            raise ValueError(f"{self.fmu} has no fields of the patch: take the FMU of FMI 3.0")
-        found = {
-            name.removeprefix("patch."): np.reshape(self.get(name), shape(self.variables[name], self.lengths))
-            for name in names
-        }
-        x, y = np.meshgrid(found.pop("x"), found.pop("y"))
-        return {"x": x, "y": y, **found}
+        with self._calls("reset"):
+            self.slave.reset()
+            self._initialise()
+        return self
+
+    def close(self) -> None:
+        """Terminate and free; every later call raises `InstanceClosedError`, but another `close`."""
+        with self.slave.lock:
+            if self.slave.gone is None:
+                if self.slave.phase is Phase.RUNNING:
+                    with suppress(FMICallException):
+                        self.slave.terminate()
+                self.slave.free()
+
+    def __enter__(self) -> Self:
+        """The instance itself, which is closed at the end."""
+        with self._calls("with"):
+            return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        """Close."""
+        self.close()
+
+    @property
+    def time(self) -> float:
+        """Time of the instance [s]; a master may take the round-off of its own sum out of it."""
+        return float(self.slave.time)
+
+    @time.setter
+    def time(self, time: float) -> None:
+        self.slave.time = seconds("time", time)
+
+    def __repr__(self) -> str:
+        """What it is, how far, and its main inputs and outputs."""
+        what = f"{self.name!r} of {description(self.fmu).modelName}, FMI {description(self.fmu).fmiVersion}"
+        with self.slave.lock:
+            if self.slave.gone is not None:
+                return f"<wheelrail.Instance {what}: closed>"
+            text, phase = f"{what}: {self.slave.phase.value}, t = {self.time:g} s", self.slave.phase
+            shown = SHOWN + (SHOWN_RUNNING if phase is Phase.RUNNING else ())
+            found = [name for name in shown if name in self.variables]
+            # FMI 2.0 has nothing to read before the initialisation, and an error to no avail would be one more.
+            if phase in (Phase.INITIALISING, Phase.RUNNING):
+                with suppress(SimulationError):
+                    values = zip(found, self.get(*found), strict=True)
+                    text = "; ".join([text, *(self._said(name, value) for name, value in values)])
+        return f"<wheelrail.Instance {text}>"
+
+    def _said(self, name: str, value: float) -> str:
+        """A variable with its value, as a line about the instance has it."""
+        variable = self.variables[name]
+        named = {chosen: choice for choice, chosen in choices(variable).items()}
+        return f"{name} = {named.get(int(value)) or format(value, 'g') if named else format(value, 'g')}" + (
+            f" {unit(variable)}" if unit(variable) not in ("", "1") else ""
+        )
+
+    # ---- steps -------------------------------------------------------------------------------------------------------
 
     def step(self, step: float) -> None:
-        """Step on in time [s]."""
-        with reported(self.messages):
+        """Step on in time.
+
+        Parameters
+        ----------
+        step
+            Length of the step [s]: positive.
+
+        Raises
+        ------
+        TypeError, ValueError
+            No positive finite number.
+        SimulationError
+            Before `start`, or the contact has no solution: other inputs or a shorter step may lead on.
+        """
+        self.slave.check()
+        step = seconds("step", step, positive=True)
+        with self._calls("step", Phase.RUNNING, undo=True):
             self.slave.doStep(self.time, step)
-        self.time += step
 
     def follow(self, names: Sequence[str], before: Sequence[float], after: Sequence[float], step: float) -> None:
         """Step on in time, with inputs that go from one value to another.
 
         In FMI 2.0 the component is told their rates of change; FMI 3.0 has none, and it is told the values at the end.
+
+        Parameters
+        ----------
+        names
+            Names of inputs.
+        before, after
+            Values at the beginning and at the end of the step, one for each name.
+        step
+            Length of the step [s]: positive.
+
+        Raises
+        ------
+        ValueError
+            An unknown name or none of an input, a value out of its range, another number of values than names.
+        TypeError
+            An argument of a wrong type.
+        SimulationError
+            As `step`, or the component refuses an input.
         """
-        references = [self._variable(name).valueReference for name in names]
-        with reported(self.messages):
-            if isinstance(self.slave, FMU3Slave):
-                self.slave.setFloat64(references, after)
+        self.slave.check()
+        step = seconds("step", step, positive=True)
+        listed = names_of("names", names)
+        references = [self._variable(name).valueReference for name in listed]
+        ends = [
+            [
+                self._within(name, value)
+                for name, value in zip(listed, values_of(what, values, len(listed)), strict=True)
+            ]
+            for what, values in (("before", before), ("after", after))
+        ]
+        with self._calls("follow", Phase.RUNNING, undo=True):
+            if isinstance(self.slave, FMU3Component):
+                self.slave.setFloat64(references, ends[1])
             else:
-                rates = [(then - now) / step for now, then in zip(before, after, strict=True)]
-                self.slave.setReal(references, before)
+                rates = [(then - now) / step for now, then in zip(*ends, strict=True)]
+                self.slave.setReal(references, ends[0])
                 self.slave.setRealInputDerivatives(references, [1] * len(rates), rates)
             self.slave.doStep(self.time, step)
-        self.time += step
+
+    def _within(self, name: str, value: Any) -> float:
+        """A value of an input, checked; quick where it is as it should be."""
+        if name not in self._bounds:
+            variable = self._variable(name)
+            if variable.causality != "input" or variable.type not in ("Real", "Float64") or variable.dimensions:
+                raise ValueError(f"{name} is of kind {variable.causality}: a real input is needed")
+            self._bounds[name] = bounds(variable)
+        low, high = self._bounds[name]
+        if type(value) is float and low <= value <= high and math.isfinite(value):
+            return value
+        return float(number(self.variables[name], plain(name, value)))
 
     def steady(
         self, names: Sequence[str], step: float = 5.0, relative: float = 1e-9, absolute: float = 0.0, most: int = 50
@@ -237,7 +278,7 @@ class Instance:
         Parameters
         ----------
         names
-            Real variables that become steady under constant inputs.
+            Variables that become steady under constant inputs.
         step
             Time step [s]: long against the rail's passage through the model, so that a few of them are enough.
         relative, absolute
@@ -245,49 +286,114 @@ class Instance:
         most
             Largest number of steps.
 
+        Returns
+        -------
+        numpy.ndarray
+            A value for each variable.
+
         Raises
         ------
+        ValueError, TypeError
+            No names, an unknown one, a step or a tolerance that cannot be.
         SimulationError
-            They do not rest.
+            They do not rest: the instance is then where the last step led. Or as `step`.
         """
-        before = np.full(len(names), np.nan)
+        self.slave.check()
+        listed, step = names_of("names", names), seconds("step", step, positive=True)
+        if not listed:
+            raise ValueError("names: at least one variable is needed")
+        if isinstance(most, bool) or not isinstance(most, int):
+            raise TypeError(f"most = {most!r}: a whole number of steps is needed")
+        if most < 2:
+            raise ValueError(f"most = {most}: at least 2 steps are needed, to compare the second with the first")
+        for what, tolerance in (("relative", relative), ("absolute", absolute)):
+            if not isinstance(plain(what, tolerance), int | float) or not 0.0 <= tolerance < math.inf:
+                raise ValueError(f"{what} = {tolerance!r}: a finite number of 0 or more is needed")
+        before = np.array(math.nan)
         for _ in range(most):
             self.step(step)
-            now = np.array(self.get(*names))
+            now = np.array(self.get(listed))
             if np.allclose(now, before, rtol=relative, atol=absolute):
                 return now
             before = now
         raise SimulationError(f"not steady after {most * step:g} s")
 
     def derivative(self, outputs: Sequence[str], known: str) -> list[float]:
-        """Partial derivatives of outputs with respect to one input."""
-        unknown = [self._variable(name).valueReference for name in outputs]
-        with reported(self.messages):
-            return list(self.slave.getDirectionalDerivative(unknown, [self._variable(known).valueReference], [1.0]))
+        """Partial derivatives of outputs with respect to one input, at the end of the last step.
 
-    def save(self) -> tuple[Any, float]:
-        """Return the state as it is now."""
-        return self.slave.getFMUState(), self.time
+        Parameters
+        ----------
+        outputs
+            Names of outputs.
+        known
+            Name of the input.
 
-    def restore(self, saved: tuple[Any, float]) -> None:
-        """Go back to a saved state, which is kept."""
-        self.slave.setFMUState(saved[0])
-        self.time = saved[1]
+        Returns
+        -------
+        list of float
+            A derivative for each output, in the output's unit over the input's.
 
-    def forget(self, saved: tuple[Any, float]) -> None:
-        """Free a saved state."""
-        self.slave.freeFMUState(saved[0])
+        Raises
+        ------
+        ValueError
+            An unknown name, one that is no output or no input.
+        TypeError
+            A name that is no text.
+        SimulationError
+            The FMU has no derivatives, or the component cannot compute them.
+        """
+        self.slave.check()
+        unknown = [self._variable(name) for name in names_of("outputs", outputs)]
+        wanted = self._variable(known)
+        for variable, causality in [*((variable, "output") for variable in unknown), (wanted, "input")]:
+            if variable.causality != causality or self._kind(variable) not in ("Real", "Float64"):
+                raise ValueError(
+                    f"{variable.name} is of kind {variable.causality}: the name of an {causality} is needed"
+                )
+        if not self.slave.can_differentiate:
+            raise SimulationError(f"{self.fmu} does not provide derivatives")
+        references = [variable.valueReference for variable in unknown]
+        with self._calls("derivative", Phase.INITIALISING, Phase.RUNNING, undo=True):
+            return list(self.slave.getDirectionalDerivative(references, [wanted.valueReference], [1.0]))
 
-    def close(self) -> None:
-        """Terminate and free."""
-        # After an error there is nothing to terminate.
-        with suppress(FMICallException):
-            self.slave.terminate()
-        disconnect(self.slave)
+    # ---- in another process ------------------------------------------------------------------------------------------
 
-    def _variable(self, name: str) -> ModelVariable:
-        """A variable by name."""
-        try:
-            return self.variables[name]
-        except KeyError:
-            raise ValueError(f"there is no variable {name}{near(name, self.variables)}") from None
+    @classmethod
+    def load(cls, saved: SavedState | bytes | AnyPath, fmu: AnyPath | None = None, name: str = "instance") -> Self:
+        """Make an instance that goes on from a saved state: of another process, or of another instance.
+
+        Parameters
+        ----------
+        saved
+            What `save` returned, its bytes, or the path of the file that holds them.
+        fmu
+            Path of the FMU, of FMI 2.0 or 3.0; by default the package's own.
+        name
+            Name of the instance, in messages.
+
+        Raises
+        ------
+        ValueError, TypeError, OSError, SimulationError
+            As `restore`, and as making an instance.
+        """
+        state = state_of(saved)
+        contents = state._read()
+        made = cls.__new__(cls)
+        Instance.__init__(made, fmu, name, contents.time, **contents.parameters)
+        made.restore(SavedState(contents.time, None, None, contents))
+        return made
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Pickled and copied by its state, with what a class that is derived from this one has added."""
+        added = {name: value for name, value in vars(self).items() if name not in OWN}
+        return loaded, (type(self), shipped(self.fmu), self.name, self._first, self.save().to_bytes()), added
+
+
+OWN = ("fmu", "name", "slave", "variables", "lengths", "_first", "_plans", "_bounds")
+
+
+def loaded(kind: type[Instance], fmu: str, name: str, first: tuple[float, dict[str, Any]], data: bytes) -> Instance:
+    """An instance from its pickled form."""
+    instance = kind.load(data, fmu_path(fmu) if fmu in ("2.0", "3.0") else fmu, name)
+    instance._first = first
+    return instance

@@ -1,0 +1,258 @@
+"""What an instance is told and asked: variables by name, and calls that are refused before they can do harm."""
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from itertools import groupby
+from typing import Any
+
+import numpy as np
+from fmpy.fmi1 import FMICallException
+from fmpy.model_description import ModelVariable
+
+from .arguments import names_of, plain
+from .errors import SimulationError
+from .native import FMU3Component, Phase
+from .variables import choices, near, shape, start_values
+
+# Why a call cannot be, and what can.
+WAY_OUT = {
+    Phase.INSTANTIATED: "the instance is not initialised: reset() it",
+    Phase.INITIALISING: "call start() first",
+    Phase.RUNNING: "the instance was started before: go on with set() and step(), or begin anew with reset()",
+    Phase.ENDED: "the instance was terminated: restore() a saved state, reset() it, or make a new one",
+    Phase.FAILED: "a call before has failed: restore() a saved state, reset() the instance, or make a new one",
+}
+
+
+class Access:
+    """The variables of an instance, and the way into every call."""
+
+    fmu: str
+    name: str
+    slave: Any
+    variables: Mapping[str, ModelVariable]
+    lengths: dict[str, int]
+    # How groups of variables are read.
+    _plans: dict[tuple[str, ...], list[tuple[str, list[Any]]]]
+
+    # ---- calls -------------------------------------------------------------------------------------------------------
+
+    @contextmanager
+    def _calls(self, what: str, *phases: Phase, undo: bool = False) -> Iterator[None]:
+        """Calls of the component as one: in some phases only, by one thread, and on request undone where they fail."""
+        slave = self.slave
+        with slave.lock:
+            slave.check()
+            if phases and slave.phase not in phases:
+                raise SimulationError(f"{what}(): {WAY_OUT[slave.phase]}")
+            if undo:
+                slave.remember()
+            slave.messages.clear()
+            try:
+                yield
+            except BaseException as error:
+                words, failed = "; ".join(slave.messages), slave.phase is Phase.FAILED
+                back = undo and slave.gone is None and slave.go_back()
+                if not isinstance(error, FMICallException):
+                    raise
+                after = WAY_OUT[Phase.FAILED]
+                if back:
+                    after = f"the instance is as it was before {what}(), at t = {self.slave.time:g} s"
+                raise SimulationError((words or str(error)) + (f"; {after}" if failed else "")) from error
+
+    def _kind(self, variable: ModelVariable) -> str:
+        """The type in the names of the functions that read and set a variable."""
+        third = isinstance(self.slave, FMU3Component)
+        kinds: dict[str, str] = {"Enumeration": "Int64" if third else "Integer"}
+        return kinds.get(variable.type, str(variable.type))
+
+    def _variable(self, name: Any, settable: bool = False) -> ModelVariable:
+        """A variable by name; where it is to be set, a table of parameters by its first element."""
+        if not isinstance(name, str):
+            raise TypeError(f"the name of a variable is a text, not {name!r}")
+        variable = self.variables.get(name) or (self.variables.get(f"{name}[1]") if settable else None)
+        if variable is None:
+            raise ValueError(f"there is no variable {name}{near(name, self.variables)}")
+        return variable
+
+    # ---- values ------------------------------------------------------------------------------------------------------
+
+    def set(self, **values: Any) -> None:
+        """Set variables, all or none; in any order, though one may limit another.
+
+        Parameters
+        ----------
+        **values
+            Inputs, and parameters: before `start` all but the lengths of arrays of FMI 3.0, from then on those that are
+            tunable. Choices by name or number, arrays as a sequence.
+
+        Raises
+        ------
+        ValueError
+            An unknown name or choice, a value out of its range, a variable that cannot be set, or not any more.
+        TypeError
+            A value that is no number.
+        SimulationError
+            The component refuses a value beside the others, a load above `largest_load` for example.
+        """
+        self.slave.check()
+        with self._calls("set", Phase.INITIALISING, Phase.RUNNING, undo=self.slave.phase is Phase.INITIALISING):
+            self._set(values)
+
+    def _set(self, values: Mapping[str, Any]) -> None:
+        """Set variables: lengths of arrays first, then choices and counts, at last all quantities in one call."""
+        texts = {name: value for name, value in values.items() if self._variable(name, True).type == "String"}
+        rest = {name: plain(name, value) for name, value in values.items() if name not in texts}
+        calls: dict[str, tuple[list[int], list[Any]]] = {}
+        lengths = {}
+        for name, value in start_values(self.fmu, rest).items():
+            variable = self.variables[name]
+            self._check_settable(variable)
+            elements = value if isinstance(value, list) else [value]
+            if len(elements) != math.prod(shape(variable, self.lengths)):
+                raise ValueError(f"{name}: {math.prod(shape(variable, self.lengths))} elements, not {len(elements)}")
+            if name in self.lengths:
+                lengths[name] = variable.valueReference, int(value)
+                continue
+            references, numbers = calls.setdefault(self._kind(variable), ([], []))
+            references.append(variable.valueReference)
+            numbers.extend(elements)
+        for name, text in texts.items():
+            if not isinstance(text, str):
+                raise TypeError(f"{name} = {text!r}: a text is needed")
+            references, numbers = calls.setdefault("String", ([], []))
+            references.append(self.variables[name].valueReference)
+            numbers.append(text)
+        if lengths:
+            self.slave.enterConfigurationMode()
+            for name, (reference, length) in lengths.items():
+                self.slave.setUInt64([reference], [length])
+                self.lengths[name] = length
+            self.slave.exitConfigurationMode()
+        for kind in sorted(calls, key=lambda kind: kind in ("Real", "Float64")):
+            getattr(self.slave, f"set{kind}")(*calls[kind])
+
+    def _check_settable(self, variable: ModelVariable) -> None:
+        """Refuse what can be set before `start` alone."""
+        name, phase = variable.name, self.slave.phase
+        if variable.causality == "structuralParameter" and phase is not Phase.INSTANTIATED:
+            raise ValueError(f"{name} is the length of arrays: give it where the instance is made")
+        if phase is Phase.RUNNING and variable.causality == "parameter" and variable.variability != "tunable":
+            raise ValueError(
+                f"{name} is fixed from start() on: give it where the instance is made, or set() it after reset();"
+                " inputs and tunable parameters may be set now"
+            )
+
+    def get(self, *names: str | Sequence[str]) -> list[float]:
+        """Return the values of variables.
+
+        Parameters
+        ----------
+        *names
+            Names, or one sequence of them; that of an array, `profile.pressure` for example, stands for its elements
+            one after another.
+
+        Returns
+        -------
+        list of float
+            Quantities in the units of `variables`; choices and counts as numbers.
+
+        Raises
+        ------
+        ValueError
+            An unknown name, or a variable that is no number.
+        TypeError
+            A name that is no text.
+        SimulationError
+            There are no outputs: before `start`, of parameters that do not go together.
+        """
+        self.slave.check()
+        single = len(names) == 1 and not isinstance(names[0], str)
+        asked = tuple(names_of("get()", names[0] if single else names))
+        before = self.slave.phase is Phase.INITIALISING
+        with self._calls("get", Phase.INITIALISING, Phase.RUNNING, Phase.ENDED, Phase.FAILED, undo=before):
+            plan = self._plans.get(asked) or self._plan(asked)
+            return [value for getter, arguments in plan for value in getattr(self.slave, getter)(*arguments)]
+
+    def _plan(self, names: tuple[str, ...]) -> list[tuple[str, list[Any]]]:
+        """The calls that read variables, in their order; kept for the next time."""
+        variables = [variable for name in names for variable in self._elements(name)]
+        plan = []
+        for kind, together in groupby(variables, key=self._kind):
+            group = list(together)
+            if kind in ("String", "Binary", "Clock"):
+                raise ValueError(f"{group[0].name} is no number, but of the type {kind}")
+            arguments: list[Any] = [[variable.valueReference for variable in group]]
+            if isinstance(self.slave, FMU3Component):
+                arguments.append(sum(math.prod(shape(variable, self.lengths)) for variable in group))
+            plan.append((f"get{kind}", arguments))
+        if len(self._plans) > 100:
+            self._plans.clear()
+        self._plans[names] = plan
+        return plan
+
+    def _elements(self, name: str) -> list[ModelVariable]:
+        """The variable of a name, or in FMI 2.0 the elements of what is an array in FMI 3.0."""
+        if name in self.variables:
+            return [self.variables[name]]
+        elements = [variable for other, variable in self.variables.items() if other.startswith(f"{name}[")]
+        return elements or [self._variable(name)]
+
+    def parameters(self) -> dict[str, Any]:
+        """Parameters as they are, choices by name: what an instance like this one is made with.
+
+        Raises
+        ------
+        SimulationError
+            The instance is closed.
+        """
+        found: dict[str, Any] = {}
+        named = [
+            variable
+            for variable in self.variables.values()
+            if variable.causality in ("parameter", "structuralParameter") and variable.type != "String"
+        ]
+        with self._calls("parameters"):
+            for variable in named:
+                values = self.get(variable.name)
+                texts = {chosen: choice for choice, chosen in choices(variable).items()}
+                plain_values = [texts.get(int(value), value) if texts else value for value in values]
+                array = variable.name.partition("[")[0]
+                if variable.dimensions or array != variable.name:
+                    found.setdefault(array, []).extend(plain_values)
+                else:
+                    found[variable.name] = plain_values[0]
+        return found
+
+    def fields(self) -> dict[str, np.ndarray]:
+        """Fields of the patch as they are now, each as an array of strips by cells: FMI 3.0 alone has them.
+
+        They are what `plots.patch_fields` draws.
+
+        Returns
+        -------
+        dict of numpy.ndarray
+            Places `x`, `y` [m], `pressure`, `shear_x`, `shear_y` [Pa], `slip_x`, `slip_y` [m/s], `temperature` [K],
+            `wear_depth` [m].
+
+        Raises
+        ------
+        ValueError
+            An FMU of FMI 2.0, or a line contact.
+        SimulationError
+            As `get`.
+        """
+        self.slave.check()
+        names = [name for name, variable in self.variables.items() if name.startswith("patch.") and variable.dimensions]
+        if not names:
+            raise ValueError(f"{self.fmu} has no fields of the patch: take the FMU of FMI 3.0")
+        with self._calls("fields"):
+            if self.get("contact_model") != [choices(self.variables["contact_model"])["patch"]]:
+                raise ValueError("a line contact has no fields: they are those of contact_model = 'patch'")
+            found = {
+                name.removeprefix("patch."): np.reshape(self.get(name), shape(self.variables[name], self.lengths))
+                for name in names
+            }
+        x, y = np.meshgrid(found.pop("x"), found.pop("y"))
+        return {"x": x, "y": y, **found}
