@@ -1,9 +1,9 @@
 """What an instance is told and asked: variables by name, and calls that are refused before they can do harm."""
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Mapping, Sequence
 from itertools import groupby
+from types import TracebackType
 from typing import Any
 
 import numpy as np
@@ -13,7 +13,7 @@ from fmpy.model_description import ModelVariable
 from .arguments import names_of, plain
 from .errors import SimulationError
 from .native import FMU3Component, Phase
-from .variables import choices, near, shape, start_values
+from .variables import bounds, choices, near, shape, start_values
 
 # Why a call cannot be, and what can.
 WAY_OUT = {
@@ -23,6 +23,53 @@ WAY_OUT = {
     Phase.ENDED: "the instance was terminated: restore() a saved state, reset() it, or make a new one",
     Phase.FAILED: "a call before has failed: restore() a saved state, reset() the instance, or make a new one",
 }
+
+
+# Bounds that nothing lies between.
+NONE = (math.inf, -math.inf)
+
+
+class Calls:
+    """Calls of the component that belong together, as a context: a class, as it stands around each step."""
+
+    __slots__ = ("phases", "slave", "undo", "what")
+
+    def __init__(self, slave: Any, what: str, phases: tuple[Phase, ...], undo: bool) -> None:
+        """Of an instance, in the name of one of its methods."""
+        self.slave, self.what, self.phases, self.undo = slave, what, phases, undo
+
+    def __enter__(self) -> None:
+        """Wait for the calls of other threads, and see whether these can be."""
+        slave = self.slave
+        slave.lock.acquire()
+        try:
+            slave.check()
+            if self.phases and slave.phase not in self.phases:
+                raise SimulationError(f"{self.what}(): {WAY_OUT[slave.phase]}")
+            if self.undo:
+                slave.remember()
+            slave.messages.clear()
+        except BaseException:
+            slave.lock.release()
+            raise
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        """Undo what failed, and say it in the component's words."""
+        slave = self.slave
+        try:
+            if error is None:
+                return
+            words, failed = "; ".join(slave.messages), slave.phase is Phase.FAILED
+            back = self.undo and slave.gone is None and slave.go_back()
+            if isinstance(error, FMICallException):
+                after = WAY_OUT[Phase.FAILED]
+                if back:
+                    after = f"the instance is as it was before {self.what}(), at t = {slave.time:g} s"
+                raise SimulationError((words or str(error)) + (f"; {after}" if failed else "")) from error
+        finally:
+            slave.lock.release()
 
 
 class Access:
@@ -35,31 +82,14 @@ class Access:
     lengths: dict[str, int]
     # How groups of variables are read.
     _plans: dict[tuple[str, ...], list[tuple[str, list[Any]]]]
+    # Between what values real inputs lie; other variables between none.
+    _bounds: dict[str, tuple[float, float]]
 
     # ---- calls -------------------------------------------------------------------------------------------------------
 
-    @contextmanager
-    def _calls(self, what: str, *phases: Phase, undo: bool = False) -> Iterator[None]:
+    def _calls(self, what: str, *phases: Phase, undo: bool = False) -> "Calls":
         """Calls of the component as one: in some phases only, by one thread, and on request undone where they fail."""
-        slave = self.slave
-        with slave.lock:
-            slave.check()
-            if phases and slave.phase not in phases:
-                raise SimulationError(f"{what}(): {WAY_OUT[slave.phase]}")
-            if undo:
-                slave.remember()
-            slave.messages.clear()
-            try:
-                yield
-            except BaseException as error:
-                words, failed = "; ".join(slave.messages), slave.phase is Phase.FAILED
-                back = undo and slave.gone is None and slave.go_back()
-                if not isinstance(error, FMICallException):
-                    raise
-                after = WAY_OUT[Phase.FAILED]
-                if back:
-                    after = f"the instance is as it was before {what}(), at t = {self.slave.time:g} s"
-                raise SimulationError((words or str(error)) + (f"; {after}" if failed else "")) from error
+        return Calls(self.slave, what, phases, undo)
 
     def _kind(self, variable: ModelVariable) -> str:
         """The type in the names of the functions that read and set a variable."""
@@ -96,9 +126,14 @@ class Access:
         SimulationError
             The component refuses a value beside the others, a load above `largest_load` for example.
         """
-        self.slave.check()
-        with self._calls("set", Phase.INITIALISING, Phase.RUNNING, undo=self.slave.phase is Phase.INITIALISING):
-            self._set(values)
+        slave = self.slave
+        slave.check()
+        with self._calls("set", Phase.INITIALISING, Phase.RUNNING, undo=slave.phase is Phase.INITIALISING):
+            if all(self._fits(name, value) for name, value in values.items()):
+                references = [self.variables[name].valueReference for name in values]
+                (slave.setFloat64 if slave.version == "fmi3" else slave.setReal)(references, list(values.values()))
+            else:
+                self._set(values)
 
     def _set(self, values: Mapping[str, Any]) -> None:
         """Set variables: lengths of arrays first, then choices and counts, at last all quantities in one call."""
@@ -132,6 +167,15 @@ class Access:
             self.slave.exitConfigurationMode()
         for kind in sorted(calls, key=lambda kind: kind in ("Real", "Float64")):
             getattr(self.slave, f"set{kind}")(*calls[kind])
+
+    def _fits(self, name: str, value: Any) -> bool:
+        """Whether a value is surely one of a real input: the quick way for those that are set before each step."""
+        bounds_of = self._bounds.get(name)
+        if bounds_of is None:
+            variable = self._variable(name, True)
+            real = variable.type in ("Real", "Float64") and variable.causality == "input" and not variable.dimensions
+            bounds_of = self._bounds[name] = bounds(variable) if real else NONE
+        return type(value) is float and bounds_of[0] <= value <= bounds_of[1] and math.isfinite(value)
 
     def _check_settable(self, variable: ModelVariable) -> None:
         """Refuse what can be set before `start` alone."""

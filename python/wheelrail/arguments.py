@@ -18,6 +18,8 @@ def seconds(what: str, value: Any, positive: bool = False) -> float:
     ValueError
         It is not finite, or not positive where it must be.
     """
+    if type(value) is float and 0.0 < value < math.inf:
+        return value
     needed = f"a {'positive ' if positive else ''}finite number of seconds is needed"
     if isinstance(value, bool | np.bool_) or not isinstance(value, numbers.Real):
         raise TypeError(f"{what} = {value!r}: {needed}")
@@ -43,6 +45,8 @@ def names_of(what: str, names: Any) -> list[str]:
     TypeError
         It is something else than texts.
     """
+    if type(names) in (tuple, list) and all(type(name) is str for name in names):
+        return list(names)
     listed = [names] if isinstance(names, str) else names
     if isinstance(listed, Mapping | bytes) or not isinstance(listed, Iterable):
         raise TypeError(f"{what} = {names!r}: names of variables are needed")

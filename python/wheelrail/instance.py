@@ -11,13 +11,14 @@ from typing import Any, Self
 import numpy as np
 from fmpy.fmi1 import FMICallException
 
+from .access import NONE
 from .archive import AnyPath, description, fmu_path, shipped
 from .arguments import names_of, plain, seconds, values_of
 from .errors import InstanceClosedError, SimulationError
 from .native import FMU3Component, Phase, connect
 from .saving import Saving
 from .states import SavedState, state_of
-from .variables import bounds, by_name, choices, number, unit
+from .variables import by_name, choices, number, unit
 
 __all__ = ["Instance", "InstanceClosedError", "SimulationError"]
 
@@ -94,9 +95,7 @@ class Instance(Saving):
             if variable.causality == "structuralParameter"
         }
         self._first = start_time, dict(start_values)
-        # How groups of variables are read, and what inputs lie between.
-        self._plans: dict[tuple[str, ...], list[tuple[str, list[Any]]]] = {}
-        self._bounds: dict[str, tuple[float, float]] = {}
+        self._plans, self._bounds = {}, {}
         try:
             self._initialise()
         except BaseException:
@@ -260,15 +259,12 @@ class Instance(Saving):
 
     def _within(self, name: str, value: Any) -> float:
         """A value of an input, checked; quick where it is as it should be."""
-        if name not in self._bounds:
-            variable = self._variable(name)
-            if variable.causality != "input" or variable.type not in ("Real", "Float64") or variable.dimensions:
-                raise ValueError(f"{name} is of kind {variable.causality}: a real input is needed")
-            self._bounds[name] = bounds(variable)
-        low, high = self._bounds[name]
-        if type(value) is float and low <= value <= high and math.isfinite(value):
-            return value
-        return float(number(self.variables[name], plain(name, value)))
+        if self._fits(name, value):
+            return float(value)
+        variable = self._variable(name)
+        if self._bounds[name] == NONE:
+            raise ValueError(f"{name} is of kind {variable.causality}: a real input is needed")
+        return float(number(variable, plain(name, value)))
 
     def steady(
         self, names: Sequence[str], step: float = 5.0, relative: float = 1e-9, absolute: float = 0.0, most: int = 50

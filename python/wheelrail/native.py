@@ -39,6 +39,10 @@ LEADS_TO = {
     "terminate": Phase.ENDED,
     "reset": Phase.INSTANTIATED,
 }
+# The functions that change phase or time, by their names in each version of FMI.
+NAMES = ["DoStep", "SetupExperiment", "EnterInitializationMode", "ExitInitializationMode", "Terminate", "Reset"]
+NAMES += ["FreeInstance", *(f"{verb}FMU{state}" for verb in ("Get", "Set", "Free") for state in ("state", "State"))]
+FOLLOWED = {f"{version}{name}": name.lower() for version in ("fmi2", "fmi3") for name in NAMES}
 DISCARD, ERROR, FATAL = 2, 3, 4
 
 # The logger of FMI 2.0 is variadic in C, which ctypes cannot declare. Where arguments are passed in registers, as on
@@ -148,39 +152,42 @@ class Component:
             raise InstanceClosedError(self.gone)
 
     def _call(self, fname: str, *args: Any) -> Any:
-        """Every call of FMPy's: one at a time, none after the end, and what it does to the phase."""
-        function = fname[4:].lower()
+        """Every call of FMPy's: one at a time, none after the end, and what it does to phase and time."""
         with self.lock:
-            self.check()
+            if self.gone is not None:
+                raise InstanceClosedError(self.gone)
+            function = FOLLOWED.get(fname)
             if function == "freeinstance":
                 return self.free()
-            state = address(args[1]) if function.endswith("fmustate") else None
-            if function == "getfmustate":
-                self.free_dropped()
+            # Freed, a state has no address any more.
+            state = address(args[1]) if function == "freefmustate" else None
             try:
                 result = super()._call(fname, *args)  # type: ignore[misc]
             except FMICallException as error:
                 self.note_failure(function, error.status)
                 raise
-            self.note_success(function, args, state)
+            if function is not None:
+                self.note_success(function, args, state)
             return result
 
-    def note_success(self, function: str, args: tuple[Any, ...], state: int | None) -> None:
+    def note_success(self, function: str, args: tuple[Any, ...], freed: int | None) -> None:
         """Follow phase and time."""
-        self.phase = LEADS_TO.get(function, self.phase)
         if function == "dostep":
             self.time = float(args[1]) + float(args[2])
-        elif function == "setupexperiment" or (function == "enterinitializationmode" and len(args) > 1):
-            self.time = float(args[3])
         elif function == "getfmustate":
             self.states[address(args[1]) or 0] = self.phase, self.time
+            self.free_dropped()
         elif function == "setfmustate":
             # Of one that was not saved here, but made of bytes through FMPy, nothing is known.
-            self.phase, self.time = self.states.get(state or 0, (Phase.RUNNING, self.time))
+            self.phase, self.time = self.states.get(address(args[1]) or 0, (Phase.RUNNING, self.time))
         elif function == "freefmustate":
-            self.states.pop(state or 0, None)
+            self.states.pop(freed or 0, None)
+        else:
+            if function in ("setupexperiment", "enterinitializationmode") and len(args) > 1:
+                self.time = float(args[3])
+            self.phase = LEADS_TO.get(function, self.phase)
 
-    def note_failure(self, function: str, status: int) -> None:
+    def note_failure(self, function: str | None, status: int) -> None:
         """Follow the phase: after an error little is allowed, after a fatal one nothing, not even to free."""
         if status == ERROR or (status == DISCARD and function == "dostep"):
             self.phase = Phase.FAILED
