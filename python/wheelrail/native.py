@@ -68,6 +68,10 @@ def free_once(function: Callable[[int], None], component: int, _kept: tuple[Any,
     function(component)
 
 
+# The functions of each library that was loaded, by its path.
+FUNCTIONS: dict[str, dict[str, Any]] = {}
+
+
 class Component:
     """What this package adds to FMPy's class of an instance.
 
@@ -84,6 +88,8 @@ class Component:
     """
 
     component: Any
+    dll: Any
+    _functions: dict[str, Any]
     version: str
 
     def __init__(self, model: ModelDescription, folder: str, name: str) -> None:
@@ -124,11 +130,20 @@ class Component:
             raise
         except Exception as error:
             raise SimulationError("; ".join(self.messages) or str(error)) from error
-        free = self._functions[f"{self.version}FreeInstance"]  # type: ignore[attr-defined]
+        free = self._functions[f"{self.version}FreeInstance"]
         self.finalizer = weakref.finalize(self, free_once, free, self.component, kept)
         # At the end of the process memory goes as a whole, and a thread may still be in a call.
         self.finalizer.atexit = False
         COMPONENTS.add(self)
+
+    def _loadFunctions(self) -> None:  # noqa: N802
+        """As FMPy's, which takes longer than all else of an instance: once for a library."""
+        known = FUNCTIONS.get(self.dll._name)
+        if known is None:
+            super()._loadFunctions()  # type: ignore[misc]
+            FUNCTIONS[self.dll._name] = self._functions
+        else:
+            self._functions = known
 
     def begin(self, model: ModelDescription) -> tuple[Any, ...]:
         """Instantiate; return what must live as long as the instance."""
