@@ -161,12 +161,21 @@ class Instance(Saving):
 
     @property
     def time(self) -> float:
-        """Time of the instance [s]; a master may take the round-off of its own sum out of it."""
+        """Time of the instance [s]; a master may take the round-off of a sum of steps out of it.
+
+        Raises
+        ------
+        TypeError, ValueError
+            No number, or another time than the instance's but for round-off.
+        """
         return float(self.slave.time)
 
     @time.setter
     def time(self, time: float) -> None:
-        self.slave.time = seconds("time", time)
+        now, given = self.time, seconds("time", time)
+        if abs(given - now) > 1e-9 * max(1.0, abs(now)):
+            raise ValueError(f"time = {time!r}: the instance is at t = {now:g} s, and goes on by step()")
+        self.slave.time = given
 
     def __repr__(self) -> str:
         """What it is, how far, and its main inputs and outputs."""
