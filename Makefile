@@ -3,7 +3,7 @@
 #   make fmu     target/WheelRailContact.fmu
 #   make fmu3    target/WheelRailContact-fmi3.fmu, the same library under FMI 3.0
 #   make platforms  win64 in the same archive, and aarch64 Linux: built where there is a compiler, run under wine and qemu
-#   make wheel   dist/wheelrail-*.whl: a Python package with the FMUs in it
+#   make wheel   dist/wheelrail-*.whl: a Python package with the FMUs and the command line in it
 #   make demo    the paper's cases, a braking manoeuvre and the patch: results/
 #   make measurements  fits to measured creep curves, a twin disc, wear: results/ and docs/measurements.md
 #   make couplings  the component in vehicle models, masters and sweeps: results/, one page each in docs/couplings/
@@ -108,11 +108,14 @@ platforms: fmu
 	@$(PY) tools/platforms.py $(PLATFORMS)
 	@$(MAKE) --no-print-directory fmu fmu3
 
-# python/ and every FMU that is built; the version is that of Cargo.toml.
+# python/, every FMU that is built, and the command line; the version is that of Cargo.toml. Where the FMU has libraries
+# for other platforms, a second wheel without the command line is for these.
 wheel: fmu fmu3 $(VENV)/ready
 	$(call say,Python package)
 	@rm -rf dist
 	@$(PY) -m hatchling build -t wheel -d dist
+	@if $(PY) -m zipfile -l $(FMU) | grep -o 'binaries/[a-z0-9]*/' | grep -qv /linux64/; then \
+	  WHEELRAIL_WHEEL=any $(PY) -m hatchling build -t wheel -d dist; fi
 
 # The description that is checked in; a test compares.
 description: command

@@ -1,9 +1,12 @@
 """The Python package: its wheel where there is pip alone, and its functions against the native simulation."""
 
 import json
+import os
 import re
+import shutil
 import subprocess
 import sys
+import sysconfig
 import tomllib
 import zipfile
 from pathlib import Path
@@ -15,11 +18,18 @@ import pytest
 REPOSITORY = Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(REPOSITORY / "python"))
 
+sys.path.insert(0, str(REPOSITORY / "tools"))
+
+import binaries  # noqa: E402
 import wheelrail  # noqa: E402
 
 TABLE = {"time": [0.0, 0.5], "creepage": [0.0, 0.02], "normal_load": [60e3, 80e3]}
 CHOSEN = {"wheel_speed": 40.0, "friction_law": "piecewise_linear", "friction_hot": 0.2}
 THIRD = REPOSITORY / "target" / "WheelRailContact-fmi3.fmu"
+# What a wheel with the command line is for: what loads with glibc 2.17, of 2014, or this machine.
+PORTABLE = REPOSITORY / "target" / "library.portable"
+OLD_GLIBC = PORTABLE.exists() and PORTABLE.read_text().strip() == "True"
+PLATFORM = "manylinux2014_x86_64" if OLD_GLIBC else re.sub(r"\W", "_", sysconfig.get_platform())
 # What the environment says of itself, after what the documentation has.
 ASK = """
 import json
@@ -33,13 +43,23 @@ print(json.dumps({
 """
 
 
-@pytest.fixture(scope="module")
-def wheel(fmu, tmp_path_factory):
-    """Build the wheel as `make wheel` does; return its path."""
-    folder = tmp_path_factory.mktemp("dist")
+def built_wheel(folder, **environment):
+    """Build a wheel as `make wheel` does; return its path."""
     build = [sys.executable, "-m", "hatchling", "build", "-t", "wheel", "-d", folder]
-    subprocess.run(build, check=True, capture_output=True, cwd=REPOSITORY)
+    subprocess.run(build, check=True, capture_output=True, cwd=REPOSITORY, env=os.environ | environment)
     return next(folder.glob("*.whl"))
+
+
+@pytest.fixture(scope="module")
+def wheel(fmu, command, tmp_path_factory):
+    """Build the wheel of this platform; return its path."""
+    return built_wheel(tmp_path_factory.mktemp("dist"))
+
+
+@pytest.fixture(scope="module")
+def command(request):
+    """Return the path of the command line; its fixture has the name that the package has here."""
+    return request.getfixturevalue("wheelrail")
 
 
 @pytest.fixture(scope="module")
@@ -77,14 +97,60 @@ def blocks(path):
 def test_files_of_the_wheel(wheel, fmu):
     """Sources, the FMUs as they are built, types, licences, and the crate's version."""
     version = tomllib.loads((REPOSITORY / "Cargo.toml").read_text())["package"]["version"]
-    assert wheel.name == f"wheelrail-{version}-py3-none-any.whl"
+    assert wheel.name == f"wheelrail-{version}-py3-none-{PLATFORM}.whl"
     with zipfile.ZipFile(wheel) as archive:
         names = set(archive.namelist())
         sources = {path.name for path in (REPOSITORY / "python" / "wheelrail").glob("*.py")}
         assert {f"wheelrail/{name}" for name in sources | {"py.typed", "data/braking.csv"}} <= names
         for built in (REPOSITORY / "target").glob("WheelRailContact*.fmu"):
             assert archive.read(f"wheelrail/fmu/{built.name}") == built.read_bytes()
-        assert any(name.endswith("licenses/LICENSE-MIT") for name in names)
+        for licence in ("LICENSE-MIT", "THIRD-PARTY.txt", "COMMAND.txt"):
+            assert any(name.startswith("wheelrail-") and name.endswith(f"/{licence}") for name in names)
+
+
+def test_command_in_the_wheel(wheel, command):
+    """The command line as it was built, which needs no more than the platform's name promises."""
+    with zipfile.ZipFile(wheel) as archive:
+        (name,) = [name for name in archive.namelist() if ".data/scripts/" in name]
+        assert name.endswith(f"/{command.name}")
+        assert archive.read(name) == command.read_bytes()
+        assert archive.getinfo(name).external_attr >> 16 & 0o111
+        assert b"Root-Is-Purelib: false" in archive.read(name.partition(".data/")[0] + ".dist-info/WHEEL")
+    if OLD_GLIBC and shutil.which("objdump"):
+        # The old glibc, and no library beside it.
+        assert (0, 0) < binaries.newest_glibc(command) <= binaries.OLDEST_GLIBC
+        assert binaries.needs(command) <= binaries.NEEDED["linux64"]
+
+
+def test_wheel_of_the_other_platforms(wheel, command, tmp_path):
+    """For where there is no command line: a wheel with all that the first one has, but that."""
+    other = built_wheel(tmp_path, WHEELRAIL_WHEEL="any")
+    assert other.name == wheel.name.replace(PLATFORM, "any")
+    with zipfile.ZipFile(wheel) as first, zipfile.ZipFile(other) as second:
+        (program,) = set(first.namelist()) - set(second.namelist())
+        assert program.endswith(f"/{command.name}")
+        assert set(second.namelist()) < set(first.namelist())
+
+
+def test_command_runs_where_there_is_only_pip(fresh, tmp_path):
+    """It is found in the environment, and gives what the package gives, without this repository."""
+    _, folder = fresh("import wheelrail")
+    installed = folder / "venv" / "bin" / "wheelrail"
+    version = tomllib.loads((REPOSITORY / "Cargo.toml").read_text())["package"]["version"]
+
+    def run(*arguments):
+        paths = {"PATH": str(installed.parent), "HOME": str(tmp_path)}
+        done = subprocess.run(["wheelrail", *arguments], capture_output=True, text=True, cwd=tmp_path, env=paths)
+        assert done.returncode == 0, done.stderr
+        return done.stdout
+
+    assert run("--version") == f"wheelrail {version}\n"
+    assert "normal_load" in run("describe")
+    pd.DataFrame(TABLE).to_csv(tmp_path / "table.csv", index=False)
+    run("simulate", "table.csv", "-o", "out.csv", "--step", "0.01")
+    native = wheelrail.read_table(tmp_path / "out.csv")
+    result = wheelrail.simulate(TABLE, step=0.01, fmu=REPOSITORY / "target" / "WheelRailContact.fmu")
+    assert native["traction_force"].to_numpy() == pytest.approx(result["traction_force"].to_numpy(), rel=1e-9)
 
 
 @pytest.fixture(scope="module")

@@ -1,4 +1,7 @@
-"""Write modelDescription/licenses/THIRD-PARTY.txt: what is linked into the library, with the licence texts.
+"""Write what is linked into the library and into the command line, with the licence texts.
+
+modelDescription/licenses/THIRD-PARTY.txt goes into the FMU, python/licenses/COMMAND.txt with the command into the
+wheel.
 
 Usage: python tools/third_party_licenses.py   (in the repository, after `cargo fetch`)
 """
@@ -9,18 +12,22 @@ import subprocess
 from pathlib import Path
 
 REPOSITORY = Path(__file__).resolve().parent.parent
-OUTPUT = REPOSITORY / "modelDescription" / "licenses" / "THIRD-PARTY.txt"
+# The files, what each is of, and the features that it is built with.
+OUTPUTS = [
+    (REPOSITORY / "modelDescription" / "licenses" / "THIRD-PARTY.txt", "library", "fmi"),
+    (REPOSITORY / "python" / "licenses" / "COMMAND.txt", "command", "cli"),
+]
 
 
-def linked_packages():
-    """Packages of the library's normal dependencies, procedural macros and build scripts left out."""
+def linked_packages(features):
+    """Packages of the normal dependencies with some features, procedural macros and build scripts left out."""
     tree = subprocess.check_output(
         [
             "cargo",
             "tree",
             "--no-default-features",
             "--features",
-            "fmi",
+            features,
             "--edges",
             "normal,no-proc-macro",
             "--prefix",
@@ -36,7 +43,7 @@ def linked_packages():
     linked = {tuple(line.split()[:2]) for line in tree.splitlines() if line.strip()}
     metadata = json.loads(
         subprocess.check_output(
-            ["cargo", "metadata", "--format-version", "1", "--no-default-features", "--features", "fmi"],
+            ["cargo", "metadata", "--format-version", "1", "--no-default-features", "--features", features],
             cwd=REPOSITORY,
             text=True,
         )
@@ -57,10 +64,16 @@ def licence_texts(package):
 
 
 def main():
+    """Write each file."""
+    for output, what, features in OUTPUTS:
+        write(output, what, features)
+
+
+def write(output, what, features):
     """Write the list, then each text once."""
     texts = {}
-    lines = ["Software linked into the wheelrail library", "", "The Rust standard library: MIT OR Apache-2.0", ""]
-    for package in linked_packages():
+    lines = [f"Software linked into the wheelrail {what}", "", "The Rust standard library: MIT OR Apache-2.0", ""]
+    for package in linked_packages(features):
         numbers = []
         for text in licence_texts(package):
             key = hashlib.sha256(" ".join(text.split()).encode()).hexdigest()
@@ -69,7 +82,8 @@ def main():
         lines.append(f"{package['name']} {package['version']}: {package['license']}  {where}")
     for number, text in texts.values():
         lines += ["", "=" * 100, f"[{number}]", "", text]
-    OUTPUT.write_text("\n".join(lines) + "\n", encoding="utf-8")
+    output.parent.mkdir(exist_ok=True)
+    output.write_text("\n".join(lines) + "\n", encoding="utf-8")
 
 
 if __name__ == "__main__":
