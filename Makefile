@@ -114,7 +114,7 @@ wheel: fmu fmu3 $(VENV)/ready
 	$(call say,Python package)
 	@rm -rf dist
 	@$(PY) -m hatchling build -t wheel -d dist
-	@if $(PY) -m zipfile -l $(FMU) | grep -o 'binaries/[a-z0-9]*/' | grep -qv /linux64/; then \
+	@if $(PY) -m zipfile -l $(FMU) | grep -o 'binaries/[a-z0-9]*/' | grep -v /linux64/ > /dev/null; then \
 	  WHEELRAIL_WHEEL=any $(PY) -m hatchling build -t wheel -d dist; fi
 
 # The description that is checked in; a test compares.
