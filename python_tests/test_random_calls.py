@@ -17,7 +17,6 @@ import copy
 import faulthandler
 import gc
 import math
-import os
 import pickle
 import random
 import subprocess
@@ -394,12 +393,6 @@ def run(seeds, say=lambda text: None, until=math.inf):
                 if say is print:
                     raise
     return wrong
-
-
-def resident():
-    """Memory of this process [byte]."""
-    gc.collect()
-    return int(Path("/proc/self/statm").read_text().split()[1]) * os.sysconf("SC_PAGE_SIZE")
 
 
 def main():
