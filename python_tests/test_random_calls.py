@@ -15,7 +15,6 @@ instance that nothing leads out of.
 import argparse
 import copy
 import faulthandler
-import gc
 import math
 import pickle
 import random
