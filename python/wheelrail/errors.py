@@ -10,9 +10,12 @@ class SimulationError(RuntimeError):
     ----------
     table
         The rows of a simulation up to there, or None.
+    fields
+        The fields of a simulation up to there, or None.
     """
 
     table: Any = None
+    fields: Any = None
 
 
 class InstanceClosedError(SimulationError):

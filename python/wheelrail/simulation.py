@@ -1,20 +1,62 @@
 """A table of inputs in, a table of outputs out."""
 
+from __future__ import annotations
+
 import math
-import sys
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from itertools import pairwise
-from typing import Any, TypeAlias
+from collections.abc import Iterable, Mapping
+from typing import TYPE_CHECKING, Any, Literal, overload
 
 import numpy as np
 import pandas as pd
 
 from .archive import AnyPath, fmu_path
-from .instance import Instance, SimulationError
-from .tables import Table, check_columns, columns_of
-from .variables import outputs_named, settable, shape, start_values, unit
+from .archive import preset as preset_named
+from .fields import Fields, needs_xarray, whole
+from .inputs import check_inputs, parameters_of
+from .instance import Instance
+from .progress import Progress, reporter
+from .stepping import follow, points, seconds
+from .tables import Table, columns_of
+from .variables import by_name, choices, outputs_named, shape, start_values
 
-Progress: TypeAlias = bool | str | Callable[[float], object]
+if TYPE_CHECKING:
+    import xarray
+
+
+@overload
+def simulate(
+    table: Table | None = None,
+    *,
+    step: float = 1e-3,
+    stop_time: float | None = None,
+    outputs: str | Iterable[str] | None = None,
+    preset: str | None = None,
+    parameters: Mapping[str, Any] | None = None,
+    fields: Literal[False] = False,
+    fields_every: int = 1,
+    progress: Progress = False,
+    fmu: AnyPath | None = None,
+    instance: Instance | None = None,
+    **values: Any,
+) -> pd.DataFrame: ...
+
+
+@overload
+def simulate(
+    table: Table | None = None,
+    *,
+    step: float = 1e-3,
+    stop_time: float | None = None,
+    outputs: str | Iterable[str] | None = None,
+    preset: str | None = None,
+    parameters: Mapping[str, Any] | None = None,
+    fields: Literal[True] | str | Iterable[str],
+    fields_every: int = 1,
+    progress: Progress = False,
+    fmu: AnyPath | None = None,
+    instance: Instance | None = None,
+    **values: Any,
+) -> tuple[pd.DataFrame, xarray.Dataset]: ...
 
 
 def simulate(
@@ -22,13 +64,16 @@ def simulate(
     *,
     step: float = 1e-3,
     stop_time: float | None = None,
-    outputs: Iterable[str] | None = None,
+    outputs: str | Iterable[str] | None = None,
+    preset: str | None = None,
     parameters: Mapping[str, Any] | None = None,
+    fields: bool | str | Iterable[str] = False,
+    fields_every: int = 1,
     progress: Progress = False,
     fmu: AnyPath | None = None,
     instance: Instance | None = None,
     **values: Any,
-) -> pd.DataFrame:
+) -> pd.DataFrame | tuple[pd.DataFrame, xarray.Dataset]:
     """Drive the component through a table of inputs.
 
     Parameters
@@ -36,15 +81,26 @@ def simulate(
     table
         Inputs over time: a data frame, a structured array, a mapping of columns, or the path of a CSV file. It has a
         column `time` [s] and one for each input that varies; between its rows inputs are interpolated, at two rows of
-        the same time they jump. Without a table all inputs are constant.
+        the same time they jump. Headings may have units, `normal_load [kN]`, and so may `attrs["units"]` of a data
+        frame; the values are converted. The index of a data frame is its time where it is called `time`, where it has
+        durations, and where it has fractions and no name. Without a table all inputs are constant.
     step
         Communication step [s]: a row of the result for each.
     stop_time
-        End [s]; by default the last time of the table.
+        End [s]; by default the last time of the table. Behind the table inputs stay as they are in its last row.
     outputs
-        Names of what comes back; by default every output. A profile's name, `profile.pressure`, stands for its points.
+        Names of what comes back, or one name; by default every output. A profile's name, `profile.pressure`, stands for
+        its points.
+    preset
+        Name of a set of parameters, "wet" for example; what is given by name goes before it.
     parameters
         Parameters and constant inputs whose names are no Python names, `{"friction_table.temperature": [...]}`.
+    fields
+        True for the fields of the contact over time as well, or the names of some: pressure, shear, slip, temperature
+        and wear over the cells of a patch, or along a line and into the depth. They need xarray, and come from the FMU
+        of FMI 3.0 unless another is given.
+    fields_every
+        Communication points from one set of fields to the next; the first and the last point are always among them.
     progress
         True for a line on standard error, a text for one with that title, or a function that is called with the share
         that is done.
@@ -53,157 +109,135 @@ def simulate(
     instance
         An `Instance` to go on with from its own time; it is left as it is at the end.
     **values
-        Parameters and constant inputs by name; choices by name or number: `friction_law="constant"`.
+        Parameters and constant inputs by name, in SI units; choices by name or number: `friction_law="constant"`.
 
     Returns
     -------
     pandas.DataFrame
         `time`, the inputs that were given, and the outputs, at each communication point. `attrs["units"]` has the unit
         of each column.
+    xarray.Dataset
+        With `fields`, as the second of two: each field over `time` and the places `y`, `x` of the cells, or `x` along a
+        line and `z` below it [m]; units in `attrs["units"]` of each.
 
     Raises
     ------
     ValueError
-        An unknown name, a value out of range, a table that is none.
+        Before anything is computed: an unknown name, a value out of range, an input that the chosen mode does not use,
+        a unit that is unknown or not one of the variable, a cell that is no number, a step or a stop time that cannot
+        be.
+    FileNotFoundError
+        The table's file or the FMU is not there.
+    ImportError
+        `fields` without xarray.
     SimulationError
-        The component refused a combination or could not complete a step; `table` of the error has the rows before.
+        The component refused a combination or could not complete a step; `table` of the error has the rows before, and
+        `fields` the fields.
 
     Examples
     --------
-    >>> table = {"time": [0.0, 1.0], "creepage": [0.0, 0.02], "normal_load": [60e3, 80e3]}
+    >>> table = {"time": [0.0, 1.0], "creepage [%]": [0.0, 2.0], "normal_load [kN]": [60.0, 80.0]}
     >>> result = simulate(table, friction_law="piecewise_linear", friction_hot=0.2, wheel_speed=40.0)
     >>> result["peak_temperature"].max()
+    >>> result, fields = simulate(table, fields=["pressure"], fields_every=10, contact_model="patch")
+    >>> fields.pressure.isel(time=-1).max()
     """
-    fmu = instance.fmu if instance is not None else fmu or fmu_path()
-    given = start_values(fmu, {**(parameters or {}), **values})
-    constants = {name: value for name, value in given.items() if settable_as_input(fmu, name)}
-    start = 0.0 if instance is None else instance.time
-    columns = columns_of({"time": [start]} if table is None else table)
-    check_columns(fmu, columns)
-    if twice := columns.keys() & given.keys():
-        raise ValueError(f"given in the table and as a constant: {', '.join(sorted(twice))}")
+    if fields is not False:
+        needs_xarray()
+    fmu = fmu_of(fmu, instance, "2.0" if fields is False else "3.0")
+    given = start_values(fmu, given_values(preset, parameters, values))
+    known = by_name(str(fmu))
+    constants = {name: value for name, value in given.items() if known[name].causality == "input"}
     if instance is not None and given.keys() - constants.keys():
         fixed = ", ".join(sorted(given.keys() - constants.keys()))
         raise ValueError(f"parameters of an instance are set when it is made: {fixed}")
-    start = float(columns["time"][0]) if instance is None else start
-    end = float(columns["time"][-1]) if stop_time is None else stop_time
-    if not start < end < math.inf:
-        raise ValueError(f"stop_time = {end:g} s: after {start:g} s is needed")
-    if not step > 0.0:
-        raise ValueError(f"step = {step!r}: a positive number of seconds is needed")
-    names = outputs_named(fmu, outputs)
-    report = reporter(progress, start, end)
-    times = points(start, end, step, columns["time"])
-    inputs = {name: column for name, column in columns.items() if name != "time"}
-    first = {name: float(np.interp(start, columns["time"], column)) for name, column in inputs.items()}
-    if instance is not None:
-        instance.set(**constants)
-        rows = follow(instance, times, columns["time"], inputs, names, report)
-    else:
-        own = Instance(fmu, "simulate", start, **given, **first)
-        try:
-            rows = follow(own.start(), times, columns["time"], inputs, names, report)
-        finally:
-            own.close()
-    after = {name: np.interp(times, columns["time"], column) for name, column in inputs.items()}
-    after |= {name: np.full(times.size, value) for name, value in constants.items()}
-    return frame(times, after, rows, own if instance is None else instance, names)
-
-
-def settable_as_input(fmu: AnyPath, name: str) -> bool:
-    """Whether a name is that of an input."""
-    return bool(settable(fmu, name, ("input", "parameter", "structuralParameter")).causality == "input")
-
-
-def points(start: float, end: float, step: float, table: np.ndarray) -> np.ndarray:
-    """Communication points: every step, the jumps of the table, the end."""
-    regular = start + step * np.arange(math.ceil((end - start) / step * (1.0 - 1e-12)))
-    jumps = table[1:][np.diff(table) == 0.0]
-    jumps = np.unique(np.append(jumps[(jumps > start) & (jumps < end)], end))
-    # A point that is one of these but for round-off is that one.
-    marks = np.concatenate([[-np.inf], jumps, [np.inf]])
-    after = np.searchsorted(marks, regular)
-    other = np.minimum(marks[after] - regular, regular - marks[after - 1]) > 1e-9 * step
-    return np.union1d(regular[other], jumps)
-
-
-def values_at(times: np.ndarray, table: np.ndarray, inputs: Mapping[str, np.ndarray]) -> np.ndarray:
-    """Inputs at given times, a row for each; at a jump those after it."""
-    values = np.empty((times.size, len(inputs)))
-    for number, column in enumerate(inputs.values()):
-        values[:, number] = np.interp(times, table, column)
-    return values
-
-
-def follow(
-    instance: Instance,
-    times: np.ndarray,
-    table: np.ndarray,
-    inputs: Mapping[str, np.ndarray],
-    names: Sequence[str],
-    report: Callable[[float], object],
-) -> np.ndarray:
-    """Step through the communication points with the inputs of the table; a row of outputs for each."""
-    moving = list(inputs)
-    right = values_at(times, table, inputs)
-    # Seen from behind, the values before a jump.
-    left = values_at(-times, -table[::-1], {name: column[::-1] for name, column in inputs.items()})
-    rows = [instance.get(*names)]
-    for number, (now, then) in enumerate(pairwise(times.tolist())):
-        try:
-            instance.follow(moving, right[number].tolist(), left[number + 1].tolist(), then - now)
-            rows.append(instance.get(*names))
-        except SimulationError as error:
-            failed = SimulationError(f"after {now:g} s: {error}")
-            failed.table = frame(times[: number + 1], {}, np.array(rows), instance, names)
-            raise failed from error
-        # Without the round-off of a sum.
-        instance.time = then
-        report(then)
-    return np.array(rows)
-
-
-def frame(
-    times: np.ndarray, inputs: Mapping[str, np.ndarray], rows: np.ndarray, instance: Instance, names: Sequence[str]
-) -> pd.DataFrame:
-    """The result as a data frame: time, inputs, outputs, with units; arrays as a column for each element."""
-    known = instance.variables
-    labels = [
-        f"{name}[{','.join(str(i + 1) for i in index)}]" if index else name
-        for name in names
-        for index in np.ndindex(shape(known[name], instance.lengths))
-    ]
-    columns = {"time": times, **inputs, **dict(zip(labels, rows.T, strict=True))}
-    result = pd.DataFrame(columns)
-    result.attrs["units"] = {"time": "s"} | {
-        label: unit(known.get(label) or known[label.partition("[")[0]]) for label in columns if label != "time"
+    if table is None and stop_time is None:
+        raise ValueError("without a table stop_time is needed: how long to go on [s]")
+    columns = columns_of({"time": [0.0 if instance is None else instance.time]} if table is None else table, fmu)
+    if twice := columns.keys() & given.keys():
+        raise ValueError(f"given in the table and as a constant: {', '.join(sorted(twice))}")
+    value = parameters_of(fmu, given, instance)
+    check_inputs(fmu, columns, constants, value)
+    start = float(columns["time"][0]) if instance is None else instance.time
+    end = float(columns["time"][-1]) if stop_time is None else seconds("stop_time", stop_time)
+    if not start < end:
+        where = "the table ends there, and" if stop_time is None else f"stop_time = {end:g} s, and"
+        raise ValueError(f"{where} a run from {start:g} s needs a stop_time after that")
+    listed = {"time", *columns, *constants}
+    # What is an input already has its column.
+    names = [name for name in outputs_named(fmu, without_time(outputs)) if name not in listed]
+    times = points(start, end, seconds("step", step), columns["time"], len(listed) + width(fmu, names, given))
+    report = reporter(progress, start, end, "simulate", "s")
+    every = whole("fields_every", fields_every)
+    patch = "contact_model" in known and value("contact_model") == choices(known["contact_model"]).get("patch")
+    first = {
+        name: float(np.interp(start, columns["time"], column)) for name, column in columns.items() if name != "time"
     }
-    return result
+
+    def run(contact: Instance) -> pd.DataFrame | tuple[pd.DataFrame, xarray.Dataset]:
+        taken = None if fields is False else Fields(contact, patch, fields, every, times.size)
+        if contact is instance:
+            contact.set(**constants)
+        result = follow(contact, times, columns, constants, names, report, taken)
+        return result if taken is None else (result, taken.dataset(times))
+
+    if instance is not None:
+        return run(instance)
+    own = Instance(fmu, "simulate", start, **given, **first)
+    try:
+        return run(own.start())
+    finally:
+        own.close()
 
 
-def reporter(progress: Progress, start: float, end: float) -> Callable[[float], None]:
-    """What is called with the time after each step."""
-    if progress is False:
-        return lambda time: None
-    if callable(progress):
-        call = progress
-        return lambda time: void(call((time - start) / (end - start)))
-    title = progress if isinstance(progress, str) else "simulate"
-    shown = 0
+def fmu_of(fmu: AnyPath | None, instance: Instance | None, version: str) -> AnyPath:
+    """The FMU to drive: that of an instance, the given one, or the package's own of a version.
 
-    def show(time: float) -> None:
-        nonlocal shown
-        percent = int(100.0 * (time - start) / (end - start) + 1e-6)
-        terminal = sys.stderr.isatty()
-        # A terminal shows each percent in place, a log file each half.
-        if percent > shown and (terminal or percent // 50 > shown // 50):
-            mark = "\r" if terminal and percent < 100 else "\n"
-            text = f"  {title}: {time:6.2f} of {end:.2f} s, {percent:3d} %"
-            print(text, end=mark, file=sys.stderr, flush=True)
-            shown = percent
-
-    return show
+    Raises
+    ------
+    ValueError
+        There are two, or what is given is none.
+    """
+    if instance is None:
+        return fmu or fmu_path(version)
+    if not isinstance(instance, Instance):
+        raise ValueError(f"instance = {instance!r}: an Instance is needed")
+    if fmu is not None and str(fmu) != str(instance.fmu):
+        raise ValueError(f"fmu = {fmu}: the instance is one of {instance.fmu} already; leave fmu out")
+    return instance.fmu
 
 
-def void(_: object) -> None:
-    """Drop a value."""
+def given_values(preset: str | None, parameters: Mapping[str, Any] | None, values: Mapping[str, Any]) -> dict[str, Any]:
+    """Values by name: those of a preset, and before them those that are given.
+
+    Raises
+    ------
+    ValueError
+        A name is given twice.
+    """
+    if preset is not None and not isinstance(preset, str):
+        raise ValueError(f"preset = {preset!r}: the name of a preset is needed; its parameters go into parameters=…")
+    if not isinstance(parameters, Mapping | None):
+        raise ValueError(f"parameters = {parameters!r}: a mapping of names to values is needed")
+    named = dict(parameters or {})
+    if twice := named.keys() & values.keys():
+        raise ValueError(f"given in parameters and by name: {', '.join(sorted(twice))}")
+    return {**(preset_named(preset) if preset is not None else {}), **named, **values}
+
+
+def width(fmu: AnyPath, names: Iterable[str], given: Mapping[str, Any]) -> int:
+    """Columns that outputs take, under the values that are given: an array of FMI 3.0 takes one for each element."""
+    known = by_name(str(fmu))
+    lengths = {
+        name: int(given.get(name, variable.start))
+        for name, variable in known.items()
+        if variable.causality == "structuralParameter"
+    }
+    return sum(math.prod(shape(known[name], lengths)) for name in names)
+
+
+def without_time(outputs: str | Iterable[str] | None) -> str | Iterable[str] | None:
+    """Outputs without the time, which always comes back."""
+    if isinstance(outputs, str):
+        outputs = (outputs,)
+    return outputs if not isinstance(outputs, Iterable) else [name for name in outputs if name != "time"]

@@ -83,6 +83,8 @@ def choices(variable: ModelVariable) -> dict[str, int]:
 
 def near(name: str, names: Iterable[str]) -> str:
     """A hint at what may have been meant."""
+    if found := re.fullmatch(r"(.*\S)\s*\(([^()]*)\)", name):
+        return f"; a unit stands in square brackets, {found[1]} [{found[2]}]"
     close = difflib.get_close_matches(name, list(names), n=3, cutoff=0.6)
     return f"; did you mean {' or '.join(close)}?" if close else ""
 
@@ -101,7 +103,11 @@ def settable(fmu: AnyPath, name: str, causalities: tuple[str, ...]) -> ModelVari
         raise ValueError(f"there is no variable {name}{near(name, candidates)}")
     variable = known[name]
     if variable.causality not in causalities:
-        raise ValueError(f"{name} is of kind {variable.causality}: it cannot be set as {' or '.join(causalities)}")
+        by_name_alone = variable.causality in ("parameter", "structuralParameter") and causalities == ("input",)
+        hint = f"; give it by name, {name}=…, beside the table" if by_name_alone else ""
+        raise ValueError(
+            f"{name} is of kind {variable.causality}: it cannot be set as {' or '.join(causalities)}{hint}"
+        )
     return variable
 
 
@@ -114,6 +120,8 @@ def number(variable: ModelVariable, value: Any) -> float | int:
         It is no number, not finite, out of range, or no such choice.
     """
     name, named = variable.name, choices(variable)
+    if isinstance(value, np.ndarray) and value.ndim == 0:
+        value = value.item()
     if isinstance(value, bool | np.bool_) and set(named) == {"off", "on"}:
         value = "on" if value else "off"
     if isinstance(value, str) and value in named:
@@ -129,8 +137,8 @@ def number(variable: ModelVariable, value: Any) -> float | int:
         raise ValueError(f"{name} = {value!r}: a whole number is needed")
     low, high = bounds(variable)
     if not low <= plain <= high:
-        expected = f"choose one of {', '.join(named)}" if named else f"allowed is {low:g} to {high:g} {unit(variable)}"
-        raise ValueError(f"{name} = {value!r}: {expected.rstrip()}")
+        expected = f"choose one of {', '.join(named)}" if named else allowed(variable, low, high)
+        raise ValueError(f"{name} = {value!r}: {expected}")
     return plain if real else int(plain)
 
 
@@ -142,29 +150,70 @@ def bounds(variable: ModelVariable) -> tuple[float, float]:
     return float(variable.min or -math.inf), float(variable.max or math.inf)
 
 
+def allowed(variable: ModelVariable, low: float, high: float) -> str:
+    """A range in words, with the unit where there is one."""
+    of = f" {unit(variable)}" if unit(variable) not in ("", "1") else ""
+    if math.isinf(low) and math.isinf(high):
+        return f"any finite number{of} is allowed"
+    if math.isinf(high):
+        return f"allowed is {low:g}{of} or more"
+    if math.isinf(low):
+        return f"allowed is {high:g}{of} or less"
+    return f"allowed is {low:g} to {high:g}{of}"
+
+
 def start_values(fmu: AnyPath, given: Mapping[str, Any]) -> dict[str, Any]:
     """Parameters and constant inputs as the component takes them.
 
     The points of a table may be given in one: `{"friction_table.temperature": [300.0, 400.0]}`.
+
+    Raises
+    ------
+    ValueError
+        An unknown name, a value that is none, is out of range, or has too many elements.
     """
     values: dict[str, Any] = {}
     known = by_name(fspath(fmu))
     kinds = ("parameter", "structuralParameter", "input")
     for name, value in given.items():
-        if isinstance(value, (str, numbers.Real)):
+        if not isinstance(name, str):
+            raise ValueError(f"parameters: {name!r} is no name of a variable")
+        elements = several(value)
+        if elements is None:
             variable = settable(fmu, name, kinds)
+            if variable.dimensions:
+                raise ValueError(f"{name} = {value!r}: it is an array, and a list of numbers is needed")
             values[name] = number(variable, value)
-        elif name in known:
+            continue
+        if not elements:
+            raise ValueError(f"{name} = []: at least one value is needed")
+        count = sum(other.partition("[")[0] == name for other in known if other != name)
+        if name in known:
             variable = settable(fmu, name, kinds)
             if not variable.dimensions:
                 raise ValueError(f"{name} is a single value, not {value!r}")
-            given_elements = [number(variable, element) for element in value]
+            starts = variable.start.split()
+            count = len(starts)
             # The rest of an array stays as it is.
-            values[name] = given_elements + [float(start) for start in variable.start.split()[len(given_elements) :]]
-        else:
-            for index, element in enumerate(value, 1):
+            values[name] = [number(variable, element) for element in elements] + [
+                float(start) for start in starts[len(elements) :]
+            ]
+        elif count == 0:
+            bases = dict.fromkeys(other.partition("[")[0] for other in known)
+            raise ValueError(f"there is no variable {name}{near(name, bases)}")
+        if len(elements) > count:
+            raise ValueError(f"{name}: {len(elements)} values are given, it has {count} points")
+        if name not in known:
+            for index, element in enumerate(elements, 1):
                 values[f"{name}[{index}]"] = number(settable(fmu, f"{name}[{index}]", kinds), element)
     return values
+
+
+def several(value: Any) -> list[Any] | None:
+    """The elements of a value that has several; nothing where it is a single one."""
+    if isinstance(value, np.ndarray | pd.Series):
+        return None if value.ndim == 0 else list(value)
+    return list(value) if isinstance(value, list | tuple) else None
 
 
 def shape(variable: ModelVariable, lengths: Mapping[str, int]) -> tuple[int, ...]:
@@ -175,23 +224,35 @@ def shape(variable: ModelVariable, lengths: Mapping[str, int]) -> tuple[int, ...
     )
 
 
-def outputs_named(fmu: AnyPath, names: Iterable[str] | None) -> list[str]:
-    """Names of outputs: all of them by default; a profile's name stands for all of its points."""
+def outputs_named(fmu: AnyPath, names: str | Iterable[str] | None) -> list[str]:
+    """Names of outputs: all of them by default; a profile's name stands for all of its points.
+
+    Raises
+    ------
+    ValueError
+        There is no such variable, or it is not a real one; these are no names.
+    """
     known = by_name(fspath(fmu))
     if names is None:
         return [name for name, variable in known.items() if variable.causality == "output" and not variable.dimensions]
+    if isinstance(names, str):
+        names = (names,)
+    if not isinstance(names, Iterable):
+        raise ValueError(f"outputs = {names!r}: a name or a list of names is needed")
     points: dict[str, list[str]] = {}
     for name in known:
         points.setdefault(name.partition("[")[0], []).append(name)
     chosen: list[str] = []
     for name in names:
+        if not isinstance(name, str):
+            raise ValueError(f"outputs: {name!r} is no name of an output")
         if name not in known and name not in points:
             raise ValueError(f"there is no variable {name}{near(name, points)}")
         chosen += [name] if name in known else points[name]
     for name in chosen:
         if known[name].type not in ("Real", "Float64"):
             raise ValueError(f"{name} is a number that counts or chooses, and no output")
-    return chosen
+    return list(dict.fromkeys(chosen))
 
 
 def units(model: ModelDescription) -> dict[str, str]:

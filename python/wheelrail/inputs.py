@@ -1,0 +1,103 @@
+"""Whether a component takes given inputs: their ranges, and whether what it was told to follow uses them."""
+
+import re
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import numpy as np
+from fmpy.model_description import ModelVariable
+
+from .archive import AnyPath
+from .instance import Instance
+from .variables import allowed, bounds, by_name, choices, settable, unit
+
+# Gives the value of a parameter under which inputs are to be judged.
+Parameter = Callable[[str], float]
+
+
+def parameters_of(fmu: AnyPath, given: Mapping[str, Any], instance: Instance | None) -> Parameter:
+    """Values of parameters: those of an instance, or those that are given and else the start values."""
+    known = by_name(str(fmu))
+
+    def value(name: str) -> float:
+        variable = known[name]
+        if instance is not None:
+            # Choices are integers in FMI 2.0 and enumerations, 64 bits wide, in FMI 3.0.
+            kinds = {"Real": "Real", "Float64": "Float64", "Enumeration": "Int64"}
+            read = getattr(instance.slave, f"get{kinds.get(variable.type, variable.type)}")
+            return float(read([variable.valueReference])[0])
+        return float(given.get(name, variable.start))
+
+    return value
+
+
+def check_inputs(
+    fmu: AnyPath, columns: Mapping[str, np.ndarray], constants: Mapping[str, Any], value: Parameter
+) -> None:
+    """Refuse inputs out of range, and those that the chosen mode does not use.
+
+    An input that has its start value throughout says nothing, and passes: tables with a column for every input are in
+    use.
+
+    Parameters
+    ----------
+    fmu
+        The component.
+    columns
+        A table of inputs, `time` among them.
+    constants
+        Inputs that are constant, each within the range of its variable.
+    value
+        Gives the value of a parameter.
+
+    Raises
+    ------
+    ValueError
+        With the name of the input, its value, where in the table, what is allowed, and what to change.
+    """
+    time = columns["time"]
+    for name, column in columns.items():
+        if name == "time":
+            continue
+        variable = settable(fmu, name, ("input",))
+        check_used(fmu, variable, bool(np.any(column != float(variable.start))), value)
+        check_range(fmu, variable, column, value, time)
+    for name, constant in constants.items():
+        variable = settable(fmu, name, ("input",))
+        check_used(fmu, variable, constant != float(variable.start), value)
+        check_range(fmu, variable, np.array([constant]), value)
+
+
+def check_used(fmu: AnyPath, variable: ModelVariable, says: bool, value: Parameter) -> None:
+    """Refuse an input that says something where the component does not use it: its description has the choice."""
+    found = re.search(r"used where (\w+) is (\w+)", variable.description or "")
+    known = by_name(str(fmu))
+    if not says or found is None or found[1] not in known:
+        return
+    choice, needed = found.groups()
+    named = choices(known[choice])
+    chosen = value(choice)
+    if needed in named and named[needed] != chosen:
+        now = next((name for name, number in named.items() if number == chosen), f"{chosen:g}")
+        raise ValueError(
+            f"{variable.name} is given and not used: {choice} is {now!r}; choose {choice}={needed!r},"
+            f" or leave {variable.name} out"
+        )
+
+
+def check_range(
+    fmu: AnyPath, variable: ModelVariable, values: np.ndarray, value: Parameter, time: np.ndarray | None = None
+) -> None:
+    """Refuse values out of the range of an input, which a parameter may narrow: "at most largest_load"."""
+    low, high = bounds(variable)
+    hint = ""
+    found = re.search(r"at most (\w+)", variable.description or "")
+    if found is not None and found[1] in by_name(str(fmu)):
+        narrowed = value(found[1])
+        if narrowed < high:
+            high, hint = narrowed, f"; {found[1]} = {narrowed:g} {unit(variable)} sets it"
+    wrong = np.flatnonzero(~((values >= low) & (values <= high)))
+    if wrong.size:
+        row = int(wrong[0])
+        place = "" if time is None else f" in row {row + 1}, at {time[row]:g} s"
+        raise ValueError(f"{variable.name} = {values[row]:.12g}{place}: {allowed(variable, low, high)}{hint}")
