@@ -8,11 +8,11 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from .archive import AnyPath, description, fmu_path
+from .archive import AnyPath, description
 from .inputs import check_inputs, parameters_of
 from .instance import Instance, SimulationError
 from .progress import Progress, reporter
-from .simulation import given_values
+from .simulation import fmu_of, given_values
 from .stepping import labels
 from .variables import by_name, choices, near, number, outputs_named, several, start_values, units
 
@@ -137,6 +137,8 @@ def creep_curves(
     ------
     ValueError
         An unknown name or kind of creepage, a value out of range, an input that the curves set themselves.
+    TypeError
+        An argument of a wrong type.
     SimulationError
         The component refused a combination, or a point does not become steady; `table` of the error has the points
         before.
@@ -146,7 +148,7 @@ def creep_curves(
     >>> curves = creep_curves("lateral", load=80e3, friction_law="constant", friction_cold=0.3)
     >>> wheelrail.plots.creep_curves(curves).savefig("creep.png")
     """
-    fmu = fmu or fmu_path()
+    fmu = fmu_of(fmu, None, "2.0")
     known = by_name(str(fmu))
     given = given_values(preset, parameters, values)
     for name, instead in (("normal_load", "load=…"), ("wheel_speed", "speed=… and the creepage")):
@@ -160,7 +162,9 @@ def creep_curves(
     check_inputs(fmu, {"time": np.zeros(1)}, inputs, parameters_of(fmu, checked, None))
     if not load > 0.0:
         raise ValueError(f"load = {load!r}: a positive number of newtons is needed")
-    if isinstance(speed, bool) or not isinstance(speed, numbers.Real) or not 0.0 < speed < math.inf:
+    if isinstance(speed, bool) or not isinstance(speed, numbers.Real):
+        raise TypeError(f"speed = {speed!r}: a number of metres per second is needed")
+    if not 0.0 < speed < math.inf:
         raise ValueError(f"speed = {speed!r}: a positive number of metres per second is needed")
     line = checked["contact_model"] == choices(known["contact_model"])["line"]
     kinds = kinds_of(driven, line)

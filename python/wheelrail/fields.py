@@ -137,14 +137,16 @@ def names_of(chosen: bool | str | Iterable[str], known: Iterable[str]) -> Sequen
     Raises
     ------
     ValueError
-        There is no such field, or these are no names.
+        There is no such field, or none is chosen.
+    TypeError
+        These are no names.
     """
     every = list(known)
     if chosen is True:
         return every
     names = (chosen,) if isinstance(chosen, str) else chosen
     if not isinstance(names, Iterable):
-        raise ValueError(f"fields = {chosen!r}: True, a name or a list of names is needed")
+        raise TypeError(f"fields = {chosen!r}: True, a name or a list of names is needed")
     found = []
     for name in names:
         if name not in every:

@@ -1,12 +1,11 @@
-"""Pictures: a braking manoeuvre over time, the fields of a patch in plan view, creep curves.
+"""Pictures: results over time, a braking manoeuvre, the fields of a patch in plan view, creep curves.
 
-Each function returns a matplotlib figure, to show, change or save: `figure.savefig("braking.png")`.
+Each function returns a matplotlib figure, to show, change or save: `figure.savefig("braking.png")`. A notebook shows it
+where it is the last line of a cell.
 """
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
-from functools import wraps
-from typing import Any, ParamSpec, TypeAlias
+from collections.abc import Mapping, Sequence
+from typing import Any
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -15,45 +14,99 @@ from matplotlib.axes import Axes
 from matplotlib.collections import QuadMesh
 from matplotlib.colors import ListedColormap
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 from matplotlib.patches import Ellipse
 
-# Okabe and Ito's colours: told apart by everybody, in print too.
-BLACK, BLUE, ORANGE, GREEN, RED, SKY = "#000000", "#0072B2", "#E69F00", "#009E73", "#D55E00", "#56B4E9"
+from .creep_plots import CreepCurve, creep_curves, creep_panels
+from .drawing import BLACK, BLUE, GREEN, ORANGE, RED, SKY, STYLE, Columns, columns_for, styled
+from .units import display_unit, in_shown_units, model, said_units, scale_of, shown
+from .variables import near
+from .variables import unit as unit_of
+
+__all__ = ["BLACK", "BLUE", "GREEN", "ORANGE", "RED", "SKY", "STYLE", "CreepCurve"]
+__all__ += ["braking", "creep_curves", "creep_panels", "over_time", "patch_fields"]
+
 STICK, SLIP = "#dcebf5", "#f6e3d3"
-
-# As Any: the settings' names are of a type of matplotlib's own.
-STYLE: Any = {
-    "figure.dpi": 150,
-    "savefig.dpi": 150,
-    "font.size": 9,
-    "axes.titlesize": 10,
-    "axes.titlelocation": "left",
-    "axes.spines.top": False,
-    "axes.spines.right": False,
-    "axes.grid": True,
-    "grid.color": "#dddddd",
-    "grid.linewidth": 0.6,
-    "lines.linewidth": 1.4,
-    "legend.frameon": False,
+# What each picture needs, and in what unit.
+BRAKING = {
+    "time": "s",
+    "wheel_speed": "rad/s",
+    "traction_force": "N",
+    "slip_creepage": "1",
+    "peak_temperature": "K",
+    "friction_coefficient": "1",
+    "traction_coefficient": "1",
+    "worn_volume": "m3",
 }
-
-P = ParamSpec("P")
-Columns: TypeAlias = Mapping[str, Any] | pd.DataFrame
-
-
-def styled(draw: Callable[P, Figure]) -> Callable[P, Figure]:
-    """Draw with the look of the documentation, and leave matplotlib's settings as they are."""
-
-    @wraps(draw)
-    def drawn(*arguments: P.args, **named: P.kwargs) -> Figure:
-        with plt.rc_context(STYLE):
-            return draw(*arguments, **named)
-
-    return drawn
+FIELDS = {"x": "m", "y": "m", "pressure": "Pa", "shear_x": "Pa", "shear_y": "Pa"}
+FIELDS |= {"slip_x": "m/s", "slip_y": "m/s", "temperature": "K"}
 
 
 # ---- over time ------------------------------------------------------------------------------------------------------
+
+
+@styled
+def over_time(
+    result: pd.DataFrame, names: str | Sequence[str], *, units: Mapping[str, str] | None = None, title: str = ""
+) -> Figure:
+    """Draw columns of a result over time, one panel below the other, with their units.
+
+    Parameters
+    ----------
+    result
+        What `simulate` returned, or a table of `read_table` with a column `time`.
+    names
+        Names of columns, or one name.
+    units
+        Units to draw in, by name: `{"traction_force": "MN"}`; by default those in which people read the variables, kN
+        and °C for example.
+    title
+        Heading.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        A panel for each name.
+
+    Raises
+    ------
+    ValueError
+        A column is missing or is no numbers; a unit is none of the variable.
+    TypeError
+        These are no names, or this is no table.
+
+    Examples
+    --------
+    >>> result = wheelrail.simulate(wheelrail.example(), slip_source="vehicle_speed")
+    >>> over_time(result, ["traction_force", "peak_temperature"]).savefig("over_time.png")
+    """
+    chosen = [names] if isinstance(names, str) else list(names)
+    if not chosen or not all(isinstance(name, str) for name in chosen):
+        raise TypeError(f"names = {names!r}: the names of columns are needed")
+    known = {variable.name: variable for variable in model(None).modelVariables}
+    of_table = said_units(result.attrs, map(str, result)) if isinstance(result, pd.DataFrame) else {}
+    needed = {"time": "s"} | {
+        name: unit_of(known[name]) if name in known else of_table.get(name, "") for name in chosen
+    }
+    columns = columns_for("over_time", result, needed, "simulate")
+    if others := [name for name in units or {} if name not in chosen]:
+        raise ValueError(f"units: {others[0]} is not drawn{near(others[0], chosen)}")
+    figure, panels = plt.subplots(
+        len(chosen), 1, figsize=(8.4, 0.8 + 1.8 * len(chosen)), sharex=True, layout="constrained", squeeze=False
+    )
+    for axes, name in zip(panels[:, 0], chosen, strict=True):
+        values, label = columns[name], needed[name]
+        if values.dtype.kind not in "biuf":
+            raise ValueError(f"over_time: the column {name} is no numbers")
+        wanted = (units or {}).get(name) or (display_unit(known[name]) if name in known else None)
+        if wanted is not None:
+            scale = scale_of(None, name, label, wanted)
+            values, label = in_shown_units(values, scale), scale.name
+        axes.plot(columns["time"], values, color=BLACK)
+        axes.set_ylabel(name.replace("_", " ") + (f" [{shown(label)}]" if shown(label) else ""))
+    panels[-1, 0].set(xlabel="time [s]", xlim=(columns["time"].min(), columns["time"].max()))
+    figure.align_ylabels(panels)
+    panels[0, 0].set_title(title)
+    return figure
 
 
 @styled
@@ -73,8 +126,18 @@ def braking(result: Columns, *, wheel_radius: float = 0.46, title: str = "") -> 
     -------
     matplotlib.figure.Figure
         Six panels over time: speeds, traction force, creepage, peak temperature, coefficients, worn volume.
+
+    Raises
+    ------
+    ValueError
+        A column is missing, which is named.
+
+    Examples
+    --------
+    >>> result = wheelrail.simulate(wheelrail.example(), slip_source="vehicle_speed")
+    >>> braking(result, title="Braking with a wheel slide").savefig("braking.png")
     """
-    columns = {str(name): np.asarray(result[name]) for name in result}
+    columns = columns_for("braking", result, BRAKING, "simulate of a table with wheel_speed")
     time, wheel = columns["time"], wheel_radius * columns["wheel_speed"]
     vehicle = columns.get("vehicle_speed")
     if vehicle is None:
@@ -110,22 +173,41 @@ def braking(result: Columns, *, wheel_radius: float = 0.46, title: str = "") -> 
 
 
 @styled
-def patch_fields(fields: Columns, *, ellipse: tuple[float, float] | None = None, title: str = "") -> Figure:
+def patch_fields(fields: Any, *, ellipse: tuple[float, float] | None = None, title: str = "") -> Figure:
     """Draw the fields of a patch in plan view: pressure, shear over stick and slip, slip, temperature.
 
     Parameters
     ----------
     fields
         `x`, `y` [m], `pressure`, `shear_x`, `shear_y` [Pa], `slip_x`, `slip_y` [m/s], `temperature` [K] and, if there,
-        `saturation` [1] of each cell: what `Instance.fields` returns, arrays of strips by cells, or the columns that
-        `wheelrail simulate --fields` writes (`read_table`).
+        `saturation` [1] of each cell: what `Instance.fields` returns, arrays of strips by cells; fields of `simulate`
+        at one time, `fields.isel(time=-1)`; or the columns that `wheelrail simulate --fields` writes (`read_table`).
     ellipse
         Semi-axes of an ellipse to compare with, along and across the rail [m].
     title
         Heading.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        Four panels in plan view.
+
+    Raises
+    ------
+    ValueError
+        A field is missing, which is named; they are those of several times; nothing is in contact.
+    TypeError
+        These are no fields.
+
+    Examples
+    --------
+    >>> result, fields = wheelrail.simulate(stop_time=0.1, lateral_creepage=1e-3, contact_model="patch", fields=True)
+    >>> patch_fields(fields.isel(time=-1)).savefig("patch.png")
     """
     field = grids(fields)
     contact = field["pressure"] > 0.0
+    if not contact.any():
+        raise ValueError("patch_fields: no cell is in contact")
     limits = ellipse or (np.abs(field["x"][contact]).max(), np.abs(field["y"][contact]).max())
 
     def inside(values: np.ndarray) -> np.ndarray:
@@ -175,13 +257,24 @@ def patch_fields(fields: Columns, *, ellipse: tuple[float, float] | None = None,
     return figure
 
 
-def grids(fields: Columns) -> dict[str, np.ndarray]:
+def grids(fields: Any) -> dict[str, np.ndarray]:
     """Fields as arrays of strips by cells along the rail; a table has a row for each cell, strip by strip."""
-    arrays = {str(name): np.asarray(fields[name]) for name in fields}
+    # A data set of xarray has its places beside its fields.
+    table = {**fields.coords, **fields.data_vars} if hasattr(fields, "data_vars") else fields
+    arrays = columns_for("patch_fields", table, FIELDS, "Instance.fields or simulate with fields")
+    pressure = arrays["pressure"]
+    if pressure.ndim > 2:
+        raise ValueError("patch_fields: these are the fields of several times; choose one, fields.isel(time=-1)")
+    if pressure.ndim == 2 and arrays["x"].ndim == 1:
+        x, y = np.meshgrid(arrays["x"], arrays["y"])
+        arrays = {name: values for name, values in arrays.items() if values.shape == x.shape} | {"x": x, "y": y}
     if arrays["x"].ndim == 2:
         return arrays
     strips = np.unique(arrays["y"]).size
-    return {name: values.reshape(strips, -1) for name, values in arrays.items()}
+    if strips < 2 or arrays["x"].size % strips:
+        raise ValueError(f"patch_fields: {arrays['x'].size} cells in {strips} strips are no patch")
+    size = arrays["x"].size
+    return {name: values.reshape(strips, -1) for name, values in arrays.items() if values.size == size}
 
 
 def plan(axes: Axes, field: Mapping[str, np.ndarray], values: np.ndarray, unit: str, colours: str) -> QuadMesh:
@@ -201,95 +294,3 @@ def frame(axes: Axes, title: str, limits: tuple[float, float], ellipse: bool) ->
         axes.add_patch(Ellipse((0, 0), *size, fill=False, edgecolor=BLACK, linewidth=0.9, linestyle="--"))
     axes.set(title=title, xlim=(-1.12 * along, 1.12 * along), ylim=(-1.2 * across, 1.2 * across), aspect="equal")
     axes.grid(False)
-
-
-# ---- over creepage --------------------------------------------------------------------------------------------------
-
-# What is driven, and the force over it.
-CREEP_PANELS = (
-    ("longitudinal", "Fx"),
-    ("lateral", "Fy"),
-    ("lateral", "Mz"),
-    ("spin", "Fy"),
-    ("spin", "Mz"),
-)
-CREEP_LABELS = {
-    "longitudinal": r"longitudinal creepage $\xi$ [%]",
-    "lateral": r"lateral creepage $\eta$ [%]",
-    "spin": r"spin creepage $\varphi$ [1/m]",
-    "Fx": r"$F_x/N$ [1]",
-    "Fy": r"$F_y/N$ [1]",
-    "Mz": r"$M_z/N$ [mm]",
-}
-
-
-@dataclass(frozen=True)
-class CreepCurve:
-    """Forces over one creepage, in the units of the labels, and how to draw them."""
-
-    driven: str
-    creepage: Sequence[float] | np.ndarray
-    forces: Mapping[str, Sequence[float] | np.ndarray]
-    style: Mapping[str, Any]
-
-
-@styled
-def creep_panels(curves: Iterable[CreepCurve], labels: Mapping[str, str] = CREEP_LABELS) -> Figure:
-    """Draw forces over the creepages that are driven, five panels for all three, and one that is left for a legend.
-
-    Parameters
-    ----------
-    curves
-        Curves of any contacts, drawn in this order.
-    labels
-        What creepages ("longitudinal", "lateral", "spin") and forces ("Fx", "Fy", "Mz") are called.
-    """
-    drawn = list(curves)
-    chosen = [panel for panel in CREEP_PANELS if panel[0] in {curve.driven for curve in drawn}]
-    wide = min(len(chosen) + 1, 3)
-    high = -(-(len(chosen) + 1) // wide)
-    figure, panels = plt.subplots(high, wide, figsize=(3.2 * wide, 3.0 * high), layout="constrained", squeeze=False)
-    for axes, (driven, force) in zip(panels.flat, chosen, strict=False):
-        axes.axhline(0.0, color=BLACK, linewidth=0.6)
-        for curve in drawn:
-            if curve.driven == driven:
-                axes.plot(curve.creepage, curve.forces[force], **curve.style)
-        axes.set(xlabel=labels[driven], title=labels[force])
-    for axes in panels.flat[len(chosen) :]:
-        axes.axis("off")
-    return figure
-
-
-@styled
-def creep_curves(curves: pd.DataFrame | Mapping[str, pd.DataFrame], *, title: str = "") -> Figure:
-    """Draw what `wheelrail.creep_curves` computed.
-
-    Parameters
-    ----------
-    curves
-        One table, or several by what they are to be called.
-    title
-        Heading.
-    """
-    tables = {"": curves} if isinstance(curves, pd.DataFrame) else dict(curves)
-    colours = (BLUE, RED, GREEN, ORANGE, SKY, BLACK)
-    drawn, handles = [], []
-    inputs = {"longitudinal": ("creepage", 100.0), "lateral": ("lateral_creepage", 100.0), "spin": ("spin_creepage", 1)}
-    for number, (name, table) in enumerate(tables.items()):
-        style: dict[str, Any] = {"color": colours[number % len(colours)], "marker": ".", "markersize": 3}
-        handles.append(Line2D([], [], label=name, **style))
-        load = table.attrs["normal_load"]
-        for driven, rows in table.groupby("driven", sort=False):
-            column, scale = inputs[str(driven)]
-            forces = {
-                "Fx": rows["traction_force"].to_numpy() / load,
-                "Fy": rows["lateral_force"].to_numpy() / load,
-                "Mz": rows["spin_moment"].to_numpy() / load * 1e3,
-            }
-            drawn.append(CreepCurve(str(driven), scale * rows[column].to_numpy(), forces, style))
-    figure = creep_panels(drawn)
-    if "" not in tables:
-        last = next(axes for axes in figure.axes if not axes.axison)
-        last.legend(handles=handles, loc="upper left", fontsize=9)
-    figure.suptitle(title, x=0.01, ha="left")
-    return figure

@@ -12,7 +12,7 @@ def reporter(progress: Progress, start: float, end: float, title: str, unit: str
 
     Raises
     ------
-    ValueError
+    TypeError
         It is neither a truth value nor a title nor a function.
     """
     if progress is None or progress is False:
@@ -21,7 +21,7 @@ def reporter(progress: Progress, start: float, end: float, title: str, unit: str
         call = progress
         return lambda place: void(call((place - start) / (end - start)))
     if not isinstance(progress, (bool, str)):
-        raise ValueError(f"progress = {progress!r}: True, a title or a function of the share that is done is needed")
+        raise TypeError(f"progress = {progress!r}: True, a title or a function of the share that is done is needed")
     told = progress if isinstance(progress, str) else title
     shown = 0
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import os
 from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Any, Literal, overload
 
@@ -126,6 +127,8 @@ def simulate(
         Before anything is computed: an unknown name, a value out of range, an input that the chosen mode does not use,
         a unit that is unknown or not one of the variable, a cell that is no number, a step or a stop time that cannot
         be.
+    TypeError
+        An argument of a wrong type: a table of none of the forms, names that are no texts.
     FileNotFoundError
         The table's file or the FMU is not there.
     ImportError
@@ -196,13 +199,17 @@ def fmu_of(fmu: AnyPath | None, instance: Instance | None, version: str) -> AnyP
     Raises
     ------
     ValueError
-        There are two, or what is given is none.
+        There are two.
+    TypeError
+        What is given is none.
     """
+    if not isinstance(fmu, str | os.PathLike | None):
+        raise TypeError(f"fmu = {fmu!r}: the path of an FMU is needed")
     if instance is None:
         return fmu or fmu_path(version)
     if not isinstance(instance, Instance):
-        raise ValueError(f"instance = {instance!r}: an Instance is needed")
-    if fmu is not None and str(fmu) != str(instance.fmu):
+        raise TypeError(f"instance = {instance!r}: an Instance is needed")
+    if fmu is not None and os.path.abspath(fmu) != os.path.abspath(instance.fmu):
         raise ValueError(f"fmu = {fmu}: the instance is one of {instance.fmu} already; leave fmu out")
     return instance.fmu
 
@@ -214,11 +221,13 @@ def given_values(preset: str | None, parameters: Mapping[str, Any] | None, value
     ------
     ValueError
         A name is given twice.
+    TypeError
+        It is no name, or no mapping.
     """
     if preset is not None and not isinstance(preset, str):
-        raise ValueError(f"preset = {preset!r}: the name of a preset is needed; its parameters go into parameters=…")
+        raise TypeError(f"preset = {preset!r}: the name of a preset is needed; its parameters go into parameters=…")
     if not isinstance(parameters, Mapping | None):
-        raise ValueError(f"parameters = {parameters!r}: a mapping of names to values is needed")
+        raise TypeError(f"parameters = {parameters!r}: a mapping of names to values is needed")
     named = dict(parameters or {})
     if twice := named.keys() & values.keys():
         raise ValueError(f"given in parameters and by name: {', '.join(sorted(twice))}")

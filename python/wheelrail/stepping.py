@@ -24,13 +24,17 @@ def seconds(name: str, value: Any) -> float:
 
     Raises
     ------
+    TypeError
+        It is no number.
     ValueError
-        It is no finite number.
+        It is not finite.
     """
     if isinstance(value, np.ndarray) and value.ndim == 0:
         value = value.item()
-    if isinstance(value, bool) or not isinstance(value, numbers.Real) or not math.isfinite(value):
-        raise ValueError(f"{name} = {value!r}: a number of seconds is needed")
+    if isinstance(value, bool) or not isinstance(value, numbers.Real):
+        raise TypeError(f"{name} = {value!r}: a finite number of seconds is needed")
+    if not math.isfinite(value):
+        raise ValueError(f"{name} = {value!r}: a finite number of seconds is needed")
     return float(value)
 
 

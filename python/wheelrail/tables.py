@@ -151,6 +151,8 @@ def columns_of(table: Table, fmu: AnyPath) -> dict[str, np.ndarray]:
     ------
     ValueError
         It is no table of inputs, with the name of the column, the row and the value that cannot be.
+    TypeError
+        It has none of the forms.
     """
     arrays: dict[str, np.ndarray] = {}
     for label, values, said in given_columns(table, fmu):
@@ -191,10 +193,10 @@ def given_columns(table: Table, fmu: AnyPath) -> list[Column]:
     if isinstance(table, Mapping):
         for name in table:
             if not isinstance(name, str):
-                raise ValueError(f"table: a column is called {name!r}; the name of an input is needed, as a text")
+                raise TypeError(f"table: a column is called {name!r}; the name of an input is needed, as a text")
         return [Column(name, values, None) for name, values in table.items()]
     kind = "data frame of one column, a Series" if isinstance(table, pd.Series) else type(table).__name__
-    raise ValueError(f"table: this is no table of inputs but a {kind}; give {FORMS}")
+    raise TypeError(f"table: this is no table of inputs but a {kind}; give {FORMS}")
 
 
 def columns_of_frame(table: pd.DataFrame) -> list[Column]:

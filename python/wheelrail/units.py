@@ -10,6 +10,7 @@ from functools import cache
 from os import fspath
 from typing import Any, NamedTuple
 
+import fmpy
 import numpy as np
 from fmpy.model_description import ModelDescription, ModelVariable
 
@@ -69,12 +70,18 @@ def shown(unit: str) -> str:
 
 def model(fmu: AnyPath | None) -> ModelDescription:
     """Model description of an FMU: by default the package's own, or that of the repository that it runs from."""
-    if fmu is None:
-        try:
-            fmu = fmu_path()
-        except FileNotFoundError:
-            fmu = PACKAGE.parent.parent / "modelDescription"
-    return description(fmu)
+    if fmu is not None:
+        return description(fmu)
+    try:
+        return description(fmu_path())
+    except FileNotFoundError:
+        return of_repository()
+
+
+@cache
+def of_repository() -> ModelDescription:
+    """Model description that is checked in, for a package that runs from the repository and has no FMU in it."""
+    return fmpy.read_model_description(PACKAGE.parent.parent / "modelDescription", validate=False)
 
 
 def scales(fmu: AnyPath | None) -> Mapping[str, Mapping[str, Scale]]:
@@ -135,16 +142,17 @@ def said_units(attributes: Mapping[Any, Any], names: Iterable[str]) -> dict[str,
 
     Raises
     ------
-    ValueError
+    TypeError
         They are no mapping of names to texts.
     """
     units = attributes.get("units", {})
     if not isinstance(units, Mapping):
-        raise ValueError(f"attrs['units'] = {units!r}: a mapping of columns to units is needed")
-    said = {name: units[name] for name in names if units.get(name) is not None}
+        raise TypeError(f"attrs['units'] = {units!r}: a mapping of columns to units is needed")
+    # An empty text is what `read_table` has where no unit is known.
+    said = {name: units[name] for name in names if units.get(name) not in (None, "")}
     for name, unit in said.items():
         if not isinstance(unit, str):
-            raise ValueError(f"attrs['units'][{name!r}] = {unit!r}: the unit is needed as a text")
+            raise TypeError(f"attrs['units'][{name!r}] = {unit!r}: the unit is needed as a text")
     return said
 
 

@@ -171,13 +171,15 @@ def start_values(fmu: AnyPath, given: Mapping[str, Any]) -> dict[str, Any]:
     ------
     ValueError
         An unknown name, a value that is none, is out of range, or has too many elements.
+    TypeError
+        A name that is no text.
     """
     values: dict[str, Any] = {}
     known = by_name(fspath(fmu))
     kinds = ("parameter", "structuralParameter", "input")
     for name, value in given.items():
         if not isinstance(name, str):
-            raise ValueError(f"parameters: {name!r} is no name of a variable")
+            raise TypeError(f"parameters: {name!r} is no name of a variable")
         elements = several(value)
         if elements is None:
             variable = settable(fmu, name, kinds)
@@ -230,7 +232,9 @@ def outputs_named(fmu: AnyPath, names: str | Iterable[str] | None) -> list[str]:
     Raises
     ------
     ValueError
-        There is no such variable, or it is not a real one; these are no names.
+        There is no such variable, or it is not a real one.
+    TypeError
+        These are no names.
     """
     known = by_name(fspath(fmu))
     if names is None:
@@ -238,14 +242,14 @@ def outputs_named(fmu: AnyPath, names: str | Iterable[str] | None) -> list[str]:
     if isinstance(names, str):
         names = (names,)
     if not isinstance(names, Iterable):
-        raise ValueError(f"outputs = {names!r}: a name or a list of names is needed")
+        raise TypeError(f"outputs = {names!r}: a name or a list of names is needed")
     points: dict[str, list[str]] = {}
     for name in known:
         points.setdefault(name.partition("[")[0], []).append(name)
     chosen: list[str] = []
     for name in names:
         if not isinstance(name, str):
-            raise ValueError(f"outputs: {name!r} is no name of an output")
+            raise TypeError(f"outputs: {name!r} is no name of an output")
         if name not in known and name not in points:
             raise ValueError(f"there is no variable {name}{near(name, points)}")
         chosen += [name] if name in known else points[name]
