@@ -288,12 +288,21 @@ def plain(name: str, column: Any) -> np.ndarray:
         values = np.array([as_number(value) for value in given.tolist()], dtype=float)
     wrong = np.flatnonzero(~np.isfinite(values))
     if wrong.size:
-        row = int(wrong[0])
+        # One text makes texts of a whole column: that one is named.
+        row = int(next((row for row in wrong if not is_text_of_number(given[row])), wrong[0]))
         value = given[row]
-        said = repr(value) if isinstance(value, str) else str(value)
+        said = repr(str(value)) if isinstance(value, str) else str(value)
         comma = "; a decimal point is needed" if isinstance(value, str) and "," in value else ""
         raise ValueError(f"{name} = {said} in row {row + 1}: a finite number is needed{comma}")
     return values
+
+
+def is_text_of_number(value: Any) -> bool:
+    """Whether a value is a text that has a number in it."""
+    try:
+        return isinstance(value, str) and math.isfinite(float(value))
+    except ValueError:
+        return False
 
 
 def as_number(value: Any) -> float:
