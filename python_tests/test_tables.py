@@ -142,7 +142,7 @@ def test_indices_that_are_times(fmu, expected):
 
 
 def test_columns_that_say_nothing(fmu):
-    """A column of another mode at its start value throughout passes: the tables of the demo have one for every input."""
+    """A column of another mode at its start value throughout passes: tables with one for every input are in use."""
     inputs = wheelrail.variables(fmu).query("kind == 'input'")["start"].astype(float)
     table = {"time": [0.0, 0.05], **{name: [value, value] for name, value in inputs.items()}}
     creeping = wheelrail.simulate(table | {"creepage": [0.0, 0.01]}, step=0.01, fmu=fmu, outputs=OUTPUTS)

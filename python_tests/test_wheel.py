@@ -286,7 +286,7 @@ def test_what_is_refused_before(fmu, table, values, message):
 
 
 def test_what_the_component_refuses(fmu):
-    """A speed that its steel does not take, half-way: its words, the time, the rows before; combinations at the start."""
+    """A speed that its steel does not take, half-way: its words, the time, rows before; combinations at the start."""
     table = {"time": [0.0, 0.5], "vehicle_speed": [10.0, 500.0]}
     with pytest.raises(wheelrail.SimulationError, match=r"after 0\.1\d* s: .*vehicle_speed = .*allowed is ") as error:
         wheelrail.simulate(table, fmu=fmu, slip_source="vehicle_speed")

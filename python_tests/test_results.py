@@ -1,0 +1,248 @@
+"""What comes back from a run: its memory, its points, fields over time; progress; pictures, also in a notebook."""
+
+import io
+import sys
+import tracemalloc
+from itertools import pairwise
+from pathlib import Path
+
+import matplotlib as mpl
+import matplotlib.pyplot as plt
+import numpy as np
+import pandas as pd
+import pytest
+
+REPOSITORY = Path(__file__).resolve().parent.parent
+sys.path.insert(0, str(REPOSITORY / "python"))
+
+import wheelrail  # noqa: E402
+from wheelrail import plots  # noqa: E402
+from wheelrail.progress import reporter  # noqa: E402
+from wheelrail.stepping import points  # noqa: E402
+
+PATCH = {"contact_model": "patch", "lateral_creepage": 1e-3, "creepage": 1e-3, "step": 0.02}
+
+
+def test_memory_of_a_result(fmu):
+    """At its peak a run takes little more than its result: the points while they are made, and a look ahead.
+
+    The points are made beside copies of them, 3 columns of the 32 of the result, before it is made; the look ahead is
+    1024 rows of Python's numbers. Rows in lists took eight times the result.
+    """
+    table = pd.DataFrame({"time": [0.0, 10.0], "creepage": [0.0, 0.02], "normal_load": [60e3, 80e3]})
+    settings = {"fmu": fmu, "wheel_speed": 40.0}
+    # What is made once, for all runs, is no part of it.
+    wheelrail.simulate(table, step=0.1, **settings)
+    tracemalloc.start()
+    result = wheelrail.simulate(table, step=1e-3, **settings)
+    _, peak = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    size = result.to_numpy().nbytes
+    assert size == 10_001 * result.shape[1] * 8
+    assert peak < 1.2 * size + 1e6, peak / size
+    # One block, which is no copy.
+    assert np.shares_memory(result["time"].to_numpy(), result["wear_depth"].to_numpy().base)
+
+
+@pytest.mark.parametrize(
+    ("start", "end", "step", "table", "expected"),
+    [
+        (0.0, 1.0, 0.25, [0.0, 1.0], [0.0, 0.25, 0.5, 0.75, 1.0]),
+        # The end is a point, and the last step is what is left.
+        (0.0, 1.0, 0.4, [0.0, 1.0], [0.0, 0.4, 0.8, 1.0]),
+        (0.0, 0.1, 0.5, [0.0, 0.1], [0.0, 0.1]),
+        # So are the jumps, those that are on the way; a jump that is a point but for round-off is that one.
+        (0.0, 1.0, 0.5, [0.0, 0.3, 0.3, 1.0], [0.0, 0.3, 0.5, 1.0]),
+        (0.0, 0.3, 0.1, [0.0, 0.2, 0.2, 0.2, 0.3], [0.0, 0.1, 0.2, 0.3]),
+        (0.1, 0.4, 0.1, [0.0, 0.3, 0.3, 0.4], [0.1, 0.2, 0.3, 0.4]),
+        (0.0, 1.0, 0.5, [0.0, 0.0, 1.0, 1.0, 2.0], [0.0, 0.5, 1.0]),
+        (0.0, 0.6, 0.2, [0.0, 0.1, 0.1, 0.11, 0.11, 0.6], [0.0, 0.1, 0.11, 0.2, 0.4, 0.6]),
+    ],
+)
+def test_communication_points(start, end, step, table, expected):
+    """Every step, the jumps, the end; jumps and end are met exactly."""
+    found = points(start, end, step, np.array(table), 1)
+    assert found.tolist() == pytest.approx(expected, abs=1e-12)
+    assert found[-1] == end
+    assert np.all(np.diff(found) > 1e-9 * step)
+    jumps = [now for now, then in pairwise(table) if now == then and start < now < end]
+    assert set(jumps) <= set(found.tolist())
+
+
+def test_fields_of_the_patch(fmu3):
+    """Each field over time and cells, the same as those of an instance; the pressure sums to the load at each time."""
+    table = {"time": [0.0, 0.1], "normal_load [kN]": [60.0, 80.0]}
+    result, fields = wheelrail.simulate(table, fields=True, fmu=fmu3, patch_nodes=30, patch_strips=17, **PATCH)
+    assert fields.sizes == {"time": 6, "y": 17, "x": 30}
+    assert fields["time"].values.tolist() == result["time"].tolist()
+    assert fields["pressure"].attrs["units"] == "Pa"
+    assert (fields["x"].attrs["units"], fields["time"].attrs["units"]) == ("m", "s")
+    cell = float(np.diff(fields["x"][:2])[0] * np.diff(fields["y"][:2])[0])
+    # Before the first step there is no contact yet.
+    sums = fields["pressure"].sum(["x", "y"]).values[1:] * cell
+    assert sums == pytest.approx(result["normal_load"].to_numpy()[1:], rel=1e-6)
+    start = {name: value for name, value in PATCH.items() if name != "step"}
+    instance = wheelrail.Instance(fmu3, patch_nodes=30, patch_strips=17, **start).start()
+    some = wheelrail.simulate(table, fields=["temperature", "slip_x"], fields_every=4, instance=instance, step=0.02)[1]
+    own = instance.fields()
+    instance.close()
+    assert list(some.data_vars) == ["temperature", "slip_x"]
+    # Every fourth, and the last.
+    assert some["time"].values.tolist() == pytest.approx([0.0, 0.08, 0.1])
+    for name in some.data_vars:
+        assert np.array_equal(some[name].isel(time=-1), own[name]), name
+        assert np.array_equal(some[name].isel(time=-1), fields[name].isel(time=-1)), name
+    assert np.array_equal(fields["x"], own["x"][0])
+    assert np.array_equal(fields["y"], own["y"][:, 0])
+
+
+@pytest.mark.parametrize("version", ["fmu", "fmu3"])
+def test_fields_of_the_line(version, request):
+    """Profiles along the rail and into the depth, from either version: those of the outputs."""
+    path = request.getfixturevalue(version)
+    settings = {"stop_time": 0.1, "step": 0.01, "creepage": 0.02, "fmu": path}
+    result, fields = wheelrail.simulate(
+        fields=True, outputs=["profile.x", "profile.shear", "depth.temperature"], **settings
+    )
+    assert fields["shear"].dims == ("time", "x")
+    assert fields["depth_temperature"].dims == ("time", "z")
+    assert fields["shear"].attrs == {"units": "Pa", "long_name": "Shear traction on the rail"}
+    for name, profile in (("shear", "profile.shear"), ("depth_temperature", "depth.temperature")):
+        columns = [column for column in result if column.startswith(f"{profile}[")]
+        assert np.array_equal(fields[name], result[columns]), name
+    # Places stay where they are.
+    places = result[[column for column in result if column.startswith("profile.x[")]].to_numpy()
+    assert np.all(places == fields["x"].values)
+
+
+def test_what_there_was_before_a_failure(fmu):
+    """Rows and fields up to the step that could not be completed."""
+    table = {"time": [0.0, 0.5], "vehicle_speed": [10.0, 500.0]}
+    with pytest.raises(wheelrail.SimulationError) as error:
+        wheelrail.simulate(table, fmu=fmu, slip_source="vehicle_speed", fields="pressure", step=0.01, fields_every=2)
+    rows, fields = error.value.table, error.value.fields
+    assert 5 < len(rows) < 50
+    assert fields["time"].values.tolist() == rows["time"].tolist()[::2]
+    assert fields["pressure"].isel(time=-1).max() > 1e8
+
+
+def test_without_xarray(fmu, monkeypatch):
+    """What to install is said before anything is computed; all else works."""
+    monkeypatch.setitem(sys.modules, "xarray", None)
+    with pytest.raises(ImportError, match="pip install xarray"):
+        wheelrail.simulate(stop_time=0.1, fields=True, fmu=fmu)
+    assert len(wheelrail.simulate(stop_time=0.02, step=0.01, fmu=fmu)) == 3
+
+
+class Stream(io.StringIO):
+    """A stream that is a terminal, or none."""
+
+    def __init__(self, terminal):
+        """A terminal, or not."""
+        super().__init__()
+        self.terminal = terminal
+
+    def isatty(self):
+        """Whether it is one."""
+        return self.terminal
+
+
+class KernelStream(Stream):
+    """A stream as Jupyter's kernels have it."""
+
+    __module__ = "ipykernel.iostream"
+
+
+@pytest.mark.parametrize(
+    ("stream", "lines"),
+    [(Stream(True), 4), (KernelStream(False), 4), (Stream(False), 2)],
+    ids=["terminal", "notebook", "file"],
+)
+def test_progress(stream, lines, monkeypatch):
+    """A terminal and a notebook see each percent in place; a file a line for each half."""
+    monkeypatch.setattr(sys, "stderr", stream)
+    show = reporter(True, 0.0, 8.0, "creep_curves", "points")
+    for place in (2.0, 4.0, 6.0, 8.0):
+        show(place)
+    text = stream.getvalue()
+    assert text.count("creep_curves:") == lines
+    assert text.endswith("  creep_curves:   8.00 of 8.00 points, 100 %\n")
+    assert text.count("\r") == (3 if lines == 4 else 0)
+
+
+@pytest.fixture(scope="module")
+def curves(fmu):
+    """Return creep curves of all directions with few points."""
+    values = {"longitudinal": [0.0, 2e-3], "lateral": [0.0, 2e-3], "spin": [0.0, 1.0]}
+    return wheelrail.creep_curves(None, values, fmu=fmu, load=80e3, speed=25.0)
+
+
+@pytest.mark.parametrize(("driven", "panels"), [(["longitudinal"], 1), (["lateral"], 2), (["lateral", "spin"], 4)])
+def test_curves_fill_their_canvas(curves, driven, panels):
+    """No panel is left empty where the directions are few, and load and speed are said."""
+    figure = plots.creep_curves(curves[curves["driven"].isin(driven)], title="Dry")
+    assert len(figure.axes) == panels
+    assert all(axes.axison for axes in figure.axes)
+    assert figure.get_suptitle() == "Dry: 80 kN, 25 m/s"
+    figure.draw_without_rendering()
+    boxes = [axes.get_tightbbox().transformed(figure.transFigure.inverted()) for axes in figure.axes]
+    assert min(box.x0 for box in boxes) < 0.05
+    assert max(box.x1 for box in boxes) > 0.95
+    assert min(box.y0 for box in boxes) < 0.05
+
+
+def test_curves_of_several_loads(curves):
+    """Where loads differ the legend says them, in the panel that is left."""
+    other = curves.copy()
+    other.attrs["normal_load"] = 60e3
+    figure = plots.creep_curves({"worn": curves, "new": other})
+    legend = figure.axes[5].get_legend()
+    assert [text.get_text() for text in legend.get_texts()] == ["worn: 80 kN, 25 m/s", "new: 60 kN, 25 m/s"]
+
+
+def test_over_time(fmu):
+    """A panel for each name in the unit in which people read it, or in that which is asked for."""
+    result = wheelrail.simulate(stop_time=0.05, step=0.01, creepage=0.02, fmu=fmu)
+    names = ["traction_force", "peak_temperature", "friction_coefficient", "slip_creepage"]
+    figure = plots.over_time(result, names, units={"slip_creepage": "%"}, title="Rolling")
+    labels = ["traction force [kN]", "peak temperature [°C]", "friction coefficient", "slip creepage [%]"]
+    assert [axes.get_ylabel() for axes in figure.axes] == labels
+    assert figure.axes[-1].get_xlabel() == "time [s]"
+    for axes, name, factor, offset in zip(
+        figure.axes, names, (1e-3, 1.0, 1.0, 1e2), (0.0, -273.15, 0.0, 0.0), strict=True
+    ):
+        x, y = axes.get_lines()[0].get_data()
+        assert np.array_equal(x, result["time"])
+        assert y == pytest.approx(factor * result[name].to_numpy() + offset, rel=1e-14)
+    assert len(plots.over_time(result, "traction_force").axes) == 1
+
+
+def test_pictures_take_other_units(fmu):
+    """A frame that says kilonewtons is drawn as one in newtons."""
+    result = wheelrail.simulate(
+        REPOSITORY / "examples" / "braking.csv", stop_time=2.0, step=0.1, fmu=fmu, slip_source=2
+    )
+    other = result.assign(traction_force=result["traction_force"] / 1e3)
+    other.attrs["units"] = result.attrs["units"] | {"traction_force": "kN"}
+    drawn = [plots.braking(table).axes[1].get_lines()[0].get_ydata() for table in (result, other)]
+    assert drawn[1] == pytest.approx(drawn[0], rel=1e-14)
+
+
+def test_fields_are_drawn(fmu3):
+    """A time of a data set is drawn as the fields of an instance are."""
+    _, fields = wheelrail.simulate(stop_time=0.04, fields=True, fmu=fmu3, **PATCH)
+    figure = plots.patch_fields(fields.isel(time=-1))
+    mesh = figure.axes[0].collections[0]
+    assert np.nanmax(mesh.get_array()) == pytest.approx(fields["pressure"].isel(time=-1).max().item() / 1e6)
+    with pytest.raises(ValueError, match="fields of several times"):
+        plots.patch_fields(fields)
+
+
+def test_pictures_leave_pyplot_alone(curves):
+    """Nothing is left open that a notebook would show a second time, and no setting is changed."""
+    before = plt.get_fignums(), dict(mpl.rcParams)
+    figure = plots.creep_curves(curves)
+    assert (plt.get_fignums(), dict(mpl.rcParams)) == before
+    picture = io.BytesIO()
+    figure.savefig(picture)
+    assert len(picture.getvalue()) > 10_000
