@@ -76,7 +76,10 @@ def fresh(wheel, tmp_path_factory):
         "--constraint",
         REPOSITORY / "requirements.txt",
     ]
-    done = subprocess.run([python, "-m", "pip", "install", *options, wheel], capture_output=True, text=True)
+    # With the one extra: the documentation shows fields over time.
+    done = subprocess.run(
+        [python, "-m", "pip", "install", *options, f"{wheel}[fields]"], capture_output=True, text=True
+    )
     if "from versions: none" in done.stderr:
         pytest.skip(f"pip reaches no index: {done.stderr.splitlines()[-1]}")
     assert done.returncode == 0, done.stderr
@@ -188,7 +191,7 @@ def test_documentation_runs_where_there_is_only_pip(documented):
     assert answer["rows"] == 11001
     assert answer["force"][0] == pytest.approx(0.0, abs=1.0)
     assert answer["force"][-1] == pytest.approx(0.3 * 80e3, rel=0.01)
-    for picture in ("braking.png", "creep_curves.png"):
+    for picture in ("braking.png", "creep_curves.png", "over_time.png", "patch.png"):
         assert (folder / picture).stat().st_size > 20_000
 
 
