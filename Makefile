@@ -132,7 +132,7 @@ demo:
 	+@$(BESIDE) fmu fmu3 $(VENV)/ready
 	$(call say,The cases of the paper)
 	@$(PY) examples/paper_cases.py
-	$(call say,A braking manoeuvre)
+	$(call say,A braking manoeuvre - a stop)
 	@$(PY) examples/braking_demo.py
 	$(call say,The patch: its fields)
 	@$(PY) examples/patch_fields.py
@@ -169,10 +169,12 @@ $(addprefix coupling-,$(COUPLINGS)): coupling-%: couplings-set-up
 	$(call say,Coupling: $*)
 	@$(PY) examples/$*.py
 
+HUNTING := $(addsuffix .png,hunting_stability hunting_cycle hunting_curve hunting_contact)
+
 # The pictures of the pages in docs/couplings/, and their tables where they are generated; commit what changes.
 couplings-docs: couplings
 	@$(PY) tools/update_docs.py couplings
-	@cp $(addprefix results/,longitudinal.png stiff.png stiff_stop.png multibody.png train.png creep_curves.png hunting.png adhesion.png maintenance.png) docs/couplings/
+	@cp $(addprefix results/,longitudinal.png stiff.png stiff_stop.png multibody.png train.png creep_curves.png $(HUNTING) adhesion.png maintenance.png) docs/couplings/
 
 # The time that the sweep takes on two workers against one.
 sweep-scaling: couplings-set-up
@@ -234,7 +236,7 @@ docs: demo verify
 	@$(PY) tools/update_docs.py
 	@$(PY) tools/verification_figures.py
 	@$(PY) tools/patch_axes.py
-	@cp results/paper_temperature.png results/braking.png results/patch_fields.png results/patch_creep_curves.png docs/
+	@cp results/paper_temperature.png results/braking.png results/braking_stop.png results/patch_fields.png results/patch_creep_curves.png docs/
 	@cp results/verification/*.png docs/verification/
 
 # The site needs no network when it is read; warnings are errors.

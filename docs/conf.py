@@ -11,7 +11,7 @@ project = "wheelrail"
 author = "the authors of wheelrail"
 version = release = tomllib.loads((REPOSITORY / "Cargo.toml").read_text())["package"]["version"]
 
-extensions = ["myst_parser", "site_math"]
+extensions = ["myst_parser", "site_math", "site_search"]
 myst_enable_extensions = ["dollarmath"]
 myst_dmath_double_inline = True
 myst_heading_anchors = 3

@@ -1,4 +1,4 @@
-"""The pictures of examples/hunting.py: nine panels, and the limit cycle from above as an animation."""
+"""The pictures of examples/hunting.py, one for each part of its page, and the limit cycle from above as an animation."""
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -6,6 +6,7 @@ from helpers import BLACK, BLUE, GREEN, ORANGE, RED, RESULTS, SKY, save, show
 from hunting_runs import (
     CURVE_RADIUS,
     CYCLE_SPEED,
+    FREE_SPEED,
     GROWTH_SPEEDS,
     RAMP,
     REFERENCE,
@@ -19,75 +20,102 @@ from running_wheelset import CLEARANCE, HALF_GAUGE, LOAD, SIDES
 
 LINEAR_LOOK = {"Kalker's coefficients": (BLUE, "-"), "the component's derivatives": (ORANGE, "--")}
 SIDE_LOOK = {"left": BLUE, "right": RED}
+GREY = "#888888"
+RAIL_TEMPERATURE = "peak temperature of the rail [°C]"
 
 
-def draw_stability(found, free, growth, ramp):
+# Widths in inches: at the width of a page's column letters keep their size.
+WIDE = 7.6
+
+
+def draw_stability(found):
     """Draw Klingel's wave, growth over speed, and the ramp."""
+    figure, panels = plt.subplot_mosaic(
+        [["free", "growth"], ["ramp", "ramp"]], figsize=(WIDE, 6.6), layout="constrained"
+    )
+    free, growth, ramp = (panels[name] for name in ("free", "growth", "ramp"))
     result = found.free
     free.plot(result["place"], 1e3 * result["y"], color=BLUE, label="without suspension")
     wave = result["y"][0] * np.cos(2.0 * np.pi * result["place"] / klingel())
-    free.plot(result["place"], 1e3 * wave, color=BLACK, linestyle=":", label=f"Klingel: {klingel():.2f} m")
-    free.set(xlabel="place along the track [m]", ylabel="displacement [mm]", title="Rolling freely", ylim=(-3.5, 5.0))
-    free.legend(loc="upper center", ncols=2, fontsize=8)
+    free.plot(result["place"], 1e3 * wave, color=BLACK, linestyle=":", label=f"Klingel's wave, {klingel():.2f} m")
+    free.set(xlabel="place along the track [m]", ylabel="lateral displacement [mm]", ylim=(-3.5, 5.5))
+    free.set_title(f"Rolling freely at {FREE_SPEED:g} m/s")
+    free.legend(loc="upper center")
 
     speeds = np.linspace(GROWTH_SPEEDS[0], GROWTH_SPEEDS[-1], 40)
     for name, (colour, line) in LINEAR_LOOK.items():
         values = [eigenvalue(found, name, speed).real for speed in speeds]
         growth.plot(speeds, values, color=colour, linestyle=line, label=f"linear, {name}")
     growth.plot(GROWTH_SPEEDS, [value.real for value in found.modes], "o", color=BLACK, label="small swings")
-    growth.axhline(0.0, color="#888888", linewidth=0.8)
-    growth.set(xlabel="speed [m/s]", ylabel="growth [1/s]", title="Small swings: decay and growth")
-    growth.legend(loc="upper left", fontsize=8)
+    growth.axhline(0.0, color=GREY, linewidth=0.8, label="0: neither decays nor grows")
+    growth.set(xlabel="speed [m/s]", ylabel="growth [1/s]", title="Small swings", ylim=(-2.6, 5.2))
+    growth.legend(loc="upper left")
 
     ramp.plot(found.ramp["speed"], 1e3 * found.ramp["y"], color=BLUE, linewidth=0.5)
     for name, colour, line in (("Kalker's coefficients", BLACK, "--"), ("slow ramp", RED, ":")):
-        label = f"{name}: {found.critical[name]:.1f} m/s"
+        label = f"critical speed by {'the ' if name == 'slow ramp' else ''}{name}: {found.critical[name]:.1f} m/s"
         ramp.axvline(found.critical[name], color=colour, linestyle=line, label=label)
-    for edge in (-1e3 * CLEARANCE, 1e3 * CLEARANCE):
-        ramp.axhline(edge, color="#888888", linewidth=0.8)
-    ramp.set(xlabel="speed [m/s]", ylabel="displacement [mm]", title="Slowly faster", xlim=RAMP, ylim=(-11, 17))
-    ramp.legend(loc="upper left", fontsize=8, frameon=True, framealpha=1.0, edgecolor="none")
+    for edge, label in ((-1e3 * CLEARANCE, None), (1e3 * CLEARANCE, f"a flange touches: ±{1e3 * CLEARANCE:g} mm")):
+        ramp.axhline(edge, color=GREY, linewidth=0.8, label=label)
+    ramp.set(xlabel="speed [m/s]", ylabel="lateral displacement [mm]", title="Slowly faster", xlim=RAMP, ylim=(-11, 20))
+    ramp.legend(loc="upper left", frameon=True, framealpha=1.0, edgecolor="none")
+    save(figure, "hunting_stability.png")
 
 
-def draw_cycle(found, swing, heat, across):
-    """Draw two cycles with their temperatures, and the wear across rail and tread."""
+def draw_cycle(found):
+    """Draw two cycles with the temperatures of both rails, and the wear across rail and tread."""
+    figure, panels = plt.subplot_mosaic(
+        [["swing", "across"], ["heat", "heat"]], figsize=(WIDE, 6.2), layout="constrained"
+    )
+    swing, heat, across = (panels[name] for name in ("swing", "heat", "across"))
     start = crossings(found.cycle["time"], found.cycle["y"])[-3]
     shown = found.cycle[found.cycle["time"] >= start]
     place = shown["place"] - shown["place"][0]
-    swing.plot(place, 1e3 * shown["y"], color=BLACK, label="displacement [mm]")
+    swing.plot(place, 1e3 * shown["y"], color=BLACK, label="lateral displacement [mm]")
     swing.plot(place, 1e3 * shown["yaw"], color=GREEN, label="yaw [mrad]")
     swing.set(title=f"Limit cycle at {CYCLE_SPEED:g} m/s", xlabel="place along the track [m]", ylabel="[mm], [mrad]")
-    swing.set(ylim=(-12, 16))
-    swing.legend(loc="upper left", ncols=2, fontsize=8)
+    swing.set(ylim=(-12, 19))
+    swing.legend(loc="upper left")
     for side, colour in SIDE_LOOK.items():
-        heat.plot(place, shown[f"peak_temperature_{side}"] - 273.15, color=colour, label=f"{side} wheel")
-    heat.set(xlabel="place along the track [m]", ylabel="peak temperature [°C]", title="Its temperature")
-    heat.legend(loc="upper right", ncols=2, fontsize=8)
+        heat.plot(place, shown[f"peak_temperature_{side}"] - 273.15, color=colour, label=f"under the {side} wheel")
+    heat.set(xlabel="place along the track [m]", ylabel=RAIL_TEMPERATURE)
+    heat.set_title("Hottest point of the rail under each wheel, in the limit cycle")
+    heat.legend(loc="upper right", ncols=2)
     low, high = heat.get_ylim()
-    heat.set_ylim(low, high + 0.12 * (high - low))
+    heat.set_ylim(low, high + 0.15 * (high - low))
 
     lateral, rail, tread = found.wear
     across.fill_between(1e3 * lateral, 1e9 * rail, color=SKY, alpha=0.5, linewidth=0, label="rail")
-    across.plot(1e3 * lateral, 1e9 * tread, color=BLACK, label="tread")
-    across.set(xlabel="towards the flange [mm]", ylabel="wear of a passage [nm]")
-    across.set(title="Wear at the left, mean of a cycle")
-    across.legend(loc="upper right", fontsize=8)
+    across.plot(1e3 * lateral, 1e9 * tread, color=BLACK, label="tread of the wheel")
+    across.set(xlabel="towards the flange [mm]", ylabel="wear of a passage [nm]", ylim=(0, 1.45e9 * rail.max()))
+    across.set_title("Wear at the left, mean of a cycle")
+    across.legend(loc="upper right")
+    save(figure, "hunting_cycle.png")
 
 
-def draw_curve(found, force, heat, reference):
-    """Draw forces and temperature over the yaw angle, and what CONTACT has beside it."""
+def draw_curve(found):
+    """Draw forces and temperature over the yaw angle."""
+    figure, (force, heat) = plt.subplots(1, 2, figsize=(WIDE, 3.5), layout="constrained")
     angle = 1e3 * found.curve["yaw angle [rad]"]
     for side, colour in SIDE_LOOK.items():
         force.plot(angle, 1e-3 * found.curve[f"lateral_force_{side}"], color=colour, label=f"{side} wheel")
+        heat.plot(
+            angle, found.curve[f"peak_temperature_{side}"] - 273.15, color=colour, label=f"under the {side} wheel"
+        )
+    for side, colour in SIDE_LOOK.items():
         bound = found.curve[f"friction_coefficient_{side}"] * LOAD
-        force.plot(angle, 1e-3 * bound, color=colour, linestyle=":", linewidth=1.0)
-        heat.plot(angle, found.curve[f"peak_temperature_{side}"] - 273.15, color=colour, label=f"{side} wheel")
-    force.plot([], [], color="#777777", linestyle=":", linewidth=1.0, label="friction × load")
-    force.set(xlabel="yaw angle [mrad]", ylabel="lateral force [kN]", title=f"In a curve of {CURVE_RADIUS:g} m")
-    force.legend(loc="lower right", fontsize=8)
-    heat.set(xlabel="yaw angle [mrad]", ylabel="peak temperature [°C]", title="Its temperature")
-    heat.legend(loc="lower right", fontsize=8)
+        force.plot(angle, 1e-3 * bound, color=colour, linestyle=":", linewidth=1.4, label=f"friction × load, {side}")
+    force.set(xlabel="yaw angle [mrad]", ylabel="lateral force on the wheel [kN]")
+    force.set_title(f"Forces in a curve of {CURVE_RADIUS:g} m")
+    force.legend(loc="lower right")
+    heat.set(xlabel="yaw angle [mrad]", ylabel=RAIL_TEMPERATURE, title="Rail under each wheel")
+    heat.legend(loc="lower right")
+    save(figure, "hunting_curve.png")
 
+
+def draw_contact(found):
+    """Draw force and moment over lateral creepage, and what CONTACT has beside them."""
+    figure, reference = plt.subplots(figsize=(0.7 * WIDE, 3.4), layout="constrained")
     (lateral, moment), limit = found.contact
     creepage = 1e3 * REFERENCE[0]
     reference.semilogx(creepage, lateral, color=BLUE, label="lateral force / μN")
@@ -98,16 +126,16 @@ def draw_curve(found, force, heat, reference):
     reference.set(xlabel="lateral creepage [‰]", ylabel="[1]", title="Beside CONTACT, constant friction, no spin")
     ticks = [0.2, 0.5, 1, 2, 5, 10]
     reference.set_xticks(ticks, [f"{tick:g}" for tick in ticks])
-    reference.legend(loc="center left", fontsize=8)
+    reference.legend(loc="center left")
+    save(figure, "hunting_contact.png")
 
 
 def draw(found):
-    """Draw all panels."""
-    figure, panels = plt.subplots(3, 3, figsize=(13.0, 10.5), layout="constrained")
-    draw_stability(found, *panels[0])
-    draw_cycle(found, *panels[1])
-    draw_curve(found, *panels[2])
-    save(figure, "hunting.png")
+    """Draw all pictures of the page."""
+    draw_stability(found)
+    draw_cycle(found)
+    draw_curve(found)
+    draw_contact(found)
 
 
 LARGER = 40.0  # displacement and yaw, in the animation

@@ -57,7 +57,7 @@ def read(path):
     return curves
 
 
-def draw(curves, milliseconds):
+def draw(curves):
     """Draw the five creep curves of the three ellipses."""
     drawn = [
         CreepCurve(driven, 100.0 * np.array(columns["creepage"]), columns, {"color": COLOURS[ratio]} | STYLES[by])
@@ -67,25 +67,18 @@ def draw(curves, milliseconds):
     figure = creep_panels(drawn, LABELS)
     for axes in figure.axes[:5]:
         axes.set_xlim(0.0, 0.6)
-    explain(figure.axes[5], {by for _, _, by in curves}, milliseconds)
+    explain(figure.axes[5], {by for _, _, by in curves})
     figure.suptitle("Creep curves of an elliptic contact, 80 kN, friction coefficient 0.3", x=0.01, ha="left")
     save(figure, "patch_creep_curves.png")
 
 
-def explain(axes, programs, milliseconds):
-    """Use the panel that is left for colours, lines and times."""
+def explain(axes, programs):
+    """Use the panel that is left for colours and lines."""
     handles = [plt.Line2D([], [], color=colour, label=f"$a/b$ = {ratio}") for ratio, colour in COLOURS.items()]
     handles += [
         plt.Line2D([], [], color=BLACK, label=NAMES[by], **style) for by, style in STYLES.items() if by in programs
     ]
     axes.legend(handles=handles, loc="upper left", fontsize=9, bbox_to_anchor=(0.0, 1.05))
-    lines = [f"{name}: {figure(value)} ms" for name, value in milliseconds.items()]
-    axes.text(0.04, -0.12, "\n".join(["A point takes", *lines]), transform=axes.transAxes, va="bottom", fontsize=8.5)
-
-
-def figure(value):
-    """Two significant digits."""
-    return f"{value:.2g}" if value < 10 else f"{value:.0f}"
 
 
 def times(curves):
@@ -131,15 +124,14 @@ def main():
     if not TABLE.exists():
         sys.exit(f"{TABLE} is not there: run the example of the same name in Rust first")
     curves = read(TABLE)
-    milliseconds = times(curves)
-    draw(curves, milliseconds)
+    draw(curves)
     rows = accuracy(curves)
     write_accuracy(rows)
     for ratio, points, name, *off in rows:
         print(
             f"  a/b = {ratio}, {points} points, {name:39} off by at most {', '.join(f'{value:.4f}' for value in off)}"
         )
-    for name, value in milliseconds.items():
+    for name, value in times(curves).items():
         print(f"  {name:39} {value:9.3f} ms a point")
 
 

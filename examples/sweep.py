@@ -136,7 +136,7 @@ def draw(table):
     data = {name: np.array(table[name].to_pylist()) for name in table.column_names}
     laws = {"constant": "constant", "piecewise_linear": "piecewise linear", "flow_stress": "flow stress"}
     speeds, loads = (2.0, 5.0, 10.0, 20.0, 50.0), (20e3, 40e3, 60e3, 80e3, 100e3)
-    figure, panels = plt.subplots(2, 3, figsize=(11.0, 7.0), sharex=True, sharey=True, layout="constrained")
+    figure, panels = plt.subplots(2, 3, figsize=(8.4, 7.0), sharex=True, sharey=True, layout="constrained")
     colours = LogNorm(20.0, 800.0)
     for column, (law, title) in enumerate(laws.items()):
         for row, (name, values) in enumerate((("speed", speeds), ("normal_load", loads))):
@@ -155,14 +155,16 @@ def draw(table):
                 ends.append((x[-1], y[-1]))
             label_ends(axes, values, ends, "m/s" if name == "speed" else "kN", 1.0 if name == "speed" else 1e3)
             axes.set_xscale("log")
-            axes.set(xlim=(0.01, 400), ylim=(0.2, 0.47))
+            axes.set(xlim=(0.01, 400), ylim=(0.0, 0.48))
             axes.set_xticks([0.01, 0.1, 1, 10], ["0.01", "0.1", "1", "10"])
             axes.set_title(f"{title} friction, " + ("60 kN" if name == "speed" else "20 m/s"))
     for axes in panels[:, 0]:
         axes.set_ylabel("traction / load [1]")
     for axes in panels[1]:
         axes.set_xlabel("creepage [%]")
-    bar = figure.colorbar(plt.cm.ScalarMappable(colours, "plasma"), ax=panels, shrink=0.7, extend="max")
+    bar = figure.colorbar(
+        plt.cm.ScalarMappable(colours, "plasma"), ax=panels, location="bottom", shrink=0.7, aspect=35, extend="max"
+    )
     bar.set_ticks([20, 50, 100, 200, 400, 800], labels=["20", "50", "100", "200", "400", "800"])
     bar.minorticks_off()
     bar.set_label("peak temperature of the rail [°C]")
