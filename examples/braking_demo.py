@@ -2,8 +2,8 @@
 
     .venv/bin/python examples/braking_demo.py       (after `make fmu`)
 
-The manoeuvre is a table: wheel speed, vehicle speed and load come from examples/braking.csv; examples/braking.py says how
-they were made. results/braking.png is the picture of README, and of the lines of Python beside it there.
+The manoeuvre is a table: wheel speed, vehicle speed and load come from examples/braking.csv; examples/braking.py says
+how they were made. results/braking.png is the picture of README, and of the lines of Python beside it there.
 
 For the stop they come from the table up to `COUPLED` only. From there on they are those of a wheel with its share of a
 vehicle, coupled to the same instance by the iterating master of examples/stiff.py: the brake goes on with the torque

@@ -1,4 +1,4 @@
-"""The pictures of examples/hunting.py, one for each part of its page, and the limit cycle from above as an animation."""
+"""The pictures of examples/hunting.py, one for each part of its page, and the limit cycle from above, animated."""
 
 import matplotlib.pyplot as plt
 import numpy as np
