@@ -33,8 +33,10 @@ PATCH = REPOSITORY / "docs" / "patch.md"
 PATCH_ACCURACY = REPOSITORY / "results" / "patch_accuracy.csv"
 
 # What one sets and reads first.
-FIRST = ["wheel_speed", "creepage", "vehicle_speed", "normal_load", "slip_source", "friction_law", "wheel"]
-FIRST += ["traction_force", "friction_torque", "peak_temperature", "friction_coefficient", "worn_volume"]
+FIRST = ["wheel_speed", "creepage", "vehicle_speed", "normal_load", "lateral_creepage", "spin_creepage"]
+FIRST += ["contact_model", "slip_source", "friction_law"]
+FIRST += ["traction_force", "friction_torque", "lateral_force", "spin_moment"]
+FIRST += ["peak_temperature", "friction_coefficient", "worn_volume"]
 
 
 def variables():
