@@ -2,7 +2,6 @@
 
 import csv
 import html
-import json
 import re
 import subprocess
 import sys
@@ -121,25 +120,6 @@ def test_figures_of_the_verification():
             assert abs(float(row["computed"])) < 1e-9, quantity
         else:
             assert abs(float(computed) - float(row["computed"])) <= 1e-3 * scale, f"{quantity}; {STALE}"
-
-
-def test_readme_shows_the_fmu_alone(examples, fmu):
-    """README's command line of FMPy and its lines of a master run on what `make demo` leaves."""
-    folder = examples[1]
-    (folder / "results" / "WheelRailContact.fmu").write_bytes(Path(fmu).read_bytes())
-    text = update_docs.README.read_text()
-    command = re.search(r"```sh\nfmpy (.*?)```", text, re.DOTALL)[1].replace("\\\n", " ")
-    subprocess.run([sys.executable, "-m", "fmpy", *command.split()], check=True, capture_output=True, cwd=folder)
-    with (folder / "braking.csv").open(newline="") as file:
-        rows = list(csv.DictReader(file))
-    assert float(rows[-1]["time"]) == pytest.approx(20.0)
-    assert max(float(row["peak_temperature"]) for row in rows) > 600.0
-    program = next(code for code in re.findall(r"```python\n(.*?)```", text, re.DOTALL) if "libcosimpy" in code)
-    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, cwd=folder)
-    assert done.returncode == 0, done.stderr
-    traction, temperature = json.loads(done.stdout.splitlines()[-1])
-    assert 20e3 < traction < 27.1e3
-    assert temperature > 300.0
 
 
 def test_links_of_readme():

@@ -16,11 +16,12 @@ from pathlib import Path
 import matplotlib.image
 import numpy as np
 import pytest
-from test_wheel import wheel  # noqa: F401: a fixture
 
 REPOSITORY = Path(__file__).resolve().parent.parent
 README = REPOSITORY / "README.md"
 INTERFACE = REPOSITORY / "docs" / "fmi.md"
+PICTURE = "docs/braking.png"
+STALE = f"{PICTURE} is not what README's lines draw: run `make docs` and commit what it changes"
 UNKNOWN = "README shows a command that no test runs"
 BLOCK = re.compile(r"^```(\w*)\n(.*?)^```", re.MULTILINE | re.DOTALL)
 # Of the clone, what a stranger's commands read; examples are copied, as they write beside themselves.
@@ -85,7 +86,16 @@ def clone(fmu, wheelrail, tmp_path_factory):
 
 
 @pytest.fixture(scope="module")
-def printed(clone, wheel):  # noqa: F811
+def wheel(fmu, wheelrail, tmp_path_factory):
+    """Build the wheel as `make wheel` does; return its path."""
+    folder = tmp_path_factory.mktemp("dist")
+    build = [sys.executable, "-m", "hatchling", "build", "-t", "wheel", "-d", folder]
+    subprocess.run(build, check=True, capture_output=True, cwd=REPOSITORY)
+    return next(folder.glob("*.whl"))
+
+
+@pytest.fixture(scope="module")
+def printed(clone, wheel):
     """Run README, then the masters of docs/fmi.md; return what each block printed, by document and block."""
     text, counts = script(README)
     assert counts["sh"] >= 4 and counts["python"] >= 1 and counts["rust"] == 1
@@ -125,22 +135,14 @@ def test_python_says_what_a_person_wants(printed):
     assert 0.25 <= friction < 0.3 and worn > 50
 
 
-def pixels(path):
-    """Return a picture as an array."""
-    return matplotlib.image.imread(path)
-
-
 def test_readme_gives_the_picture_that_it_shows(printed, clone):
     """README's lines, the demo and docs/braking.png are the same picture."""
-    own, demo, shown = map(pixels, (clone / "braking.png", clone / "results" / "braking.png", README.parent / PICTURE))
+    files = (clone / "braking.png", clone / "results" / "braking.png", REPOSITORY / PICTURE)
+    own, demo, shown = map(matplotlib.image.imread, files)
     assert own.shape == demo.shape and np.array_equal(own, demo)
     assert own.shape == shown.shape, STALE
     # On another machine round-off may move a line's edge from one pixel to its neighbour.
     assert np.mean(np.any(np.abs(own - shown) > 0.1, axis=2)) < 1e-3, STALE
-
-
-PICTURE = "docs/braking.png"
-STALE = f"{PICTURE} is not what README's lines draw: run `make docs` and commit what it changes"
 
 
 def test_command_line_and_fmpy_write_tables(printed, clone):

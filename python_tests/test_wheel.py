@@ -158,8 +158,8 @@ def test_command_runs_where_there_is_only_pip(fresh, tmp_path):
 
 @pytest.fixture(scope="module")
 def documented(fresh):
-    """Run the lines of both READMEs, then those of docs/python.md, in the new environment; return what was printed."""
-    pages = [blocks(REPOSITORY / "README.md")[:1] + blocks(REPOSITORY / "python" / "README.md")]
+    """Run the lines of the package's README, then those of docs/python.md; return what was printed."""
+    pages = [blocks(REPOSITORY / "python" / "README.md")]
     pages.append(blocks(REPOSITORY / "docs" / "python.md"))
     mark = "print('next page')"
     program = ["import matplotlib; matplotlib.use('Agg')", *pages[0], mark, *pages[1], ASK]
@@ -168,16 +168,10 @@ def documented(fresh):
 
 
 def test_readme_example_runs(documented):
-    """README's lines of Python run as they stand, and print the last row with units."""
-    assert len(blocks(REPOSITORY / "README.md")[0].strip().splitlines()) <= 10
-    printed, _, folder = documented
-    row = next(line for line in printed.splitlines() if line.startswith("1000 "))
-    traction, temperature, worn = map(float, row.split()[1:4])
-    assert 10e3 < traction < 80e3
-    assert temperature > 300.0
-    assert worn > 0.0
-    assert "'traction_force': 'N'" in printed
-    assert (folder / "creep_curves.png").exists()
+    """The package's README has the lines of the repository's, which test_stranger.py runs, and they print as there."""
+    assert blocks(REPOSITORY / "python" / "README.md") == blocks(REPOSITORY / "README.md")
+    printed, _, _ = documented
+    assert "hottest 3" in printed and "mm³" in printed
 
 
 def test_documentation_runs_where_there_is_only_pip(documented):

@@ -49,6 +49,10 @@ def styled(draw: Callable[P, Figure]) -> Callable[P, Figure]:
     def drawn(*arguments: P.args, **named: P.kwargs) -> Figure:
         with plt.rc_context(STYLE):
             figure = draw(*arguments, **named)
+            # Ticks are counted and made when a figure is first drawn, with the settings of that moment.
+            for axes in figure.axes:
+                axes.tick_params(labelsize=STYLE["font.size"])
+            figure.draw_without_rendering()
         backend = str(matplotlib.get_backend()).lower().rpartition("backend_")[2]
         if backend in WITHOUT_WINDOW:
             plt.close(figure)
