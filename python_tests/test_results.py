@@ -23,6 +23,23 @@ from wheelrail.stepping import points  # noqa: E402
 PATCH = {"contact_model": "patch", "lateral_creepage": 1e-3, "creepage": 1e-3, "step": 0.02}
 
 
+def test_window_follows_the_loads(fmu):
+    """A table or a curve under a locomotive's load has the window of a twentieth more; others have the default."""
+    run = {"fmu": fmu, "step": 1e-2, "outputs": "traction_force", "creepage": 0.01}
+    table = {"time": [0.0, 0.1], "normal_load [kN]": [60.0, 112.5]}
+    pd.testing.assert_frame_equal(
+        wheelrail.simulate(table, **run), wheelrail.simulate(table, **run, largest_load=1.05 * 112.5e3)
+    )
+    light = {"stop_time": 0.1, "normal_load": 60e3}
+    pd.testing.assert_frame_equal(
+        wheelrail.simulate(**light, **run), wheelrail.simulate(**light, **run, largest_load=100e3)
+    )
+    curve = {"driven": "longitudinal", "creepages": [0.002], "load": 112.5e3, "contact_model": "line", "fmu": fmu}
+    pd.testing.assert_frame_equal(
+        wheelrail.creep_curves(**curve), wheelrail.creep_curves(**curve, largest_load=1.05 * 112.5e3)
+    )
+
+
 def test_memory_of_a_result(fmu):
     """At its peak a run takes little more than its result: the points while they are made, and a look ahead.
 

@@ -9,7 +9,7 @@ import numpy as np
 import pandas as pd
 
 from .archive import AnyPath, description
-from .inputs import check_inputs, parameters_of
+from .inputs import check_inputs, parameters_of, with_window
 from .instance import Instance, SimulationError
 from .progress import Progress, reporter
 from .simulation import fmu_of, given_values
@@ -111,7 +111,7 @@ def creep_curves(
         Values along a curve, or one value, or a mapping with those of each kind; longitudinal and lateral [1], spin
         [1/m].
     load
-        Normal load [N].
+        Normal load [N]; `largest_load` follows it as in `simulate`.
     speed
         Speed of the axle [m/s].
     outputs
@@ -158,6 +158,7 @@ def creep_curves(
     for name, only in (("slip_source", "creepage"), ("control", "load")):
         if checked.get(name, choices(known[name])[only]) != choices(known[name])[only]:
             raise ValueError(f"{name} = {given[name]!r}: creep curves are over creepage at a load, {name}={only!r}")
+    checked = with_window(fmu, checked, np.atleast_1d(checked["normal_load"]))
     inputs = {name: value for name, value in checked.items() if known[name].causality == "input"}
     check_inputs(fmu, {"time": np.zeros(1)}, inputs, parameters_of(fmu, checked, None))
     if not load > 0.0:

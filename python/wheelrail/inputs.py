@@ -13,6 +13,38 @@ from .variables import allowed, bounds, by_name, choices, settable, unit
 
 # Gives the value of a parameter under which inputs are to be judged.
 Parameter = Callable[[str], float]
+# Where `largest_load` follows the loads it is larger than all of them by this factor, and it follows them up to the
+# load of a wheel under an axle of 40 t [N]: a larger one is more likely a slip of the pen.
+HEADROOM, HEAVIEST_WHEEL = 1.05, 200e3
+
+
+def with_window(fmu: AnyPath, given: Mapping[str, Any], loads: np.ndarray) -> dict[str, Any]:
+    """Parameters whose contact window takes the loads that are known beforehand.
+
+    `largest_load` sizes the window. Its start value resolves the load of a passenger coach's wheel, which a window for
+    a locomotive's would do more coarsely; where it is not given and a load is above it, it follows the load.
+
+    Parameters
+    ----------
+    fmu
+        The component.
+    given
+        Parameters and constant inputs by name.
+    loads
+        Normal loads to come [N].
+
+    Returns
+    -------
+    dict
+        The same, with `largest_load` where it follows.
+    """
+    variable = by_name(str(fmu)).get("largest_load")
+    if variable is None or "largest_load" in given or loads.size == 0:
+        return dict(given)
+    largest = float(loads.max())
+    if not float(variable.start) < largest <= HEAVIEST_WHEEL:
+        return dict(given)
+    return {**given, "largest_load": HEADROOM * largest}
 
 
 def parameters_of(fmu: AnyPath, given: Mapping[str, Any], instance: Instance | None) -> Parameter:

@@ -13,7 +13,7 @@ import pandas as pd
 from .archive import AnyPath, fmu_path
 from .archive import preset as preset_named
 from .fields import Fields, needs_xarray, whole
-from .inputs import check_inputs, parameters_of
+from .inputs import check_inputs, parameters_of, with_window
 from .instance import Instance
 from .progress import Progress, reporter
 from .stepping import follow, points, seconds
@@ -111,6 +111,7 @@ def simulate(
         An `Instance` to go on with from its own time; it is left as it is at the end.
     **values
         Parameters and constant inputs by name, in SI units; choices by name or number: `friction_law="constant"`.
+        `largest_load`, which sizes the contact window, follows the largest load up to 200 kN unless it is given.
 
     Returns
     -------
@@ -159,6 +160,8 @@ def simulate(
     columns = columns_of({"time": [0.0 if instance is None else instance.time]} if table is None else table, fmu)
     if twice := columns.keys() & given.keys():
         raise ValueError(f"given in the table and as a constant: {', '.join(sorted(twice))}")
+    if instance is None:
+        given = with_window(fmu, given, columns.get("normal_load", np.atleast_1d(given.get("normal_load", 0.0))))
     value = parameters_of(fmu, given, instance)
     check_inputs(fmu, columns, constants, value)
     start = float(columns["time"][0]) if instance is None else instance.time

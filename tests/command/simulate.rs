@@ -594,6 +594,43 @@ fn parameters_that_cannot_be_are_refused() {
     );
 }
 
+/// The contact window takes the loads of the scenario, up to those that a wheel carries, unless `--set` says how large it is.
+#[test]
+fn the_window_follows_the_loads_of_the_scenario() {
+    let scenario = |load: &str| format!("time,normal_load [kN]\n0,60\n0.002,{load}\n");
+    let place = Place::new("heavy", &scenario("112.5"));
+    let followed = place.simulate(&[]);
+    assert!(followed.status.success());
+    let message = String::from_utf8(followed.stderr).unwrap();
+    assert!(
+        message.contains("largest_load = 118125 N follows the loads"),
+        "{message}"
+    );
+    let result = read_to_string(&place.output).unwrap();
+    assert!(place.simulate(&["--set", "largest_load=118125"]).status.success());
+    assert_eq!(result, read_to_string(&place.output).unwrap());
+    let _ = remove_file(&place.output);
+    place.refused(
+        &["--set", "largest_load=100e3"],
+        &[
+            "line 3",
+            "normal_load = 112500",
+            "allowed is 0 to 100000 N",
+            "largest_load",
+        ],
+    );
+    let place = Place::new("too-heavy", &scenario("600"));
+    place.refused(
+        &[],
+        &[
+            "line 3",
+            "normal_load = 600000",
+            "allowed is 0 to 100000 N",
+            "largest_load",
+        ],
+    );
+}
+
 #[test]
 fn steps_that_cannot_be_are_refused() {
     let place = Place::new("steps", GOOD);

@@ -195,8 +195,16 @@ struct Row {
     inputs: Inputs,
 }
 
-/// Reads the table and checks each value against the parameters.
-pub fn read(path: &Path, parameters: &Parameters) -> Result<Schedule, Error> {
+/// Where `largest_load` follows the loads of a scenario it is larger than all of them by this factor.
+const HEADROOM: f64 = 1.05;
+/// It follows them up to the load of a wheel under an axle of 40 t, `N`: a larger one is more likely a slip of the pen.
+const HEAVIEST_WHEEL: f64 = 200e3;
+
+/// Reads the table and checks each value against the parameters, whose `largest_load` follows the loads if asked for.
+///
+/// The start value of `largest_load` resolves the load of a passenger coach's wheel, which a window for a locomotive's would do
+/// more coarsely.
+pub fn read(path: &Path, parameters: &mut Parameters, load_follows: bool) -> Result<Schedule, Error> {
     let csv_error = table::Error::csv(path);
     let file = File::open(path).map_err(table::Error::file(path))?;
     let mut reader = csv::ReaderBuilder::new()
@@ -211,7 +219,7 @@ pub fn read(path: &Path, parameters: &Parameters) -> Result<Schedule, Error> {
     let mut rows: Vec<Row> = Vec::new();
     for record in reader.records() {
         let record = record.map_err(&csv_error)?;
-        let row = row(path, &columns, &record, parameters)?;
+        let row = row(path, &columns, &record)?;
         if let Some(before) = rows.last().map(|row| row.time).filter(|before| row.time <= *before) {
             let time = columns.iter().find(|column| matches!(column.quantity, Quantity::Time));
             return Err(Error::TimeNotAscending {
@@ -223,6 +231,13 @@ pub fn read(path: &Path, parameters: &Parameters) -> Result<Schedule, Error> {
             });
         }
         rows.push(row);
+    }
+    let largest = rows.iter().map(|row| row.inputs.normal_load).fold(0.0, f64::max);
+    if load_follows && largest > parameters.largest_load && largest <= HEAVIEST_WHEEL {
+        parameters.largest_load = HEADROOM * largest;
+    }
+    for row in &rows {
+        check(path, &columns, row, parameters)?;
     }
     check_used(path, &columns, &rows, parameters)?;
     let points = rows.iter().map(|row| Point {
@@ -326,7 +341,7 @@ fn hints(name: &str) -> (String, String) {
 }
 
 /// A row, each value in the unit of its variable.
-fn row(path: &Path, columns: &[Column], record: &csv::StringRecord, parameters: &Parameters) -> Result<Row, Error> {
+fn row(path: &Path, columns: &[Column], record: &csv::StringRecord) -> Result<Row, Error> {
     let path = || path.to_owned();
     let line = record.position().map_or(0, csv::Position::line);
     if record.len() != columns.len() {
@@ -358,23 +373,30 @@ fn row(path: &Path, columns: &[Column], record: &csv::StringRecord, parameters: 
                 });
             }
             Quantity::Time => time = value,
-            Quantity::Input(signal) => {
-                signal.check(value, parameters).map_err(|source| Error::Value {
-                    path: path(),
-                    line,
-                    column: heading(),
-                    source: Box::new(source),
-                })?;
-                (signal.set)(&mut inputs, value);
-            }
+            Quantity::Input(signal) => (signal.set)(&mut inputs, value),
         }
     }
-    inputs.check(parameters).map_err(|source| Error::Row {
-        path: path(),
-        line,
-        source: Box::new(source),
-    })?;
     Ok(Row { line, time, inputs })
+}
+
+/// Refuses inputs that the model does not take under the parameters.
+fn check(path: &Path, columns: &[Column], row: &Row, parameters: &Parameters) -> Result<(), Error> {
+    for column in columns {
+        if let Quantity::Input(signal) = column.quantity {
+            let checked = signal.check((signal.get)(&row.inputs), parameters);
+            checked.map_err(|source| Error::Value {
+                path: path.to_owned(),
+                line: row.line,
+                column: column.heading.clone(),
+                source: Box::new(source),
+            })?;
+        }
+    }
+    row.inputs.check(parameters).map_err(|source| Error::Row {
+        path: path.to_owned(),
+        line: row.line,
+        source: Box::new(source),
+    })
 }
 
 /// Refuses a column without effect: a column that is given is meant. One that is everywhere at the input's start value says

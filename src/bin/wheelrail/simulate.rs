@@ -106,8 +106,16 @@ impl Simulate {
     /// Runs the command.
     pub fn run(&self) -> Result<(), Error> {
         self.check_files()?;
-        let parameters = self.parameters()?;
-        let schedule = scenario::read(&self.scenario, &parameters).map_err(Box::new)?;
+        let mut parameters = self.parameters()?;
+        let start_value = Parameters::default().largest_load;
+        let follows = parameters.largest_load == start_value && !self.sets("largest_load");
+        let schedule = scenario::read(&self.scenario, &mut parameters, follows).map_err(Box::new)?;
+        if follows && parameters.largest_load > start_value {
+            eprintln!(
+                "largest_load = {} N follows the loads of the scenario",
+                parameters.largest_load
+            );
+        }
         self.check_steps(&schedule)?;
         let steps = schedule.steps(self.step).map_err(|_| Error::Step { step: self.step })?;
         let model = Arc::new(Model::new(parameters).map_err(Error::Parameter)?);
@@ -187,6 +195,12 @@ impl Simulate {
             });
         }
         Ok(())
+    }
+
+    /// Whether `--set` gives the parameter of this name.
+    fn sets(&self, parameter: &str) -> bool {
+        let names = self.set.iter().filter_map(|text| text.split_once('='));
+        names.into_iter().any(|(name, _)| name.trim() == parameter)
     }
 
     fn parameters(&self) -> Result<Parameters, Error> {
