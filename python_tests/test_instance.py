@@ -230,7 +230,9 @@ def test_a_step_that_fails_can_be_taken_anew(fmu):
     # Through FMPy, a load that rises beyond what the model is made for within the step.
     rising = [instance.variables["normal_load"].valueReference], [1]
     instance.slave.setRealInputDerivatives(*rising, [1e8])
-    with pytest.raises(SimulationError, match=r"allowed is 0 to 100000 N; the instance is as it was before step\(\)"):
+    with pytest.raises(
+        SimulationError, match=r"allowed is 0 to 100000 N; .* the instance is as it was before step\(\)"
+    ):
         instance.step(0.01)
     assert (instance.time, instance.get(*READ)) == (0.01, before)
     instance.slave.setRealInputDerivatives(*rising, [0.0])

@@ -52,13 +52,9 @@ def parameters_of(fmu: AnyPath, given: Mapping[str, Any], instance: Instance | N
     known = by_name(str(fmu))
 
     def value(name: str) -> float:
-        variable = known[name]
         if instance is not None:
-            # Choices are integers in FMI 2.0 and enumerations, 64 bits wide, in FMI 3.0.
-            kinds = {"Real": "Real", "Float64": "Float64", "Enumeration": "Int64"}
-            read = getattr(instance.slave, f"get{kinds.get(variable.type, variable.type)}")
-            return float(read([variable.valueReference])[0])
-        return float(given.get(name, variable.start))
+            return float(instance.get(name)[0])
+        return float(given.get(name, known[name].start))
 
     return value
 
