@@ -281,6 +281,23 @@ def test_units_of_a_picture():
         plots.over_time(RESULT, "traction_force", units={"traction_forc": "kN"})
 
 
+def test_numbers_too_large_for_any_quantity(fmu):
+    """A whole number of four hundred digits is refused wherever a number goes, by the name of where it went."""
+    huge = 10**400
+    for call, name in (
+        (lambda: wheelrail.simulate(TABLE, fmu=fmu, normal_load=huge), "normal_load"),
+        (lambda: wheelrail.simulate(TIME | {"creepage": [0.0, huge]}, fmu=fmu), "creepage"),
+        (lambda: wheelrail.simulate(TABLE, fmu=fmu, contact_nodes=huge), "contact_nodes"),
+        (lambda: wheelrail.simulate(TABLE, fmu=fmu, step=huge), "step"),
+        (lambda: wheelrail.simulate(TABLE, fmu=fmu, stop_time=huge), "stop_time"),
+        (lambda: wheelrail.creep_curves("lateral", fmu=fmu, load=huge), "load"),
+        (lambda: wheelrail.creep_curves("lateral", fmu=fmu, speed=huge), "speed"),
+        (lambda: wheelrail.creep_curves("lateral", [huge], fmu=fmu), "creepage"),
+    ):
+        with pytest.raises(ValueError, match=name):
+            call()
+
+
 def test_instance_is_left_as_it_was(fmu):
     """A refused run changes neither the time nor an input of the instance that it was to go on with."""
     instance = wheelrail.Instance(fmu, slip_source="vehicle_speed", normal_load=70e3).start()

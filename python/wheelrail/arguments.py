@@ -21,6 +21,8 @@ def seconds(what: str, value: Any, positive: bool = False) -> float:
     if type(value) is float and 0.0 < value < math.inf:
         return value
     needed = f"a {'positive ' if positive else ''}finite number of seconds is needed"
+    if isinstance(value, np.ndarray) and value.ndim == 0:
+        value = value.item()
     if isinstance(value, bool | np.bool_) or not isinstance(value, numbers.Real):
         raise TypeError(f"{what} = {value!r}: {needed}")
     number = finite(what, value)

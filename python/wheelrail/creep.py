@@ -9,6 +9,7 @@ import numpy as np
 import pandas as pd
 
 from .archive import AnyPath, description
+from .arguments import finite
 from .inputs import check_inputs, parameters_of, with_window
 from .instance import Instance, SimulationError
 from .progress import Progress, reporter
@@ -165,6 +166,7 @@ def creep_curves(
         raise ValueError(f"load = {load!r}: a positive number of newtons is needed")
     if isinstance(speed, bool) or not isinstance(speed, numbers.Real):
         raise TypeError(f"speed = {speed!r}: a number of metres per second is needed")
+    speed = finite("speed", speed)
     if not 0.0 < speed < math.inf:
         raise ValueError(f"speed = {speed!r}: a positive number of metres per second is needed")
     line = checked["contact_model"] == choices(known["contact_model"])["line"]

@@ -12,11 +12,12 @@ import pandas as pd
 
 from .archive import AnyPath, fmu_path
 from .archive import preset as preset_named
+from .arguments import seconds
 from .fields import Fields, needs_xarray, whole
 from .inputs import check_inputs, parameters_of, with_window
 from .instance import Instance
 from .progress import Progress, reporter
-from .stepping import follow, points, seconds
+from .stepping import follow, points
 from .tables import Table, columns_of
 from .variables import by_name, choices, outputs_named, shape, start_values
 

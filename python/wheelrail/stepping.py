@@ -1,9 +1,7 @@
 """Stepping through communication points, into one array that becomes the result."""
 
 import math
-import numbers
 from collections.abc import Callable, Mapping, Sequence
-from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -17,25 +15,6 @@ MOST_POINTS = 100_000_000
 MOST_BYTES = 16 * 2**30
 # Steps between two looks at the table of inputs: so many rows of it are in memory as Python's numbers.
 CHUNK = 1024
-
-
-def seconds(name: str, value: Any) -> float:
-    """A number of seconds.
-
-    Raises
-    ------
-    TypeError
-        It is no number.
-    ValueError
-        It is not finite.
-    """
-    if isinstance(value, np.ndarray) and value.ndim == 0:
-        value = value.item()
-    if isinstance(value, bool) or not isinstance(value, numbers.Real):
-        raise TypeError(f"{name} = {value!r}: a finite number of seconds is needed")
-    if not math.isfinite(value):
-        raise ValueError(f"{name} = {value!r}: a finite number of seconds is needed")
-    return float(value)
 
 
 def points(start: float, end: float, step: float, table: np.ndarray, columns: int) -> np.ndarray:

@@ -306,5 +306,8 @@ def is_text_of_number(value: Any) -> bool:
 
 
 def as_number(value: Any) -> float:
-    """A number; not a number for all else, texts and truth values among it."""
-    return float(value) if isinstance(value, numbers.Real) and not isinstance(value, bool) else math.nan
+    """A number, infinite where it is too large; not a number for all else, texts and truth values among it."""
+    try:
+        return float(value) if isinstance(value, numbers.Real) and not isinstance(value, bool) else math.nan
+    except OverflowError:
+        return math.inf

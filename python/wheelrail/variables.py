@@ -14,6 +14,7 @@ import pandas as pd
 from fmpy.model_description import ModelDescription, ModelVariable
 
 from .archive import AnyPath, description, fmu_path
+from .arguments import finite
 
 
 def variables(fmu: AnyPath | None = None) -> pd.DataFrame:
@@ -128,11 +129,11 @@ def number(variable: ModelVariable, value: Any) -> float | int:
         return named[value]
     if isinstance(value, bool | np.bool_):
         raise ValueError(f"{name} = {value!r}: a number is needed")
-    if isinstance(value, str) or not isinstance(value, numbers.Real) or not math.isfinite(value):
+    if isinstance(value, str) or not isinstance(value, numbers.Real) or not math.isfinite(finite(name, value)):
         expected = f"choose one of {', '.join(named)}" if named else "a finite number is needed"
         hint = near(value, named) if isinstance(value, str) else ""
         raise ValueError(f"{name} = {value!r}: {expected}{hint}")
-    real, plain = variable.type in ("Real", "Float64"), float(value)
+    real, plain = variable.type in ("Real", "Float64"), finite(name, value)
     if not real and not plain.is_integer():
         raise ValueError(f"{name} = {value!r}: a whole number is needed")
     low, high = bounds(variable)
