@@ -53,7 +53,7 @@ ELSEWHERE = {
     "cargo bench --bench patch": ("Cargo.toml", 'name = "patch"'),
     "cargo doc --open": ("Makefile", "$(CARGO) doc"),
     "cargo run --release": ("src/lib.rs", 'include_str!("../README.md")'),
-    "pip install dist/wheelrail-*.whl": ("README.md", "pip install dist/wheelrail-*.whl"),
+    "pip install dist/wheelrail-*linux*.whl": ("README.md", "pip install dist/wheelrail-*linux*.whl"),
 }
 
 

@@ -1,4 +1,5 @@
 //! What `wheelrail verify` prints, one test for each check, named by its heading: `cargo test --test verification Carter`.
+//! `make test` leaves them out by the beginning of their names: it has run `wheelrail verify`.
 
 use libtest_mimic::{Arguments, Failed, Trial, run};
 use wheelrail::verification::{CHECKS, Check};
@@ -14,6 +15,8 @@ fn passes(check: &Check) -> Result<(), Failed> {
 }
 
 fn main() {
-    let trials = CHECKS.iter().map(|check| Trial::test(check.name, || passes(check)));
+    let trials = CHECKS
+        .iter()
+        .map(|check| Trial::test(format!("verify: {}", check.name), || passes(check)));
     run(&Arguments::from_args(), trials.collect()).exit();
 }
