@@ -1,6 +1,7 @@
 """What the tests share: the component that `make fmu` built, and a low-level instance of it."""
 
 import json
+import signal
 import subprocess
 import sys
 from pathlib import Path
@@ -136,3 +137,21 @@ def simulate_natively(wheelrail, tmp_path_factory):
         return out
 
     return run
+
+
+@pytest.fixture
+def killed_half_way():
+    """Return a function that kills a program after four parts: it says "written" after each, and waits for a line."""
+
+    def kill(command):
+        pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "text": True, "start_new_session": True}
+        with subprocess.Popen(command, **pipes) as process:
+            written = (line for line in process.stdout if line == "written\n")
+            for _ in range(3):
+                next(written)
+                process.stdin.write("\n")
+                process.stdin.flush()
+            next(written)
+            process.send_signal(signal.SIGKILL)
+
+    return kill

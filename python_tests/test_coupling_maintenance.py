@@ -1,6 +1,5 @@
 """examples/maintenance.py: wear of a wheel, spread of a line by hand; a killed job goes on and gives the same bits."""
 
-import signal
 import subprocess
 import sys
 from pathlib import Path
@@ -225,21 +224,13 @@ def test_trains_to_limit():
 # ---- the job --------------------------------------------------------------------------------------------------------
 
 
-def test_killed_job_goes_on(tmp_path):
+def test_killed_job_goes_on(tmp_path, killed_half_way):
     """Killed after some lines, it computes only the others; together they are the bits computed without Dask."""
     folder = tmp_path / "lines"
     examples = str(REPOSITORY / "examples")
     program = tmp_path / "program.py"
     program.write_text(PROGRAM)
-    pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "text": True, "start_new_session": True}
-    with subprocess.Popen([sys.executable, program, examples, folder], **pipes) as process:
-        written = (line for line in process.stdout if line == "written\n")
-        for _ in range(3):
-            next(written)
-            process.stdin.write("\n")
-            process.stdin.flush()
-        next(written)
-        process.send_signal(signal.SIGKILL)
+    killed_half_way([sys.executable, program, examples, folder])
     before = {path.name: path.stat().st_mtime_ns for path in folder.glob("*.parquet")}
     assert len(before) == 4
 

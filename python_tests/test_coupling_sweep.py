@@ -2,7 +2,6 @@
 
 import hashlib
 import itertools
-import signal
 import subprocess
 import sys
 from pathlib import Path
@@ -70,21 +69,13 @@ def test_traction_is_within_friction(curves):
         assert curve["traction_coefficient"][-1] > 0.99 * curve["friction_coefficient"][-1], law
 
 
-def test_killed_sweep_goes_on(tmp_path):
+def test_killed_sweep_goes_on(tmp_path, killed_half_way):
     """Killed after some curves, it computes only the others; together they are the bits computed without Dask."""
     broken, whole = tmp_path / "broken", tmp_path / "whole"
     examples = str(REPOSITORY / "examples")
     program = tmp_path / "program.py"
     program.write_text(PROGRAM)
-    pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "text": True, "start_new_session": True}
-    with subprocess.Popen([sys.executable, program, examples, broken], **pipes) as process:
-        written = (line for line in process.stdout if line == "written\n")
-        for _ in range(3):
-            next(written)
-            process.stdin.write("\n")
-            process.stdin.flush()
-        next(written)
-        process.send_signal(signal.SIGKILL)
+    killed_half_way([sys.executable, program, examples, broken])
     before = {path.name: path.stat().st_mtime_ns for path in broken.glob("*.parquet")}
     assert len(before) == 4
 
