@@ -2,11 +2,11 @@
 
 #[cfg(feature = "verification")]
 use crate::contact::line::fields::Fields;
-use crate::contact::line::rail::Rail;
+use crate::contact::line::operators::LineOperators;
 #[cfg(feature = "verification")]
 use crate::contact::patch::fields::PatchFields;
 #[cfg(feature = "verification")]
-use crate::contact::patch::rail::PatchRail;
+use crate::contact::patch::operators::PatchOperators;
 use crate::contact::task::{Conditions, Task};
 use crate::contact::{ContactState, ContactWorkspace, Engine};
 use crate::error::{Error, Result};
@@ -116,15 +116,15 @@ impl Model {
     /// # Errors
     /// [`Error::OtherContactModel`].
     pub fn thermal_map_size(&self) -> Result<(usize, usize, usize)> {
-        Ok(self.rail()?.heat.displacement.size())
+        Ok(self.line_operators()?.heat.displacement.size())
     }
 
     /// What the line engine has computed once: mesh, compliance, thermal maps.
     ///
     /// # Errors
     /// [`Error::OtherContactModel`].
-    pub(crate) fn rail(&self) -> Result<&Rail> {
-        Ok(self.engine.line()?.rail())
+    pub(crate) fn line_operators(&self) -> Result<&LineOperators> {
+        Ok(self.engine.line()?.operators())
     }
 
     /// What the patch engine has computed once: grid, influence functions, depth modes.
@@ -132,8 +132,8 @@ impl Model {
     /// # Errors
     /// [`Error::OtherContactModel`].
     #[cfg(feature = "verification")]
-    pub(crate) fn patch_rail(&self) -> Result<&PatchRail> {
-        Ok(self.engine.patch()?.rail())
+    pub(crate) fn patch_operators(&self) -> Result<&PatchOperators> {
+        Ok(self.engine.patch()?.operators())
     }
 
     /// Takes the tunable parameters (slip regularisation and friction coefficients) from `parameters`; the others stay.

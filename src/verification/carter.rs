@@ -96,7 +96,7 @@ pub fn rows() -> Result<Vec<Row>> {
 fn stick_zone(run: &mut Simulation, inputs: &Inputs) -> Result<Vec<Row>> {
     run.hold(inputs, PASSAGE, 1)?;
     let parameters = run.model.parameters();
-    let spacing = run.model.rail()?.mesh.contact_spacing();
+    let spacing = run.model.line_operators()?.mesh.contact_spacing();
     let half_length = parameters.hertz_half_length(inputs.normal_load);
     let expected = 2.0 * half_length * stick_share(parameters, inputs.normal_load, inputs.creepage);
 

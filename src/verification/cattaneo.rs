@@ -87,7 +87,7 @@ impl Ramp {
         let parameters = parameters();
         let half_length = parameters.hertz_half_length(LOAD);
         let largest = parameters.friction_cold * parameters.hertz_peak_pressure(LOAD);
-        let spacing = self.run.model.rail()?.mesh.contact_spacing() / half_length;
+        let spacing = self.run.model.line_operators()?.mesh.contact_spacing() / half_length;
         let (mut sum, mut worst, mut count) = (0.0, 0.0_f64, 0.0);
         for node in self.run.contact_nodes().iter().filter(|node| node.pressure > 0.0) {
             let shear = -node.shear / largest;

@@ -145,7 +145,7 @@ pub fn rows() -> Result<Vec<Row>> {
     ));
     let per_area = front.rail_heat_flow / (SPEED * aged.contact_width);
     let diffused = (PI * aged.thermal_diffusivity * DISTANCE / SPEED).sqrt();
-    let mesh = &pair.rear.model.rail()?.mesh;
+    let mesh = &pair.rear.model.line_operators()?.mesh;
     let middle = mesh.contact_column(mesh.contact_nodes / 2);
     rows.push(Row::relative(
         "rail under the second axle over ambient, 0.25 s after the first",
@@ -164,7 +164,7 @@ fn volume(pair: &Pair) -> Result<Row> {
     // As the march holds it, at the one speed and step.
     let on_the_rail = |run: &Simulation| -> Result<f64> {
         let wear = &run.state.fields()?.wear;
-        let columns = Upwind::new(&run.model.rail()?.mesh.x, SPEED).columns();
+        let columns = Upwind::new(&run.model.line_operators()?.mesh.x, SPEED).columns();
         let cells = columns.map(|column| {
             let step = CellStep::new(1.0 / STEP, column.spacing, SPEED);
             column.spacing * step.mean(wear[column.upstream], wear[column.index])

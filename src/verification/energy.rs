@@ -219,7 +219,7 @@ fn largest_defect(
 }
 
 fn balance(run: &Simulation, before: &Fields, speed: f64, duration: f64) -> Result<Balance> {
-    let (rail, parameters) = (run.model.rail()?, run.model.parameters());
+    let (rail, parameters) = (run.model.line_operators()?, run.model.parameters());
     let after = run.state.fields()?;
     let ambient = run.state.inputs.ambient_temperature;
     let capacity = parameters.volumetric_heat_capacity() * parameters.contact_width;

@@ -107,7 +107,7 @@ pub fn rows() -> Result<Vec<Row>> {
             half_length,
             0.5 * outputs.contact_length,
             // Its ends lie between nodes.
-            light.run.model.rail()?.mesh.contact_spacing(),
+            light.run.model.line_operators()?.mesh.contact_spacing(),
             SOURCE,
         ),
         Row::relative(
@@ -128,7 +128,7 @@ pub fn rows() -> Result<Vec<Row>> {
         Inputs::default().normal_load,
     )?;
     // It fills the window somewhere between its last two nodes.
-    let mesh = &alone.run.model.rail()?.mesh;
+    let mesh = &alone.run.model.line_operators()?.mesh;
     let [inner, outer] = [1.0, 0.0].map(|cells| mesh.window_half_width() - cells * mesh.contact_spacing());
     let [least, most] = [inner, outer].map(|half_length| alone.elastic_slip_of(half_length));
     rows.push(Row::absolute(

@@ -54,7 +54,7 @@ fn pair(pair: &str, parameters: &Parameters) -> Result<Vec<Row>> {
     };
     let pairs = || nodes.iter().zip(&mirrored);
     let outputs = (&forward.state.outputs, &backward.state.outputs);
-    let columns = forward.model.rail()?.mesh.columns();
+    let columns = forward.model.line_operators()?.mesh.columns();
     let fields = (forward.state.fields()?, backward.state.fields()?);
     Ok(vec![
         row("pressure", &mut pairs().map(|(a, b)| (a.pressure, b.pressure))),

@@ -10,7 +10,7 @@
 
 use super::row::{Row, larger};
 use crate::contact::patch::fields::PatchFields;
-use crate::contact::patch::rail::PatchRail;
+use crate::contact::patch::operators::PatchOperators;
 use crate::contact::rim;
 use crate::error::Result;
 use crate::heat::step::ModeStep;
@@ -189,7 +189,7 @@ enum Part {
 }
 
 impl Part {
-    fn march<'r>(self, rail: &'r PatchRail, speed: f64) -> Upwind<'r> {
+    fn march<'r>(self, rail: &'r PatchOperators, speed: f64) -> Upwind<'r> {
         match self {
             Part::Window => rail.strips.window(speed),
             Part::Outer(side) => rail.strips.outer(side, speed),
@@ -197,7 +197,7 @@ impl Part {
     }
 
     /// S or B a of a mode at a column.
-    fn heat(self, rail: &PatchRail, fields: &PatchFields, breadth: f64, column: usize, mode: usize) -> f64 {
+    fn heat(self, rail: &PatchOperators, fields: &PatchFields, breadth: f64, column: usize, mode: usize) -> f64 {
         let heat = &fields.heat;
         breadth
             * match self {
@@ -209,7 +209,7 @@ impl Part {
     }
 
     /// S or B w at a column.
-    fn wear(self, rail: &PatchRail, fields: &PatchFields, breadth: f64, column: usize) -> f64 {
+    fn wear(self, rail: &PatchOperators, fields: &PatchFields, breadth: f64, column: usize) -> f64 {
         let wear = &fields.wear;
         breadth
             * match self {
@@ -220,7 +220,7 @@ impl Part {
 }
 
 fn balance(run: &Simulation, before: &PatchFields, duration: f64) -> Result<Balance> {
-    let (rail, parameters) = (run.model.patch_rail()?, run.model.parameters());
+    let (rail, parameters) = (run.model.patch_operators()?, run.model.parameters());
     let after = run.state.patch_fields()?;
     let (inputs, outputs) = (&run.state.inputs, &run.state.outputs);
     let speed = inputs.motion(parameters).rolling_speed;

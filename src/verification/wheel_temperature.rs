@@ -125,7 +125,7 @@ fn wear() -> Result<Row> {
     };
     let mut run = Simulation::new(&parameters, &Inputs::default())?;
     let (duration, mut volume) = (1e-3, 0.0);
-    let area = parameters.contact_width * run.model.rail()?.mesh.contact_spacing();
+    let area = parameters.contact_width * run.model.line_operators()?.mesh.contact_spacing();
     for step in 0..50 {
         let inputs = Inputs {
             creepage: 4e-4 * f64::from(step),

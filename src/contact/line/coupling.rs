@@ -5,7 +5,7 @@
 //! split iterates; nothing else passes from one iteration to the next but the tractions as a first guess.
 
 use super::fields::Fields;
-use super::rail::Rail;
+use super::operators::LineOperators;
 use crate::mechanics::softening::Softening;
 use crate::numerics::dense::largest_change;
 
@@ -85,9 +85,9 @@ impl Coupling {
     }
 
     /// Takes the values from the fields, or the changes of the values from changes of the fields.
-    pub fn read(&mut self, rail: &Rail, fields: &Fields, softening: &Softening) {
+    pub fn read(&mut self, operators: &LineOperators, fields: &Fields, softening: &Softening) {
         let n = self.nodes;
-        let window = rail.mesh.window();
+        let window = operators.mesh.window();
         self.set_displacement(&fields.thermal_displacement);
         let (_, rest) = self.values.split_at_mut(2 * n);
         let (temperature, rest) = rest.split_at_mut(n);
@@ -96,7 +96,7 @@ impl Coupling {
             *value = temperature / TEMPERATURE_UNIT;
         }
         for (value, depth) in wear.iter_mut().zip(&fields.wear[window]) {
-            *value = depth / rail.scales.displacement;
+            *value = depth / operators.scales.displacement;
         }
         softening.subtract_proportional(&fields.pressure, wear);
         wheel[0] = fields.wheel_temperature / TEMPERATURE_UNIT;

@@ -1,9 +1,9 @@
 //! The line engine from outside: built once, stepped from state to state.
 
 use super::fields::{Fields, Trend};
+use super::operators::LineOperators;
 use super::problem::Problem;
 use super::profiles;
-use super::rail::Rail;
 use super::readings::readings;
 use super::sensitivity::Linearisation;
 use super::split::{self, Scratch};
@@ -18,7 +18,7 @@ use serde::{Deserialize, Serialize};
 
 /// A line contact: what is computed once.
 pub struct Line {
-    rail: Rail,
+    operators: LineOperators,
 }
 
 /// The state of a line contact.
@@ -52,31 +52,31 @@ impl Line {
     /// [`crate::error::Error::StiffnessNotPositiveDefinite`], [`crate::error::Error::DepthBasis`].
     pub fn new(parameters: &Parameters) -> Result<Line> {
         Ok(Line {
-            rail: Rail::new(parameters)?,
+            operators: LineOperators::new(parameters)?,
         })
     }
 
     /// What was computed once.
-    pub fn rail(&self) -> &Rail {
-        &self.rail
+    pub fn operators(&self) -> &LineOperators {
+        &self.operators
     }
 
     /// Length along the rail of the window in which the contact is sought, `m`.
     pub fn window_length(&self) -> f64 {
-        2.0 * self.rail.mesh.window_half_width()
+        2.0 * self.operators.mesh.window_half_width()
     }
 
     /// Scratch for the steps.
     pub fn workspace(&self, settings: &Settings) -> LineWorkspace {
         LineWorkspace {
-            scratch: Scratch::new(&self.rail, settings),
-            trial: Fields::new(&self.rail),
+            scratch: Scratch::new(&self.operators, settings),
+            trial: Fields::new(&self.operators),
         }
     }
 
     fn problem<'a>(&'a self, task: &Task<'a>) -> Problem<'a> {
         Problem {
-            rail: &self.rail,
+            operators: &self.operators,
             parameters: task.parameters,
             settings: task.settings,
             conditions: task.conditions,
@@ -88,12 +88,12 @@ impl Line {
     /// # Errors
     /// A solver that did not converge.
     pub fn initial_state(&self, task: &Task, workspace: &mut LineWorkspace) -> Result<LineState> {
-        let mut fields = Fields::new(&self.rail);
+        let mut fields = Fields::new(&self.operators);
         fields.wheel_temperature = task.conditions.inputs.ambient_temperature;
         split::solve_mechanics(&self.problem(task), &mut fields, &mut workspace.scratch)?;
         Ok(LineState {
             fields,
-            trend: Trend::new(&self.rail),
+            trend: Trend::new(&self.operators),
         })
     }
 
@@ -144,12 +144,12 @@ impl Line {
 
     /// Profiles for plotting.
     pub fn profiles(&self, state: &LineState, ambient: f64) -> Profiles {
-        profiles::profiles(&self.rail, &state.fields, ambient)
+        profiles::profiles(&self.operators, &state.fields, ambient)
     }
 
     /// The fields at the nodes of the contact window, from the rear to the front for V > 0.
     pub fn contact_nodes(&self, state: &LineState) -> Vec<ContactNode> {
-        profiles::contact_nodes(&self.rail, &state.fields)
+        profiles::contact_nodes(&self.operators, &state.fields)
     }
 
     /// Whether a state (of another source) has the sizes of this rail and finite content.
@@ -159,10 +159,10 @@ impl Line {
                 .zip(expected)
                 .all(|(own, expected)| own.len() == expected.len() && own.iter().all(|value| value.is_finite()))
         };
-        let fields = Fields::new(&self.rail);
+        let fields = Fields::new(&self.operators);
         same(&state.fields.vectors(), &fields.vectors())
             && same(&state.fields.memory.vectors(), &fields.memory.vectors())
-            && same(&state.trend.vectors(), &Trend::new(&self.rail).vectors())
+            && same(&state.trend.vectors(), &Trend::new(&self.operators).vectors())
             && state.fields.penetration.is_finite()
             && state.fields.relaxation_length.is_finite()
             && state.fields.relaxation_length > 0.0
@@ -224,7 +224,10 @@ mod tests {
                 // The first step after the cold start is no jump: none is divided.
                 assert_eq!(run.state.duration, 5e-3);
                 let speed = inputs(step).vehicle_speed;
-                let (x, after) = (&run.model.rail().unwrap().mesh.x, &run.state.fields().unwrap().wear);
+                let (x, after) = (
+                    &run.model.line_operators().unwrap().mesh.x,
+                    &run.state.fields().unwrap().wear,
+                );
                 left += speed.abs() * 5e-3 * after[Upwind::new(x, speed).outflow()];
                 on_the_rail += deposited(x, speed, 5e-3, &before, after);
             }
@@ -236,7 +239,10 @@ mod tests {
             );
             assert!((volume / expected - 1.0).abs() < 1e-10, "{volume} {expected}");
             // The depth as it lies there at last, between columns linear, but for the order of the march.
-            let (x, wear) = (&run.model.rail().unwrap().mesh.x, &run.state.fields().unwrap().wear);
+            let (x, wear) = (
+                &run.model.line_operators().unwrap().mesh.x,
+                &run.state.fields().unwrap().wear,
+            );
             let cells = x.windows(2).zip(wear.windows(2));
             let area: f64 = cells.map(|(x, w)| (x[1] - x[0]) * 0.5 * (w[0] + w[1])).sum();
             assert!((area / on_the_rail - 1.0).abs() < 0.01, "{area} {on_the_rail}");

@@ -1,6 +1,6 @@
 //! The fields of the contact, all that a step changes, and their trend from step to step.
 
-use crate::contact::line::rail::Rail;
+use crate::contact::line::operators::LineOperators;
 use crate::friction::memory::Memory;
 use crate::numerics::dense;
 use serde::{Deserialize, Serialize};
@@ -47,14 +47,14 @@ pub struct Fields {
 
 impl Fields {
     /// A cold, unworn rail without contact; the wheel's temperature is 0 K.
-    pub fn new(rail: &Rail) -> Fields {
-        let (n, columns) = (rail.mesh.contact_nodes, rail.mesh.columns());
+    pub fn new(operators: &LineOperators) -> Fields {
+        let (n, columns) = (operators.mesh.contact_nodes, operators.mesh.columns());
         Fields {
-            temperature: vec![0.0; columns * rail.heat.basis.len()],
+            temperature: vec![0.0; columns * operators.heat.basis.len()],
             surface_temperature: vec![0.0; columns],
             thermal_displacement: vec![0.0; 2 * n],
             wear: vec![0.0; columns],
-            replaced_inflow: vec![0.0; rail.heat.basis.len() + 1],
+            replaced_inflow: vec![0.0; operators.heat.basis.len() + 1],
             pressure: vec![0.0; n],
             shear: vec![0.0; n],
             slip: vec![0.0; n],
@@ -64,7 +64,7 @@ impl Fields {
             displacement: vec![0.0; n],
             displacement_change: vec![0.0; n],
             memory: Memory::new(n),
-            relaxation_length: rail.relaxation.length(rail.relaxation.half_length),
+            relaxation_length: operators.relaxation.length(operators.relaxation.half_length),
             penetration: 0.0,
             wheel_temperature: 0.0,
         }
@@ -152,8 +152,8 @@ impl Fields {
     }
 
     /// Modal amplitudes of one column.
-    pub fn column(&self, rail: &Rail, column: usize) -> &[f64] {
-        let m = rail.heat.basis.len();
+    pub fn column(&self, operators: &LineOperators, column: usize) -> &[f64] {
+        let m = operators.heat.basis.len();
         &self.temperature[column * m..(column + 1) * m]
     }
 }
@@ -173,8 +173,8 @@ pub struct Trend {
 
 impl Trend {
     /// No change.
-    pub fn new(rail: &Rail) -> Trend {
-        let fields = Fields::new(rail);
+    pub fn new(operators: &LineOperators) -> Trend {
+        let fields = Fields::new(operators);
         Trend {
             shear: fields.shear,
             surface_temperature: fields.surface_temperature,

@@ -9,9 +9,9 @@
 pub mod coupling;
 pub mod engine;
 pub mod fields;
+pub mod operators;
 pub mod problem;
 pub mod profiles;
-pub mod rail;
 pub mod readings;
 pub mod relaxation;
 pub mod sensitivity;

@@ -3,7 +3,7 @@
 
 use super::coupling::Coupling;
 use super::fields::Fields;
-use super::rail::Rail;
+use super::operators::LineOperators;
 use crate::contact::rim::HeatedNode;
 use crate::contact::task::Conditions;
 use crate::friction::FrictionState;
@@ -25,7 +25,7 @@ use crate::wear::WearMarch;
 #[derive(Clone, Copy)]
 pub struct Problem<'a> {
     /// The rail.
-    pub rail: &'a Rail,
+    pub operators: &'a LineOperators,
     /// The parameters.
     pub parameters: &'a Parameters,
     /// Limits and tolerances.
@@ -100,16 +100,16 @@ impl<'a> Problem<'a> {
 
     /// How friction depends on slip and on what was before; none where it does not.
     pub fn path_law(&self) -> Option<PathLaw> {
-        let rail = self.rail;
+        let operators = self.operators;
         PathLaw::new(
             self.parameters,
             &PathStep {
                 duration: self.conditions.duration,
-                spacing: rail.mesh.contact_spacing(),
+                spacing: operators.mesh.contact_spacing(),
                 speed: self.conditions.motion.rolling_speed,
-                displacement: rail.near_field.direct * rail.scales.displacement
-                    + self.parameters.layer_compliance * rail.scales.pressure,
-                pressure: rail.scales.pressure,
+                displacement: operators.near_field.direct * operators.scales.displacement
+                    + self.parameters.layer_compliance * operators.scales.pressure,
+                pressure: operators.scales.pressure,
             },
         )
     }
@@ -120,22 +120,22 @@ impl<'a> Problem<'a> {
             Control::Load => {
                 let load = self.conditions.inputs.normal_load;
                 let load = self.settings.mechanics.felt(load, self.parameters.largest_load);
-                Constraint::Total(self.rail.scaled_load(self.parameters, load))
+                Constraint::Total(self.operators.scaled_load(self.parameters, load))
             }
             Control::Penetration => {
-                Constraint::Penetration(self.parameters.prescribed_penetration / self.rail.scales.displacement)
+                Constraint::Penetration(self.parameters.prescribed_penetration / self.operators.scales.displacement)
             }
         }
     }
 
     /// The order in which material crosses the columns.
     pub fn upwind(&self) -> Upwind<'a> {
-        Upwind::new(&self.rail.mesh.x, self.conditions.motion.rolling_speed)
+        Upwind::new(&self.operators.mesh.x, self.conditions.motion.rolling_speed)
     }
 
     /// Strain of a scaled displacement over the node spacing.
     pub fn strain_scale(&self) -> f64 {
-        self.rail.scales.displacement / self.rail.mesh.contact_spacing()
+        self.operators.scales.displacement / self.operators.mesh.contact_spacing()
     }
 
     /// ρ V², `Pa`.
@@ -156,9 +156,9 @@ impl<'a> Problem<'a> {
         Transient::new(
             self.conditions.duration,
             self.conditions.motion.rolling_speed.abs(),
-            self.rail.mesh.contact_spacing(),
+            self.operators.mesh.contact_spacing(),
             fields.relaxation_length,
-            self.rail.scales.displacement,
+            self.operators.scales.displacement,
         )
     }
 
@@ -167,7 +167,7 @@ impl<'a> Problem<'a> {
         let per_speed = self.transient(fields).tangent(
             self.conditions.duration,
             self.conditions.motion.rolling_speed.abs(),
-            self.rail.mesh.contact_spacing(),
+            self.operators.mesh.contact_spacing(),
             fields.relaxation_length,
         );
         Transient {
@@ -179,7 +179,7 @@ impl<'a> Problem<'a> {
     /// Relaxation length of a contact under the load that it had in the given fields, `m`; of the largest contact without load.
     pub fn relaxation_length(&self, fields: &Fields) -> f64 {
         let load = self.unit_force() * fields.pressure.iter().sum::<f64>();
-        let relaxation = &self.rail.relaxation;
+        let relaxation = &self.operators.relaxation;
         if load > 0.0 {
             let half_length = self.parameters.hertz_half_length(load);
             relaxation.length(half_length.min(relaxation.half_length))
@@ -190,12 +190,12 @@ impl<'a> Problem<'a> {
 
     /// Force of a scaled traction of 1 on a node, `N`.
     pub fn unit_force(&self) -> f64 {
-        self.rail.node_area(self.parameters) * self.rail.scales.pressure
+        self.operators.node_area(self.parameters) * self.operators.scales.pressure
     }
 
     /// The nodes as the rim sees them, or with changes of fields their changes.
     pub fn heated_nodes<'f>(&self, fields: &'f Fields) -> impl Iterator<Item = HeatedNode> + 'f {
-        let surface = &fields.surface_temperature[self.rail.mesh.window()];
+        let surface = &fields.surface_temperature[self.operators.mesh.window()];
         (0..fields.pressure.len()).map(move |node| HeatedNode {
             pressure: fields.pressure[node],
             shear: [fields.shear[node], 0.0],
@@ -207,9 +207,9 @@ impl<'a> Problem<'a> {
     /// The heat march of the step.
     pub fn heat_march(&self) -> HeatMarch<'a> {
         HeatMarch {
-            basis: &self.rail.heat.basis,
+            basis: &self.operators.heat.basis,
             transport: self.upwind(),
-            first_contact: self.rail.mesh.first_contact,
+            first_contact: self.operators.mesh.first_contact,
             duration: self.conditions.duration,
             surface: SurfaceCondition {
                 friction: self.friction(),
@@ -223,7 +223,7 @@ impl<'a> Problem<'a> {
         WearMarch {
             transport: self.upwind(),
             duration: self.conditions.duration,
-            first_contact: self.rail.mesh.first_contact,
+            first_contact: self.operators.mesh.first_contact,
         }
     }
 
@@ -231,7 +231,7 @@ impl<'a> Problem<'a> {
     pub fn exchange(&self, fields: &Fields, wheel_rise: f64, exchange: &mut [SurfaceExchange]) {
         let of_slip = self.path_law().is_some();
         for (node, exchange) in exchange.iter_mut().enumerate() {
-            let pressure = fields.pressure[node] * self.rail.scales.pressure;
+            let pressure = fields.pressure[node] * self.operators.scales.pressure;
             let sliding = Sliding::new(fields.slip[node], fields.saturation[node]);
             *exchange = SurfaceExchange::new(self.parameters, pressure, sliding, wheel_rise);
             if of_slip && pressure > 0.0 {
@@ -248,7 +248,12 @@ impl<'a> Problem<'a> {
             *mu = friction.coefficient(temperature).0;
         }
         data.displacement.copy_from_slice(coupling.along());
-        let gap = self.rail.profile.iter().zip(coupling.wear()).zip(coupling.upward());
+        let gap = self
+            .operators
+            .profile
+            .iter()
+            .zip(coupling.wear())
+            .zip(coupling.upward());
         for (profile, ((wheel, wear), lift)) in data.profile.iter_mut().zip(gap) {
             *profile = wheel - wear + lift;
         }
@@ -263,7 +268,7 @@ impl<'a> Problem<'a> {
 
     /// The displacement along x₁ of the fields at the end of the step, and its change, with the coupling's thermal displacement.
     pub fn close_displacement(&self, coupling: &Coupling, fields: &mut Fields, data: &MechanicsData) {
-        let compliance = &self.rail.compliance;
+        let compliance = &self.operators.compliance;
         let (pressure, shear, displacement) = (&fields.pressure, &fields.shear, &mut fields.displacement);
         displacement.copy_from_slice(coupling.along());
         compliance
@@ -278,7 +283,7 @@ impl<'a> Problem<'a> {
 
     /// Adds the displacement along x₁ and upward that the convective inertia of the given tractions causes.
     pub fn add_inertia(&self, rho_v2: f64, pressure: &[f64], shear: &[f64], along: &mut [f64], upward: &mut [f64]) {
-        let inertia = &self.rail.compliance.inertia;
+        let inertia = &self.operators.compliance.inertia;
         inertia.add_upward(rho_v2, pressure, shear, upward);
         inertia.add_along(rho_v2, pressure, shear, along);
     }
@@ -293,7 +298,7 @@ impl<'a> Problem<'a> {
         let motion = self.conditions.motion;
         let transient = self.transient(fields);
         let problem = MechanicsProblem {
-            compliance: &self.rail.compliance.at_rest,
+            compliance: &self.operators.compliance.at_rest,
             normal_compliance: softening.compliance(),
             profile: &data.profile,
             displacement: &data.displacement,
@@ -307,7 +312,7 @@ impl<'a> Problem<'a> {
             rigid_slip: motion.rigid_slip,
             strain_speed: motion.rolling_speed * self.strain_scale(),
             transient,
-            near_field: self.rail.near_field,
+            near_field: self.operators.near_field,
             regularisation: self.parameters.slip_regularisation,
         };
         let tractions = Tractions {

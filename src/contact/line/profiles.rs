@@ -1,30 +1,30 @@
 //! Profiles of a line contact for plotting, and its fields node by node.
 
 use super::fields::Fields;
-use super::rail::Rail;
+use super::operators::LineOperators;
 use crate::contact::profiles::{self, ContactNode, PROFILE_POINTS, Profiles, StripProfiles};
 use crate::numerics::interpolation::between;
 
 /// Samples the fields, linear between the nodes.
-pub fn profiles(rail: &Rail, fields: &Fields, ambient: f64) -> Profiles {
-    let mesh = &rail.mesh;
+pub fn profiles(operators: &LineOperators, fields: &Fields, ambient: f64) -> Profiles {
+    let mesh = &operators.mesh;
     let n = mesh.contact_nodes;
     let surface: Vec<f64> = (0..n)
         .map(|node| ambient + fields.surface_temperature[mesh.contact_column(node)])
         .collect();
     let sample = |values: &[f64]| profiles::sample(values, PROFILE_POINTS);
     let positions: Vec<f64> = (0..n).map(|node| mesh.contact_position(node)).collect();
-    let pascal = |values: &[f64]| -> Vec<f64> { values.iter().map(|v| v * rail.scales.pressure).collect() };
+    let pascal = |values: &[f64]| -> Vec<f64> { values.iter().map(|v| v * operators.scales.pressure).collect() };
     let hottest = (0..n).max_by(|&a, &b| surface[a].total_cmp(&surface[b])).unwrap_or(0);
-    let column = fields.column(rail, mesh.contact_column(hottest));
+    let column = fields.column(operators, mesh.contact_column(hottest));
     let depth = profiles::depths(mesh.depth[mesh.rows() - 1]);
     let depth_temperature = depth
         .iter()
         .map(|&z| {
             let (upper, weight) = between(&mesh.depth, z);
             ambient
-                + rail.heat.basis.value(column, upper) * (1.0 - weight)
-                + rail.heat.basis.value(column, upper + 1) * weight
+                + operators.heat.basis.value(column, upper) * (1.0 - weight)
+                + operators.heat.basis.value(column, upper + 1) * weight
         })
         .collect();
     Profiles {
@@ -41,8 +41,8 @@ pub fn profiles(rail: &Rail, fields: &Fields, ambient: f64) -> Profiles {
 }
 
 /// The fields at the nodes of the contact window, from the rear to the front for V > 0.
-pub fn contact_nodes(rail: &Rail, fields: &Fields) -> Vec<ContactNode> {
-    let (mesh, scale) = (&rail.mesh, rail.scales.pressure);
+pub fn contact_nodes(operators: &LineOperators, fields: &Fields) -> Vec<ContactNode> {
+    let (mesh, scale) = (&operators.mesh, operators.scales.pressure);
     (0..mesh.contact_nodes)
         .map(|i| ContactNode {
             position: mesh.contact_position(i),

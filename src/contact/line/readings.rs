@@ -1,8 +1,8 @@
 //! What is read off the fields of a line contact for the outputs.
 
 use super::fields::Fields;
+use super::operators::LineOperators;
 use super::problem::Problem;
-use super::rail::Rail;
 use crate::contact::outputs::Readings;
 use crate::contact::resultants::{Node, Resultants};
 use crate::contact::rim::ContactHeat;
@@ -10,20 +10,22 @@ use crate::friction::coulomb;
 
 /// Of the given fields under the problem's conditions.
 pub fn readings(problem: &Problem, fields: &Fields) -> Readings {
-    let (rail, parameters) = (problem.rail, problem.parameters);
+    let (operators, parameters) = (problem.operators, problem.parameters);
     let transport = problem.upwind();
     let surface = fields.surface_temperature.iter();
     Readings {
         resultants: Resultants::of(nodes(problem, fields)),
-        node_area: rail.node_area(parameters),
-        pressure_scale: rail.scales.pressure,
-        penetration: fields.penetration * rail.scales.displacement,
-        contact_length: contact_length(rail, fields),
+        node_area: operators.node_area(parameters),
+        pressure_scale: operators.scales.pressure,
+        penetration: fields.penetration * operators.scales.displacement,
+        contact_length: contact_length(operators, fields),
         contact_breadth: 0.0,
         contact_area: 0.0,
         peak_rise: surface.fold(f64::NEG_INFINITY, |m: f64, t| t.max(m)),
-        wear_depth: wear_left_behind(rail, fields, problem.conditions.motion.rolling_speed),
-        leaving_rise: rail.heat.equivalent_rise(fields.column(rail, transport.outflow())),
+        wear_depth: wear_left_behind(operators, fields, problem.conditions.motion.rolling_speed),
+        leaving_rise: operators
+            .heat
+            .equivalent_rise(fields.column(operators, transport.outflow())),
         leaving_wear_depth: fields.wear[transport.outflow()],
         wheel_heat: ContactHeat::new(parameters, problem.unit_force(), problem.heated_nodes(fields)),
         wheel_temperature: fields.wheel_temperature,
@@ -31,7 +33,7 @@ pub fn readings(problem: &Problem, fields: &Fields) -> Readings {
 }
 
 fn nodes(problem: &Problem, fields: &Fields) -> impl Iterator<Item = Node> {
-    let mesh = &problem.rail.mesh;
+    let mesh = &problem.operators.mesh;
     let regularisation = problem.parameters.slip_regularisation;
     (0..mesh.contact_nodes).map(move |node| {
         let (pressure, slip) = (fields.pressure[node], fields.slip[node]);
@@ -52,7 +54,7 @@ fn nodes(problem: &Problem, fields: &Fields) -> impl Iterator<Item = Node> {
 
 /// Distance between the ends of the contact. At an end the pressure falls like the root of the distance, so its
 /// square is linear there and its zero is found between the nodes.
-fn contact_length(rail: &Rail, fields: &Fields) -> f64 {
+fn contact_length(operators: &LineOperators, fields: &Fields) -> f64 {
     let p = &fields.pressure;
     let beyond = |last: usize, inner: Option<usize>| {
         let (edge, inside) = (p[last], inner.map_or(0.0, |i| p[i]));
@@ -69,15 +71,15 @@ fn contact_length(rail: &Rail, fields: &Fields) -> f64 {
             let nodes = (last - first) as f64;
             let inner = |i| if first < last { Some(i) } else { None };
             (nodes + beyond(first, inner(first + 1)) + beyond(last, inner(last.wrapping_sub(1))))
-                * rail.mesh.contact_spacing()
+                * operators.mesh.contact_spacing()
         }
         _ => 0.0,
     }
 }
 
 /// Wear depth at the end of the window where material leaves it; at rest the deepest, `m`.
-fn wear_left_behind(rail: &Rail, fields: &Fields, rolling_speed: f64) -> f64 {
-    let mesh = &rail.mesh;
+fn wear_left_behind(operators: &LineOperators, fields: &Fields, rolling_speed: f64) -> f64 {
+    let mesh = &operators.mesh;
     let window = &fields.wear[mesh.window()];
     if rolling_speed > 0.0 {
         window[0]

@@ -91,11 +91,11 @@ impl<'a> Linearisation<'a> {
 
     /// dz along one direction of the inputs.
     fn fields_tangent(&mut self, direction: &Direction) -> Result<Fields> {
-        let rail = self.problem.rail;
+        let operators = self.problem.operators;
         let settings = self.problem.settings.sensitivity;
-        let mut tangent = Fields::new(rail);
+        let mut tangent = Fields::new(operators);
         let mut last = tangent.clone();
-        let mut iterate = Coupling::new(rail.mesh.contact_nodes);
+        let mut iterate = Coupling::new(operators.mesh.contact_nodes);
         let mut image = iterate.clone();
         let mut anderson = Anderson::new(iterate.values().len());
         let mut residual = f64::INFINITY;
@@ -106,7 +106,7 @@ impl<'a> Linearisation<'a> {
             if self.marches {
                 self.wear_tangent(direction, &mut tangent);
                 self.temperature_tangent(direction, iterate.wheel_temperature(), &mut tangent);
-                rail.heat.displacement.apply(
+                operators.heat.displacement.apply(
                     &tangent.temperature,
                     &mut self.scratch.moments,
                     &mut tangent.thermal_displacement,
@@ -115,7 +115,7 @@ impl<'a> Linearisation<'a> {
             } else {
                 tangent.wheel_temperature = direction.inputs.ambient_temperature;
             }
-            image.read(rail, &tangent, &self.scratch.softening);
+            image.read(operators, &tangent, &self.scratch.softening);
             residual = tangent.relative_change(&last, direction.motion.rigid_slip);
             if residual <= settings.tolerance {
                 return Ok(tangent);
@@ -136,7 +136,7 @@ impl<'a> Linearisation<'a> {
     /// (31), for given tangents of thermal displacement, temperature and wear.
     fn tractions_tangent(&mut self, direction: &Direction, iterate: &Coupling, tangent: &mut Fields) {
         let (problem, fields) = (&self.problem, &mut *self.fields);
-        let window = problem.rail.mesh.window();
+        let window = problem.operators.mesh.window();
         let law = problem.friction();
         let common = [direction.inputs.ambient_temperature, direction.inputs.friction_scale];
         let rises = &fields.surface_temperature[window];
@@ -175,7 +175,7 @@ impl<'a> Linearisation<'a> {
             friction: &tangent.memory.now.resting,
             friction_of_slip: &friction_of_slip,
             total: problem
-                .rail
+                .operators
                 .scaled_load(problem.parameters, direction.inputs.normal_load),
             rigid_slip: direction.motion.rigid_slip,
             strain_speed: direction.speed * problem.strain_scale(),
@@ -207,7 +207,7 @@ impl<'a> Linearisation<'a> {
     /// (24).
     fn wear_tangent(&self, direction: &Direction, tangent: &mut Fields) {
         let (problem, fields) = (&self.problem, &*self.fields);
-        let scale = problem.parameters.wear_coefficient * problem.rail.scales.pressure;
+        let scale = problem.parameters.wear_coefficient * problem.operators.scales.pressure;
         let nodes = fields.pressure.iter().zip(&fields.slip);
         let changes = tangent.pressure.iter().zip(&tangent.slip);
         let rate: Vec<f64> = nodes
@@ -216,14 +216,14 @@ impl<'a> Linearisation<'a> {
             .collect();
         let march = problem.wear_march();
         tangent.wear[march.transport.inflow()] = direction.inputs.incoming_wear_depth;
-        let replaced = fields.replaced_inflow[problem.rail.heat.basis.len()];
+        let replaced = fields.replaced_inflow[problem.operators.heat.basis.len()];
         march.advance_tangent((&rate, direction.speed), replaced, &fields.wear, &mut tangent.wear);
     }
 
     /// (19), (23), at the given change of the wheel's temperature, `K`.
     fn temperature_tangent(&mut self, direction: &Direction, wheel_tangent: f64, tangent: &mut Fields) {
         let (problem, fields) = (&self.problem, &mut *self.fields);
-        let (parameters, scale) = (problem.parameters, problem.rail.scales.pressure);
+        let (parameters, scale) = (problem.parameters, problem.operators.scales.pressure);
         let wheel_rise = problem.wheel_rise(fields.wheel_temperature);
         let wheel_rise_tangent = match parameters.wheel_heating {
             WheelHeating::Off => 0.0,
@@ -267,7 +267,10 @@ impl<'a> Linearisation<'a> {
         };
         let march = problem.heat_march();
         let rise = direction.inputs.incoming_temperature - direction.inputs.ambient_temperature;
-        problem.rail.heat.enter(rise, march.transport.inflow(), &mut change);
+        problem
+            .operators
+            .heat
+            .enter(rise, march.transport.inflow(), &mut change);
         let data = MarchChange {
             speed: direction.speed,
             common: CommonChange {
@@ -276,7 +279,7 @@ impl<'a> Linearisation<'a> {
             },
             exchange: &exchange,
             exchange_tangent: &exchange_tangent,
-            replaced_inflow: &fields.replaced_inflow[..problem.rail.heat.basis.len()],
+            replaced_inflow: &fields.replaced_inflow[..problem.operators.heat.basis.len()],
         };
         march.advance_tangent(&solution, &data, &mut change, &mut self.scratch.cells);
     }

@@ -3,8 +3,8 @@
 
 use super::coupling::Coupling;
 use super::fields::Fields;
+use super::operators::LineOperators;
 use super::problem::{MechanicsData, Problem};
-use super::rail::Rail;
 use crate::contact::rest::Rest;
 use crate::contact::rim::{self, ContactHeat};
 use crate::contact::task::Convergence;
@@ -47,18 +47,18 @@ pub struct Scratch {
 
 impl Scratch {
     /// Buffers for the given rail.
-    pub fn new(rail: &Rail, settings: &Settings) -> Scratch {
-        let n = rail.mesh.contact_nodes;
+    pub fn new(operators: &LineOperators, settings: &Settings) -> Scratch {
+        let n = operators.mesh.contact_nodes;
         let iterate = Coupling::new(n);
         Scratch {
-            softening: Softening::new(&rail.compliance.at_rest.normal_normal, settings.softening),
+            softening: Softening::new(&operators.compliance.at_rest.normal_normal, settings.softening),
             mechanics: Mechanics::new(n, settings),
             data: MechanicsData::new(n),
             exchange: vec![SurfaceExchange::default(); n],
             wear_rate: vec![0.0; n],
-            wear_steps: WearSteps::new(&rail.mesh.x),
-            cells: CellFactors::new(&rail.heat.basis, &rail.mesh.x),
-            moments: vec![0.0; rail.heat.displacement.scratch_len()],
+            wear_steps: WearSteps::new(&operators.mesh.x),
+            cells: CellFactors::new(&operators.heat.basis, &operators.mesh.x),
+            moments: vec![0.0; operators.heat.displacement.scratch_len()],
             mapped_flux: vec![0.0; n],
             mapped_temperature: vec![0.0; n],
             anderson: Anderson::new(iterate.values().len()),
@@ -95,7 +95,7 @@ pub fn solve(problem: &Problem, before: &Fields, fields: &mut Fields, scratch: &
         march_wear(problem, before, fields, scratch);
         march_heat(problem, before, fields, scratch)?;
         soften(problem, fields, scratch);
-        scratch.image.read(problem.rail, fields, &scratch.softening);
+        scratch.image.read(problem.operators, fields, &scratch.softening);
         // Step 4: at rest? Not after the first iteration: the mechanics have not seen yet what it changed.
         let unmapped = if iterations > 1 {
             unmapped_displacement(problem, fields, scratch)
@@ -177,14 +177,14 @@ pub fn linearise_mechanics(problem: &Problem, fields: &mut Fields, scratch: &mut
 fn start(problem: &Problem, fields: &Fields, scratch: &mut Scratch) {
     scratch.start_step();
     soften(problem, fields, scratch);
-    scratch.iterate.read(problem.rail, fields, &scratch.softening);
+    scratch.iterate.read(problem.operators, fields, &scratch.softening);
 }
 
 /// Keeps what stands in the inflow column before something new enters there.
 fn replace_inflow(problem: &Problem, before: &Fields, fields: &mut Fields) {
     let inflow = problem.upwind().inflow();
-    let modes = problem.rail.heat.basis.len();
-    fields.replaced_inflow[..modes].copy_from_slice(before.column(problem.rail, inflow));
+    let modes = problem.operators.heat.basis.len();
+    fields.replaced_inflow[..modes].copy_from_slice(before.column(problem.operators, inflow));
     fields.replaced_inflow[modes] = before.wear[inflow];
 }
 
@@ -215,7 +215,7 @@ fn remember(problem: &Problem, before: &Fields, fields: &mut Fields) {
     let remembers = Memory::is_kept(problem.parameters);
     fields.memory.remembers = remembers;
     if remembers {
-        let (law, first) = (problem.friction(), problem.rail.mesh.first_contact);
+        let (law, first) = (problem.friction(), problem.operators.mesh.first_contact);
         let resting = |node: usize| law.coefficient(before.surface_temperature[first + node]).0;
         fields.memory.start_from(&before.memory, resting);
     }
@@ -227,7 +227,7 @@ fn close_memory(problem: &Problem, fields: &mut Fields) {
     let (Some(path_law), true) = (problem.path_law(), fields.memory.remembers) else {
         return;
     };
-    let (law, first) = (problem.friction(), problem.rail.mesh.first_contact);
+    let (law, first) = (problem.friction(), problem.operators.mesh.first_contact);
     let nodes = fields.pressure.len();
     let Fields {
         memory,
@@ -247,12 +247,12 @@ fn close_memory(problem: &Problem, fields: &mut Fields) {
 fn soften(problem: &Problem, fields: &Fields, scratch: &mut Scratch) {
     let transport = problem.upwind();
     let changed = scratch.softening.update(
-        &problem.rail.compliance.at_rest.normal_normal,
+        &problem.operators.compliance.at_rest.normal_normal,
         &fields.slip,
-        problem.rail.scales.compliance(problem.parameters.wear_coefficient),
+        problem.operators.scales.compliance(problem.parameters.wear_coefficient),
         CellStep::new(
             1.0 / problem.conditions.duration,
-            problem.rail.mesh.contact_spacing(),
+            problem.operators.mesh.contact_spacing(),
             transport.speed(),
         ),
         transport.is_forward(),
@@ -266,7 +266,7 @@ fn soften(problem: &Problem, fields: &Fields, scratch: &mut Scratch) {
 fn march_wear(problem: &Problem, before: &Fields, fields: &mut Fields, scratch: &mut Scratch) {
     let nodes = fields.pressure.iter().zip(&fields.slip);
     for (rate, (pressure, slip)) in scratch.wear_rate.iter_mut().zip(nodes) {
-        *rate = problem.parameters.wear_coefficient * slip.abs() * pressure * problem.rail.scales.pressure;
+        *rate = problem.parameters.wear_coefficient * slip.abs() * pressure * problem.operators.scales.pressure;
     }
     let march = problem.wear_march();
     fields.wear[march.transport.inflow()] = problem.conditions.inputs.incoming_wear_depth;
@@ -324,7 +324,7 @@ fn march_rail(
         flux: &mut fields.heat_flux,
     };
     let rise = inputs.incoming_temperature - inputs.ambient_temperature;
-    problem.rail.heat.enter(rise, march.transport.inflow(), &mut after);
+    problem.operators.heat.enter(rise, march.transport.inflow(), &mut after);
     march.advance(&before.temperature, &scratch.exchange, &mut after, &mut scratch.cells)
 }
 
@@ -346,7 +346,7 @@ fn warm_wheel(problem: &Problem, before: &Fields, fields: &mut Fields) {
 /// largest part of its work: the fields keep the displacement that the tractions have felt.
 fn unmapped_displacement(problem: &Problem, fields: &Fields, scratch: &Scratch) -> f64 {
     let share = |now: &[f64], mapped: &[f64]| relative(largest_change(now, mapped), largest(mapped));
-    let temperature = &fields.surface_temperature[problem.rail.mesh.window()];
+    let temperature = &fields.surface_temperature[problem.operators.mesh.window()];
     let share = share(&fields.heat_flux, &scratch.mapped_flux).min(share(temperature, &scratch.mapped_temperature));
     if share.is_infinite() {
         share
@@ -357,13 +357,13 @@ fn unmapped_displacement(problem: &Problem, fields: &Fields, scratch: &Scratch) 
 
 /// The thermal displacement of the temperature, for the fields and for the next iteration.
 fn map_displacement(problem: &Problem, fields: &mut Fields, scratch: &mut Scratch) {
-    problem.rail.heat.displacement.apply(
+    problem.operators.heat.displacement.apply(
         &fields.temperature,
         &mut scratch.moments,
         &mut fields.thermal_displacement,
     );
     scratch.mapped_flux.copy_from_slice(&fields.heat_flux);
-    let window = problem.rail.mesh.window();
+    let window = problem.operators.mesh.window();
     scratch
         .mapped_temperature
         .copy_from_slice(&fields.surface_temperature[window]);
@@ -374,7 +374,7 @@ fn map_displacement(problem: &Problem, fields: &mut Fields, scratch: &mut Scratc
 /// of the tractions, and the friction power of the fields is, to round-off, the one that has heated rail and wheel.
 fn close_friction(problem: &Problem, fields: &mut Fields) {
     let law = problem.friction();
-    let first = problem.rail.mesh.first_contact;
+    let first = problem.operators.mesh.first_contact;
     let of_slip = problem.path_law().is_some();
     for node in 0..fields.pressure.len() {
         let resting = law.coefficient(fields.surface_temperature[first + node]).0;
@@ -397,7 +397,7 @@ fn fills_window(problem: &Problem, fields: &Fields, scratch: &Scratch) -> Result
     let load = problem.unit_force() * fields.pressure.iter().sum::<f64>();
     if cut_off && load > problem.parameters.largest_load * (1.0 + 1e-9) {
         return Err(Error::ContactLeavesWindow {
-            half_width: problem.rail.mesh.window_half_width(),
+            half_width: problem.operators.mesh.window_half_width(),
             load,
             largest_load: problem.parameters.largest_load,
         });

@@ -1,7 +1,7 @@
 //! What wear and heat hand to the mechanics, as one vector: on it Anderson's method works, and its change says whether a step rests.
 
 use super::fields::PatchFields;
-use super::rail::PatchRail;
+use super::operators::PatchOperators;
 use crate::numerics::dense::{largest, largest_change};
 
 /// Temperature that counts as much as a displacement of one unit, `K`: a change that matters to the friction law.
@@ -18,8 +18,8 @@ pub struct Coupling {
 
 impl Coupling {
     /// All zero.
-    pub fn new(rail: &PatchRail) -> Coupling {
-        let cells = rail.grid.strips * rail.grid.cells;
+    pub fn new(operators: &PatchOperators) -> Coupling {
+        let cells = operators.grid.strips * operators.grid.cells;
         Coupling {
             values: vec![0.0; 3 * cells + 1],
             cells,
@@ -52,17 +52,17 @@ impl Coupling {
     }
 
     /// From the fields, with the wear that is proportional to the pressure, `softness` times it, taken off.
-    pub fn read(&mut self, rail: &PatchRail, fields: &PatchFields, softness: &[f64]) {
+    pub fn read(&mut self, operators: &PatchOperators, fields: &PatchFields, softness: &[f64]) {
         let cells = self.cells;
         self.values[3 * cells] = fields.wheel_temperature / TEMPERATURE_UNIT;
-        for strip in 0..rail.grid.strips {
-            for cell in 0..rail.grid.cells {
-                let index = strip * rail.grid.cells + cell;
-                let place = rail.grid.place(strip, cell);
+        for strip in 0..operators.grid.strips {
+            for cell in 0..operators.grid.cells {
+                let index = strip * operators.grid.cells + cell;
+                let place = operators.grid.place(strip, cell);
                 self.values[index] = fields.heat.surface[index] / TEMPERATURE_UNIT;
-                self.values[cells + index] = rail.expansion.bulge * fields.heat.content[index];
+                self.values[cells + index] = operators.expansion.bulge * fields.heat.content[index];
                 self.values[2 * cells + index] =
-                    fields.wear.depth[index] / rail.scales.displacement - softness[place] * fields.pressure[place];
+                    fields.wear.depth[index] / operators.scales.displacement - softness[place] * fields.pressure[place];
             }
         }
     }

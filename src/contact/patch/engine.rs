@@ -1,9 +1,9 @@
 //! The patch engine from outside: built once, stepped from state to state.
 
 use super::fields::{PatchFields, PatchTrend};
+use super::operators::PatchOperators;
 use super::problem::Problem;
 use super::profiles;
-use super::rail::PatchRail;
 use super::readings::readings;
 use super::scratch::Scratch;
 use super::sensitivity::{Linearisation, SensitivityScratch};
@@ -19,7 +19,7 @@ use serde::{Deserialize, Serialize};
 
 /// A patch: what is computed once.
 pub struct Patch {
-    rail: PatchRail,
+    operators: PatchOperators,
 }
 
 /// The state of a patch.
@@ -55,33 +55,33 @@ impl Patch {
     /// [`Error::DepthBasis`].
     pub fn new(parameters: &Parameters) -> Result<Patch> {
         Ok(Patch {
-            rail: PatchRail::new(parameters)?,
+            operators: PatchOperators::new(parameters)?,
         })
     }
 
     /// What was computed once.
     #[cfg(feature = "verification")]
-    pub fn rail(&self) -> &PatchRail {
-        &self.rail
+    pub fn operators(&self) -> &PatchOperators {
+        &self.operators
     }
 
     /// Scratch for the steps.
     pub fn workspace(&self, settings: &Settings) -> PatchWorkspace {
         PatchWorkspace {
-            scratch: Scratch::new(&self.rail, settings),
-            trial: PatchFields::new(&self.rail),
+            scratch: Scratch::new(&self.operators, settings),
+            trial: PatchFields::new(&self.operators),
             sensitivity: None,
         }
     }
 
     /// Length along the rail of the window in which the contact is sought, `m`.
     pub fn window_length(&self) -> f64 {
-        2.0 * self.rail.grid.half_length()
+        2.0 * self.operators.grid.half_length()
     }
 
     fn problem<'a>(&'a self, task: &Task<'a>) -> Problem<'a> {
         Problem {
-            rail: &self.rail,
+            operators: &self.operators,
             parameters: task.parameters,
             settings: task.settings,
             conditions: task.conditions,
@@ -93,12 +93,12 @@ impl Patch {
     /// # Errors
     /// A solver that did not converge.
     pub fn initial_state(&self, task: &Task, workspace: &mut PatchWorkspace) -> Result<PatchState> {
-        let mut fields = PatchFields::new(&self.rail);
+        let mut fields = PatchFields::new(&self.operators);
         fields.wheel_temperature = task.conditions.inputs.ambient_temperature;
         split::solve_mechanics(&self.problem(task), &mut fields, &mut workspace.scratch)?;
         Ok(PatchState {
             fields,
-            trend: PatchTrend::new(&self.rail),
+            trend: PatchTrend::new(&self.operators),
         })
     }
 
@@ -139,7 +139,7 @@ impl Patch {
     ) -> Result<Vec<Outputs>> {
         let scratch = workspace
             .sensitivity
-            .get_or_insert_with(|| Box::new(SensitivityScratch::new(&self.rail, task.settings)));
+            .get_or_insert_with(|| Box::new(SensitivityScratch::new(&self.operators, task.settings)));
         let mut step = Linearisation::new(self.problem(task), &state.fields, scratch)?;
         inputs.into_iter().map(|input| step.output_sensitivity(input)).collect()
     }
@@ -151,16 +151,16 @@ impl Patch {
 
     /// The fields at the cells of the window, strip by strip.
     pub fn contact_nodes(&self, state: &PatchState) -> Vec<ContactNode> {
-        profiles::contact_nodes(&self.rail, &state.fields)
+        profiles::contact_nodes(&self.operators, &state.fields)
     }
 
     /// Whether a state (of another source) has the sizes of this patch and finite content.
     pub fn accepts(&self, state: &PatchState) -> bool {
-        let expected = PatchFields::new(&self.rail);
+        let expected = PatchFields::new(&self.operators);
         let same = |own: &Vec<f64>, expected: &Vec<f64>| {
             own.len() == expected.len() && own.iter().all(|value| value.is_finite())
         };
-        let trend = PatchTrend::new(&self.rail);
+        let trend = PatchTrend::new(&self.operators);
         state
             .fields
             .vectors()

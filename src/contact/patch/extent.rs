@@ -1,6 +1,6 @@
 //! Length, breadth and area of the cells under pressure.
 
-use super::rail::PatchRail;
+use super::operators::PatchOperators;
 
 /// The size of a contact.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -29,32 +29,32 @@ fn reach(edge: f64, inside: f64) -> f64 {
 }
 
 /// Length, breadth and area of the cells under pressure.
-pub fn extent(rail: &PatchRail, pressure: &[f64]) -> Extent {
-    let grid = &rail.grid;
+pub fn extent(operators: &PatchOperators, pressure: &[f64]) -> Extent {
+    let grid = &operators.grid;
     let mut extent = Extent::default();
     for strip in 0..grid.strips {
-        extent.length = extent.length.max(length(rail, pressure, strip));
+        extent.length = extent.length.max(length(operators, pressure, strip));
     }
     for cell in 0..grid.cells {
         let breadth = grid.breadth * distance(grid.strips, |strip| pressure[grid.place(strip, cell)]);
         extent.breadth = extent.breadth.max(breadth);
     }
-    extent.area = area(rail, pressure);
+    extent.area = area(operators, pressure);
     extent
 }
 
 /// Length of the contact along a strip, `m`.
-fn length(rail: &PatchRail, pressure: &[f64], strip: usize) -> f64 {
-    let row = &pressure[rail.grid.row(strip)];
-    rail.grid.length * distance(rail.grid.cells, |cell| row[cell])
+fn length(operators: &PatchOperators, pressure: &[f64], strip: usize) -> f64 {
+    let row = &pressure[operators.grid.row(strip)];
+    operators.grid.length * distance(operators.grid.cells, |cell| row[cell])
 }
 
 /// Area of the contact, `m²`. In strips the midpoint rule would miss what ends like a root at the sides: the outermost strip on either
 /// side, whose own length is that of an edge, is replaced by the area under the root that begins at the side and has
 /// the length L of the next strip at its centre, a distance d strips from the side. From that strip's edge on it is ⅔ L (d − ½)^{3/2}/√d, and
 /// what the midpoint rule overstates from there inwards is L/(48 √(d (d − ½))).
-fn area(rail: &PatchRail, pressure: &[f64]) -> f64 {
-    let grid = &rail.grid;
+fn area(operators: &PatchOperators, pressure: &[f64]) -> f64 {
+    let grid = &operators.grid;
     let largest = |strip: usize| {
         let row = &pressure[grid.row(strip)];
         (0..grid.cells).fold(0, |largest, cell| if row[cell] > row[largest] { cell } else { largest })
@@ -64,7 +64,8 @@ fn area(rail: &PatchRail, pressure: &[f64]) -> f64 {
     let (Some(first), Some(last)) = ((0..grid.strips).find(inside), (0..grid.strips).rfind(inside)) else {
         return 0.0;
     };
-    let lengths = |strips: std::ops::Range<usize>| -> f64 { strips.map(|strip| length(rail, pressure, strip)).sum() };
+    let lengths =
+        |strips: std::ops::Range<usize>| -> f64 { strips.map(|strip| length(operators, pressure, strip)).sum() };
     if last < first + 2 {
         return grid.breadth * lengths(first..last + 1);
     }
@@ -72,7 +73,7 @@ fn area(rail: &PatchRail, pressure: &[f64]) -> f64 {
         let cell = largest(outermost);
         let d = 1.0 - JOINS + reach(at(outermost, cell), at(next, cell));
         let beyond = d - 0.5;
-        let root = length(rail, pressure, next) / d.sqrt();
+        let root = length(operators, pressure, next) / d.sqrt();
         root * (beyond * beyond.sqrt() / 1.5 - 1.0 / (48.0 * beyond.sqrt()))
     };
     grid.breadth * (side(first, first + 1) + lengths(first + 1..last) + side(last, last - 1))
@@ -113,20 +114,20 @@ mod tests {
     /// One strip, then two, then the root: the area has no gap.
     #[test]
     fn the_area_of_few_strips() {
-        let rail = PatchRail::new(&Parameters {
+        let operators = PatchOperators::new(&Parameters {
             contact_model: ContactModel::Patch,
             ..Parameters::default()
         })
         .unwrap();
-        let grid = &rail.grid;
+        let grid = &operators.grid;
         let mut pressure = vec![0.0; grid.len()];
-        assert_eq!(extent(&rail, &pressure), Extent::default());
+        assert_eq!(extent(&operators, &pressure), Extent::default());
         let mut areas = Vec::new();
         for strip in 5..9 {
             for cell in 10..20 {
                 pressure[grid.place(strip, cell)] = 1.0;
             }
-            areas.push(extent(&rail, &pressure).area / (grid.cell_area() * (11.0 - 2.0 * JOINS)));
+            areas.push(extent(&operators, &pressure).area / (grid.cell_area() * (11.0 - 2.0 * JOINS)));
         }
         assert!(
             (areas[0] - 1.0).abs() < 1e-12 && (areas[1] - 2.0).abs() < 1e-12,

@@ -1,6 +1,6 @@
 //! The fields of a patch, all that a step changes, and their trend from step to step.
 
-use super::rail::PatchRail;
+use super::operators::PatchOperators;
 use crate::friction::memory::Memory;
 use crate::heat::strips::StripTemperature;
 use crate::wear::strips::StripWear;
@@ -37,20 +37,20 @@ pub struct PatchFields {
 
 impl PatchFields {
     /// A cold, unworn rail without contact; the wheel's temperature is 0 K.
-    pub fn new(rail: &PatchRail) -> PatchFields {
-        let on_grid = || vec![0.0; rail.grid.len()];
+    pub fn new(operators: &PatchOperators) -> PatchFields {
+        let on_grid = || vec![0.0; operators.grid.len()];
         let vectors = || [on_grid(), on_grid()];
         PatchFields {
-            heat: StripTemperature::new(&rail.strips, rail.basis.len()),
-            wear: StripWear::new(&rail.strips),
+            heat: StripTemperature::new(&operators.strips, operators.basis.len()),
+            wear: StripWear::new(&operators.strips),
             pressure: on_grid(),
             shear: vectors(),
             slip: vectors(),
             friction: on_grid(),
             displacement: vectors(),
             displacement_change: vectors(),
-            memory: Memory::new(rail.grid.strips * rail.grid.cells),
-            relaxation_length: rail.relaxation_length,
+            memory: Memory::new(operators.grid.strips * operators.grid.cells),
+            relaxation_length: operators.relaxation_length,
             penetration: 0.0,
             wheel_temperature: 0.0,
         }
@@ -137,8 +137,8 @@ impl PatchFields {
 
     /// All vectors.
     pub fn vectors(&self) -> impl Iterator<Item = &Vec<f64>> {
-        let rail = self.heat.vectors().into_iter().chain(self.wear.vectors());
-        rail.chain(self.on_grid()).chain(self.memory.vectors())
+        let operators = self.heat.vectors().into_iter().chain(self.wear.vectors());
+        operators.chain(self.on_grid()).chain(self.memory.vectors())
     }
 
     /// The numbers.
@@ -181,9 +181,9 @@ pub struct PatchTrend {
 
 impl PatchTrend {
     /// No change.
-    pub fn new(rail: &PatchRail) -> PatchTrend {
-        let on_grid = || vec![0.0; rail.grid.len()];
-        let cells = || vec![0.0; rail.grid.strips * rail.grid.cells];
+    pub fn new(operators: &PatchOperators) -> PatchTrend {
+        let on_grid = || vec![0.0; operators.grid.len()];
+        let cells = || vec![0.0; operators.grid.strips * operators.grid.cells];
         PatchTrend {
             shear: [on_grid(), on_grid()],
             pressure: on_grid(),

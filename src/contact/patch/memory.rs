@@ -10,7 +10,7 @@ use std::ops::Range;
 
 /// The cells of a strip.
 fn cells(problem: &Problem, strip: usize) -> Range<usize> {
-    let cells = problem.rail.grid.cells;
+    let cells = problem.operators.grid.cells;
     strip * cells..(strip + 1) * cells
 }
 
@@ -22,7 +22,7 @@ pub fn prepare(
     fields: &PatchFields,
     scratch: &mut PathScratch,
 ) {
-    let grid = &problem.rail.grid;
+    let grid = &problem.operators.grid;
     scratch.index.fill(None);
     for run in contact.runs() {
         for (k, (index, place)) in run.own().zip(run.places(grid)).enumerate() {
@@ -65,7 +65,7 @@ pub fn close(problem: &Problem, fields: &mut PatchFields) {
     let (Some(path_law), true) = (problem.path_law(), fields.memory.remembers) else {
         return;
     };
-    let (grid, law) = (&problem.rail.grid, problem.friction());
+    let (grid, law) = (&problem.operators.grid, problem.friction());
     let PatchFields {
         memory, pressure, heat, ..
     } = fields;
@@ -91,7 +91,7 @@ pub fn tangent(
     (speed, resting, pressure_change): (f64, &[f64], &[f64]),
     friction: &mut [f64],
 ) {
-    let grid = &problem.rail.grid;
+    let grid = &problem.operators.grid;
     for strip in 0..grid.strips {
         let own = cells(problem, strip);
         let (pressure, changes) = (&fields.pressure[grid.row(strip)], &pressure_change[grid.row(strip)]);

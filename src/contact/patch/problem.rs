@@ -1,7 +1,7 @@
 //! One implicit step of the patch as a problem: its data, and the parts of its equations.
 
 use super::fields::PatchFields;
-use super::rail::PatchRail;
+use super::operators::PatchOperators;
 use crate::contact::rim::HeatedNode;
 use crate::contact::task::Conditions;
 use crate::friction::FrictionState;
@@ -21,7 +21,7 @@ use std::ops::Range;
 #[derive(Clone, Copy)]
 pub struct Problem<'a> {
     /// What is computed once.
-    pub rail: &'a PatchRail,
+    pub operators: &'a PatchOperators,
     /// The parameters.
     pub parameters: &'a Parameters,
     /// Limits and tolerances.
@@ -75,16 +75,16 @@ impl<'a> Problem<'a> {
 
     /// How friction depends on slip and on what was before; none where it does not.
     pub fn path_law(&self) -> Option<PathLaw> {
-        let rail = self.rail;
-        let origin = rail.grid.stride();
+        let operators = self.operators;
+        let origin = operators.grid.stride();
         PathLaw::new(
             self.parameters,
             &PathStep {
                 duration: self.conditions.duration,
-                spacing: rail.grid.length,
+                spacing: operators.grid.length,
                 speed: self.conditions.motion.rolling_speed,
-                displacement: rail.scales.displacement * rail.own[0][origin],
-                pressure: rail.scales.pressure,
+                displacement: operators.scales.displacement * operators.own[0][origin],
+                pressure: operators.scales.pressure,
             },
         )
     }
@@ -95,10 +95,10 @@ impl<'a> Problem<'a> {
             Control::Load => {
                 let load = self.conditions.inputs.normal_load;
                 let load = self.settings.mechanics.felt(load, self.parameters.largest_load);
-                Constraint::Total(load / self.rail.unit_force())
+                Constraint::Total(load / self.operators.unit_force())
             }
             Control::Penetration => {
-                Constraint::Penetration(self.parameters.prescribed_penetration / self.rail.scales.displacement)
+                Constraint::Penetration(self.parameters.prescribed_penetration / self.operators.scales.displacement)
             }
         }
     }
@@ -121,16 +121,16 @@ impl<'a> Problem<'a> {
         Transient::new(
             self.conditions.duration,
             self.conditions.motion.rolling_speed.abs(),
-            self.rail.grid.length,
+            self.operators.grid.length,
             fields.relaxation_length,
-            self.rail.scales.displacement,
+            self.operators.scales.displacement,
         )
     }
 
     /// How the slip follows from displacements.
     pub fn slip_weights(&self, transient: Transient) -> SlipWeights {
         let speed = self.conditions.motion.rolling_speed.abs();
-        let strain_speed = speed * self.rail.scales.displacement / self.rail.grid.length;
+        let strain_speed = speed * self.operators.scales.displacement / self.operators.grid.length;
         let centred = transient.centring * transient.rate;
         SlipWeights {
             strain: strain_speed - centred,
@@ -146,10 +146,10 @@ impl<'a> Problem<'a> {
         let change = transient.tangent(
             self.conditions.duration,
             self.conditions.motion.rolling_speed.abs(),
-            self.rail.grid.length,
+            self.operators.grid.length,
             fields.relaxation_length,
         );
-        let strain_speed = speed * self.rail.scales.displacement / self.rail.grid.length;
+        let strain_speed = speed * self.operators.scales.displacement / self.operators.grid.length;
         let centred = speed * (change.centring * transient.rate + transient.centring * change.rate);
         SlipWeights {
             strain: strain_speed - centred,
@@ -175,19 +175,19 @@ impl<'a> Problem<'a> {
     }
 
     fn largest_opening(&self) -> f64 {
-        self.settings.patch.largest_opening * self.rail.approach.own
+        self.settings.patch.largest_opening * self.operators.approach.own
     }
 
     /// Relaxation length of a contact under the load that it had in the given fields, `m`: in the ratio of the contact's length.
     pub fn relaxation_length(&self, fields: &PatchFields) -> f64 {
-        let load = self.rail.unit_force() * fields.pressure.iter().sum::<f64>();
+        let load = self.operators.unit_force() * fields.pressure.iter().sum::<f64>();
         let ratio = (load / self.parameters.largest_load).cbrt().min(1.0);
-        self.rail.relaxation_length * if load > 0.0 { ratio } else { 1.0 }
+        self.operators.relaxation_length * if load > 0.0 { ratio } else { 1.0 }
     }
 
     /// The cells of a strip that have one ahead of them: the slip is taken between the two.
     pub fn cells_with_next(&self) -> Range<usize> {
-        let cells = self.rail.grid.cells;
+        let cells = self.operators.grid.cells;
         if self.is_forward() { 0..cells - 1 } else { 1..cells }
     }
 
@@ -202,7 +202,7 @@ impl<'a> Problem<'a> {
         fields: &'f PatchFields,
         values: &'f PatchFields,
     ) -> impl Iterator<Item = HeatedNode> + 'f {
-        let grid = &self.rail.grid;
+        let grid = &self.operators.grid;
         (0..grid.strips).flat_map(move |strip| {
             let cells = grid.row(strip).enumerate();
             let heated = cells.filter(|(_, place)| fields.pressure[*place] > 0.0);
@@ -218,9 +218,9 @@ impl<'a> Problem<'a> {
     /// The heat march of the step.
     pub fn heat_march(&self) -> StripHeatMarch<'a> {
         StripHeatMarch {
-            basis: &self.rail.basis,
-            incoming: &self.rail.incoming,
-            strips: &self.rail.strips,
+            basis: &self.operators.basis,
+            incoming: &self.operators.incoming,
+            strips: &self.operators.strips,
             speed: self.conditions.motion.rolling_speed,
             duration: self.conditions.duration,
             surface: SurfaceCondition {
@@ -233,7 +233,7 @@ impl<'a> Problem<'a> {
     /// The wear march of the step.
     pub fn wear_march(&self) -> StripWearMarch<'a> {
         StripWearMarch {
-            strips: &self.rail.strips,
+            strips: &self.operators.strips,
             speed: self.conditions.motion.rolling_speed,
             duration: self.conditions.duration,
         }
@@ -241,7 +241,7 @@ impl<'a> Problem<'a> {
 
     /// Wear rate per slip and scaled pressure.
     pub fn wear_per_slip(&self) -> f64 {
-        self.parameters.wear_coefficient * self.rail.scales.pressure
+        self.parameters.wear_coefficient * self.operators.scales.pressure
     }
 
     /// Sliding of a cell, by its place on the grid.
@@ -268,11 +268,11 @@ impl<'a> Problem<'a> {
 
     /// What heats and cools the surface of the cells, strip by strip, with the wheel at θ_w.
     pub fn exchange(&self, fields: &PatchFields, wheel_rise: f64, exchange: &mut [SurfaceExchange]) {
-        let grid = &self.rail.grid;
+        let grid = &self.operators.grid;
         let of_slip = self.path_law().is_some();
         for (strip, exchange) in exchange.chunks_exact_mut(grid.cells).enumerate() {
             for (cell, (place, exchange)) in grid.row(strip).zip(exchange).enumerate() {
-                let pressure = fields.pressure[place] * self.rail.scales.pressure;
+                let pressure = fields.pressure[place] * self.operators.scales.pressure;
                 *exchange = if pressure > 0.0 {
                     SurfaceExchange::new(self.parameters, pressure, self.sliding(fields, place), wheel_rise)
                 } else {
@@ -287,7 +287,7 @@ impl<'a> Problem<'a> {
 
     /// Breadth over which the rail that leaves is averaged, `m`: that of the strips in contact.
     pub fn breadth(&self, fields: &PatchFields) -> f64 {
-        super::extent::extent(self.rail, &fields.pressure).breadth
+        super::extent::extent(self.operators, &fields.pressure).breadth
     }
 }
 

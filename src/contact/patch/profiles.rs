@@ -1,16 +1,16 @@
 //! Profiles of a patch for plotting: along its middle strip, and across the strips.
 
 use super::fields::PatchFields;
+use super::operators::PatchOperators;
 use super::problem::Problem;
-use super::rail::PatchRail;
 use super::readings::wear_left_behind;
 use crate::contact::profiles::{ContactNode, PROFILE_POINTS, Profiles, STRIP_POINTS, StripProfiles, depths};
 use crate::friction::coulomb;
 use crate::numerics::interpolation::between;
 
 /// The fields at the cells of the window, strip by strip.
-pub fn contact_nodes(rail: &PatchRail, fields: &PatchFields) -> Vec<ContactNode> {
-    let (grid, scale) = (&rail.grid, rail.scales.pressure);
+pub fn contact_nodes(operators: &PatchOperators, fields: &PatchFields) -> Vec<ContactNode> {
+    let (grid, scale) = (&operators.grid, operators.scales.pressure);
     let cells = (0..grid.strips).flat_map(|strip| (0..grid.cells).map(move |cell| (strip, cell)));
     cells
         .map(|(strip, cell)| {
@@ -39,8 +39,8 @@ pub fn contact_nodes(rail: &PatchRail, fields: &PatchFields) -> Vec<ContactNode>
 
 /// Of the fields, linear between the centres of the cells; between the two strips in the middle their mean.
 pub fn profiles(problem: &Problem, fields: &PatchFields, ambient: f64) -> Profiles {
-    let rail = problem.rail;
-    let grid = &rail.grid;
+    let operators = problem.operators;
+    let grid = &operators.grid;
     let middle = [(grid.strips - 1) / 2, grid.strips / 2];
     let along = |value: &dyn Fn(usize, usize) -> f64| -> Vec<f64> {
         let values: Vec<f64> = (0..grid.cells)
@@ -58,7 +58,7 @@ pub fn profiles(problem: &Problem, fields: &PatchFields, ambient: f64) -> Profil
             .fold(f64::NEG_INFINITY, f64::max)
     };
     let surface = |strip: usize, cell: usize| ambient + fields.heat.surface[strip * grid.cells + cell];
-    let scale = rail.scales.pressure;
+    let scale = operators.scales.pressure;
     let strips = StripProfiles {
         position: across(&|strip| grid.y(strip)),
         pressure: across(&|strip| largest(strip, &|place| scale * fields.pressure[place])),
@@ -82,8 +82,8 @@ pub fn profiles(problem: &Problem, fields: &PatchFields, ambient: f64) -> Profil
     let hottest = rises.max_by(|a, b| a.1.total_cmp(b.1)).map_or(0, |(index, _)| index);
     let amplitudes = fields
         .heat
-        .amplitudes(&rail.strips, hottest / grid.cells, hottest % grid.cells);
-    let depth = depths(rail.depth[rail.depth.len() - 1]);
+        .amplitudes(&operators.strips, hottest / grid.cells, hottest % grid.cells);
+    let depth = depths(operators.depth[operators.depth.len() - 1]);
     Profiles {
         x: along(&|_, cell| grid.x(cell)),
         pressure: along(&|strip, cell| scale * fields.pressure[grid.place(strip, cell)]),
@@ -92,13 +92,16 @@ pub fn profiles(problem: &Problem, fields: &PatchFields, ambient: f64) -> Profil
         temperature: along(&surface),
         wear_depth: along(&|strip, cell| fields.wear.depth[strip * grid.cells + cell]),
         strips,
-        depth_temperature: depth.iter().map(|&z| ambient + below(rail, &amplitudes, z)).collect(),
+        depth_temperature: depth
+            .iter()
+            .map(|&z| ambient + below(operators, &amplitudes, z))
+            .collect(),
         depth,
     }
 }
 
 /// Temperature rise of a column at a depth `m`, `K`.
-fn below(rail: &PatchRail, amplitudes: &[f64], depth: f64) -> f64 {
-    let (upper, weight) = between(&rail.depth, depth);
-    rail.basis.value(amplitudes, upper) * (1.0 - weight) + rail.basis.value(amplitudes, upper + 1) * weight
+fn below(operators: &PatchOperators, amplitudes: &[f64], depth: f64) -> f64 {
+    let (upper, weight) = between(&operators.depth, depth);
+    operators.basis.value(amplitudes, upper) * (1.0 - weight) + operators.basis.value(amplitudes, upper + 1) * weight
 }

@@ -10,26 +10,28 @@ use crate::friction::coulomb;
 
 /// Of the given fields under the problem's conditions.
 pub fn readings(problem: &Problem, fields: &PatchFields) -> Readings {
-    let rail = problem.rail;
-    let extent = extent(rail, &fields.pressure);
+    let operators = problem.operators;
+    let extent = extent(operators, &fields.pressure);
     let heat = problem.heat_march();
     Readings {
         resultants: Resultants::of(nodes(problem, fields)),
-        node_area: rail.grid.cell_area(),
-        pressure_scale: rail.scales.pressure,
-        penetration: fields.penetration * rail.scales.displacement,
+        node_area: operators.grid.cell_area(),
+        pressure_scale: operators.scales.pressure,
+        penetration: fields.penetration * operators.scales.displacement,
         contact_length: extent.length,
         contact_breadth: extent.breadth,
         contact_area: extent.area,
         peak_rise: fields.heat.surface.iter().fold(f64::NEG_INFINITY, |m: f64, t| t.max(m)),
-        wear_depth: (0..rail.grid.strips)
+        wear_depth: (0..operators.grid.strips)
             .map(|strip| wear_left_behind(problem, fields, strip))
             .fold(0.0, f64::max),
-        leaving_rise: rail.incoming.equivalent_rise(&rail.basis, heat.leaving(&fields.heat)),
+        leaving_rise: operators
+            .incoming
+            .equivalent_rise(&operators.basis, heat.leaving(&fields.heat)),
         leaving_wear_depth: problem.wear_march().leaving(&fields.wear),
         wheel_heat: ContactHeat::new(
             problem.parameters,
-            rail.unit_force(),
+            operators.unit_force(),
             problem.heated_nodes(fields, fields),
         ),
         wheel_temperature: fields.wheel_temperature,
@@ -37,7 +39,7 @@ pub fn readings(problem: &Problem, fields: &PatchFields) -> Readings {
 }
 
 fn nodes<'f>(problem: &'f Problem, fields: &'f PatchFields) -> impl Iterator<Item = Node> + 'f {
-    let grid = &problem.rail.grid;
+    let grid = &problem.operators.grid;
     let regularisation = problem.parameters.slip_regularisation;
     (0..grid.strips).flat_map(move |strip| {
         (0..grid.cells).map(move |cell| {
@@ -69,7 +71,7 @@ fn nodes<'f>(problem: &'f Problem, fields: &'f PatchFields) -> impl Iterator<Ite
 
 /// Wear depth of a strip at the end of the window where material leaves it; at rest the deepest, `m`.
 pub fn wear_left_behind(problem: &Problem, fields: &PatchFields, strip: usize) -> f64 {
-    let cells = problem.rail.grid.cells;
+    let cells = problem.operators.grid.cells;
     let depth = &fields.wear.depth[strip * cells..(strip + 1) * cells];
     let speed = problem.conditions.motion.rolling_speed;
     if speed > 0.0 {

@@ -1,36 +1,36 @@
 //! How the slip responds to the shear: the products of the rail, of a cell's displacement and of that of the cell ahead of it, with the
 //! weights that speed and step give them.
 
+use super::operators::PatchOperators;
 use super::problem::{Problem, SlipWeights};
-use super::rail::PatchRail;
 use crate::mechanics::patch::friction::SlipResponse;
 
 /// No response yet.
-pub fn none(rail: &PatchRail) -> SlipResponse {
+pub fn none(operators: &PatchOperators) -> SlipResponse {
     SlipResponse {
-        double: rail.displacement.clone(),
-        single: rail.displacement.single(),
-        own: [vec![0.0; rail.own[0].len()], vec![0.0; rail.own[1].len()]],
-        origin: rail.grid.stride(),
+        double: operators.displacement.clone(),
+        single: operators.displacement.single(),
+        own: [vec![0.0; operators.own[0].len()], vec![0.0; operators.own[1].len()]],
+        origin: operators.grid.stride(),
         forward: true,
     }
 }
 
 /// The response of the slip to the shear at these weights, for a contact on so many strips.
 pub fn adapt(problem: &Problem, weights: &SlipWeights, strips: usize, response: &mut SlipResponse) {
-    let (rail, forward) = (problem.rail, problem.is_forward());
+    let (operators, forward) = (problem.operators, problem.is_forward());
     response.forward = forward;
     // The displacement of the cell ahead is felt at one lag more towards it.
     let ahead = if forward { 1 } else { -1 };
     let (own, next) = (weights.strain + weights.change, -weights.strain);
-    let (transform, displacement) = rail.transform_for(strips);
+    let (transform, displacement) = operators.transform_for(strips);
     displacement.combine(
         transform,
         (own, next, ahead),
         &mut response.double,
         &mut response.single,
     );
-    for (table, kernel) in response.own.iter_mut().zip(&rail.own) {
+    for (table, kernel) in response.own.iter_mut().zip(&operators.own) {
         for (lag, value) in table.iter_mut().enumerate() {
             let shifted = lag.saturating_add_signed(ahead).min(kernel.len() - 1);
             *value = (own * kernel[lag] + next * kernel[shifted]) as f32;

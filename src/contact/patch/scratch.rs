@@ -2,8 +2,8 @@
 
 use super::coupling::Coupling;
 use super::expansion;
+use super::operators::PatchOperators;
 use super::problem::SlipWeights;
-use super::rail::PatchRail;
 use super::response;
 use crate::body::influence;
 use crate::friction::path::PathNode;
@@ -75,18 +75,18 @@ impl PathScratch {
 
 impl Scratch {
     /// Buffers for the given rail.
-    pub fn new(rail: &PatchRail, settings: &Settings) -> Scratch {
-        let (grid, transform) = (&rail.grid, &rail.transform);
+    pub fn new(operators: &PatchOperators, settings: &Settings) -> Scratch {
+        let (grid, transform) = (&operators.grid, &operators.transform);
         let on_grid = || vec![0.0; grid.len()];
         let vectors = || [on_grid(), on_grid()];
-        let iterate = Coupling::new(rail);
+        let iterate = Coupling::new(operators);
         let cells = grid.strips * grid.cells;
         Scratch {
             contact: Contact::new(grid),
             contact_before: Contact::new(grid),
             normal: Normal::new(grid, transform, settings.patch),
             friction: Friction::new(grid, transform, settings.patch),
-            response: response::none(rail),
+            response: response::none(operators),
             weights: None,
             strips: grid.strips,
             products: transform.scratch(),
@@ -94,9 +94,9 @@ impl Scratch {
             image: iterate.clone(),
             iterate,
             exchange: vec![SurfaceExchange::default(); cells],
-            heat: StripHeatScratch::new(&rail.basis, &rail.strips),
+            heat: StripHeatScratch::new(&operators.basis, &operators.strips),
             wear_rate: vec![0.0; cells],
-            wear_steps: StripWearSteps::new(&rail.strips),
+            wear_steps: StripWearSteps::new(&operators.strips),
             gap: on_grid(),
             softness: on_grid(),
             lift: vectors(),

@@ -10,8 +10,8 @@
 use super::coupling::Coupling;
 use super::extent::extent;
 use super::fields::PatchFields;
+use super::operators::PatchOperators;
 use super::problem::Problem;
-use super::rail::PatchRail;
 use super::readings::readings;
 use super::tangent::{Direction, Tangent};
 use crate::contact::rim::{self, ContactHeat};
@@ -49,13 +49,13 @@ pub struct SensitivityScratch {
 
 impl SensitivityScratch {
     /// For the given rail.
-    pub fn new(rail: &PatchRail, settings: &Settings) -> SensitivityScratch {
-        let fields = PatchFields::new(rail);
-        let iterate = Coupling::new(rail);
-        let cells = rail.grid.strips * rail.grid.cells;
+    pub fn new(operators: &PatchOperators, settings: &Settings) -> SensitivityScratch {
+        let fields = PatchFields::new(operators);
+        let iterate = Coupling::new(operators);
+        let cells = operators.grid.strips * operators.grid.cells;
         SensitivityScratch {
-            mechanics: Tangent::new(rail, settings),
-            heat: StripHeatScratch::new(&rail.basis, &rail.strips),
+            mechanics: Tangent::new(operators, settings),
+            heat: StripHeatScratch::new(&operators.basis, &operators.strips),
             anderson: Anderson::new(iterate.values.len()),
             image: iterate.clone(),
             iterate,
@@ -131,7 +131,7 @@ impl<'a> Linearisation<'a> {
 
     /// dz along one direction of the inputs.
     fn fields_tangent(&mut self, direction: &Direction) -> Result<()> {
-        let rail = self.problem.rail;
+        let operators = self.problem.operators;
         let settings = self.problem.settings.patch_sensitivity();
         let rigid_slip = self.rigid_slip(direction);
         self.start(direction);
@@ -168,10 +168,10 @@ impl<'a> Linearisation<'a> {
                 last,
                 ..
             } = &mut *self.scratch;
-            image.read(rail, tangent, &mechanics.softness);
-            if !self.lifted && rail.coupling.is_some() {
+            image.read(operators, tangent, &mechanics.softness);
+            if !self.lifted && operators.coupling.is_some() {
                 let lift = mechanics.lift_by_shear(&self.problem, &tangent.shear);
-                let grid = &rail.grid;
+                let grid = &operators.grid;
                 for (strip, wear) in image.wear_mut().chunks_exact_mut(grid.cells).enumerate() {
                     for (wear, lift) in wear.iter_mut().zip(&lift[grid.row(strip)]) {
                         *wear -= lift;
@@ -202,7 +202,7 @@ impl<'a> Linearisation<'a> {
     /// Size of the change of the rigid slip, `m/s`.
     fn rigid_slip(&self, direction: &Direction) -> f64 {
         let motion = &direction.motion;
-        let spin = motion.spin_rate.abs() * self.problem.rail.grid.half_breadth();
+        let spin = motion.spin_rate.abs() * self.problem.operators.grid.half_breadth();
         motion.rigid_slip.abs().max(motion.lateral_speed.abs()).max(spin)
     }
 
@@ -260,7 +260,7 @@ impl<'a> Linearisation<'a> {
     fn wear_tangent(&mut self, direction: &Direction) {
         let SensitivityScratch { wear_rate, tangent, .. } = &mut *self.scratch;
         let (problem, fields) = (&self.problem, self.fields);
-        let (grid, per_slip) = (&problem.rail.grid, problem.wear_per_slip());
+        let (grid, per_slip) = (&problem.operators.grid, problem.wear_per_slip());
         for (strip, rates) in wear_rate.chunks_exact_mut(grid.cells).enumerate() {
             for (rate, place) in rates.iter_mut().zip(grid.row(strip)) {
                 let (speed, change) = (
@@ -289,7 +289,11 @@ impl<'a> Linearisation<'a> {
             ..
         } = &mut *self.scratch;
         let (problem, fields) = (&self.problem, self.fields);
-        let (parameters, scale, grid) = (problem.parameters, problem.rail.scales.pressure, &problem.rail.grid);
+        let (parameters, scale, grid) = (
+            problem.parameters,
+            problem.operators.scales.pressure,
+            &problem.operators.grid,
+        );
         let rise = problem.wheel_rise(fields.wheel_temperature);
         let rise_change = match parameters.wheel_heating {
             WheelHeating::Off => 0.0,
@@ -329,7 +333,7 @@ impl<'a> Linearisation<'a> {
     /// The rim's temperature.
     fn wheel_tangent(&mut self, direction: &Direction) {
         let (problem, fields, tangent) = (&self.problem, self.fields, &mut self.scratch.tangent);
-        let (parameters, force) = (problem.parameters, problem.rail.unit_force());
+        let (parameters, force) = (problem.parameters, problem.operators.unit_force());
         let heat = ContactHeat::new(parameters, force, problem.heated_nodes(fields, fields));
         let changes = problem.heated_nodes(fields, tangent);
         let heat_tangent = ContactHeat::tangent(parameters, force, problem.heated_nodes(fields, fields).zip(changes));
@@ -404,7 +408,7 @@ fn breadth_tangent(problem: &Problem, pressure: &[f64], change: &[f64]) -> f64 {
             .zip(change)
             .map(|(p, change)| p + step * change)
             .collect();
-        extent(problem.rail, &moved).breadth
+        extent(problem.operators, &moved).breadth
     };
     (at(step) - at(-step)) / (2.0 * step)
 }

@@ -46,13 +46,13 @@ pub fn solve(
         .heat_march()
         .start(&before.heat, rise, &mut fields.heat, &mut scratch.heat)?;
     guess(before, (trend, ahead), fields);
-    scratch.iterate.read(problem.rail, fields, &scratch.softness);
+    scratch.iterate.read(problem.operators, fields, &scratch.softness);
     let mut rest = Rest::new(settings.patch_split());
     for iterations in 1..=settings.split.iterations {
         let sweep = tractions::solve(problem, fields, scratch, rest.mechanics_tolerance())?;
         march_wear(problem, before, fields, scratch);
         march_heat(problem, before, fields, scratch)?;
-        scratch.image.read(problem.rail, fields, &scratch.softness);
+        scratch.image.read(problem.operators, fields, &scratch.softness);
         let change = scratch
             .iterate
             .change_to(&scratch.image, settings.split.least_temperature);
@@ -90,7 +90,7 @@ pub fn solve_mechanics(problem: &Problem, fields: &mut PatchFields, scratch: &mu
     for component in 0..2 {
         scratch.before[component].fill(0.0);
     }
-    scratch.iterate.read(problem.rail, fields, &scratch.softness);
+    scratch.iterate.read(problem.operators, fields, &scratch.softness);
     let settings = problem.settings;
     let tolerance = settings.patch.tolerance;
     let mut residual = f64::INFINITY;
@@ -120,7 +120,7 @@ fn start(problem: &Problem, fields: &PatchFields, scratch: &mut Scratch) {
     scratch.friction.start_step();
     scratch.anderson.restart();
     scratch.softness.fill(0.0);
-    let grid = &problem.rail.grid;
+    let grid = &problem.operators.grid;
     scratch.contact.list(grid, |place| fields.pressure[place] > 0.0);
     let strips = scratch.contact.window(grid, 0).strips.len();
     tractions::respond(
@@ -157,11 +157,11 @@ fn guess(before: &PatchFields, (trend, ahead): (&PatchTrend, f64), fields: &mut 
 
 /// (24), and how much softer the contact is by the wear of the step.
 fn march_wear(problem: &Problem, before: &PatchFields, fields: &mut PatchFields, scratch: &mut Scratch) {
-    let rail = problem.rail;
-    let grid = &rail.grid;
-    let per_slip = problem.parameters.wear_coefficient * rail.scales.pressure;
+    let operators = problem.operators;
+    let grid = &operators.grid;
+    let per_slip = problem.parameters.wear_coefficient * operators.scales.pressure;
     let speed = problem.conditions.motion.rolling_speed.abs();
-    let own = CellStep::new(1.0 / problem.conditions.duration, grid.length, speed).own / rail.scales.displacement;
+    let own = CellStep::new(1.0 / problem.conditions.duration, grid.length, speed).own / operators.scales.displacement;
     let mut fastest = 0.0_f64;
     for strip in 0..grid.strips {
         for cell in 0..grid.cells {
@@ -172,7 +172,7 @@ fn march_wear(problem: &Problem, before: &PatchFields, fields: &mut PatchFields,
         }
     }
     let soft = per_slip * own * fastest
-        > problem.settings.softening.explicit * problem.settings.patch.least_compliance * rail.approach.own;
+        > problem.settings.softening.explicit * problem.settings.patch.least_compliance * operators.approach.own;
     for place in 0..grid.len() {
         let slip = coulomb::magnitude([fields.slip[0][place], fields.slip[1][place]]);
         scratch.softness[place] = if soft { per_slip * own * slip } else { 0.0 };
@@ -216,7 +216,7 @@ fn march_heat(problem: &Problem, before: &PatchFields, fields: &mut PatchFields,
 fn warm_wheel(problem: &Problem, before: &PatchFields, fields: &mut PatchFields) {
     let heat = ContactHeat::new(
         problem.parameters,
-        problem.rail.unit_force(),
+        problem.operators.unit_force(),
         problem.heated_nodes(fields, fields),
     );
     fields.wheel_temperature = rim::temperature(
@@ -231,7 +231,7 @@ fn warm_wheel(problem: &Problem, before: &PatchFields, fields: &mut PatchFields)
 /// Friction coefficient and shear at the final temperature: the friction power of the fields is, to round-off, the one that
 /// has heated rail and wheel.
 fn close_friction(problem: &Problem, fields: &mut PatchFields, contact: &Contact) {
-    let grid = &problem.rail.grid;
+    let grid = &problem.operators.grid;
     let law = problem.friction();
     let of_slip = problem.path_law().is_some();
     for run in contact.runs() {
@@ -274,12 +274,13 @@ fn finish(problem: &Problem, before: &PatchFields, fields: &mut PatchFields, scr
 /// The displacement of the fields at the end of the step, and its change.
 fn close_displacement(problem: &Problem, fields: &mut PatchFields, scratch: &mut Scratch) {
     // The displacement that does not come from shear is that which the tractions have felt.
-    let rail = problem.rail;
-    let window = Window::whole(&rail.grid);
+    let operators = problem.operators;
+    let window = Window::whole(&operators.grid);
     let [x, y] = &mut scratch.lift;
     let load = [&fields.shear[0][..], &fields.shear[1][..]];
-    rail.transform
-        .apply(&rail.displacement, &window, load, [x, y], &mut scratch.products);
+    operators
+        .transform
+        .apply(&operators.displacement, &window, load, [x, y], &mut scratch.products);
     for component in 0..2 {
         let parts = scratch.given[component]
             .iter()
@@ -298,7 +299,7 @@ fn close_displacement(problem: &Problem, fields: &mut PatchFields, scratch: &mut
 /// Whether the contact is held within its window. Under a load that the window was made for it may be: a wheel that spins on the
 /// spot digs a groove that no window holds. A load beyond that, by a penetration that is given, is an error.
 fn fills_window(problem: &Problem, fields: &PatchFields, scratch: &Scratch) -> Result<bool> {
-    let grid = &problem.rail.grid;
+    let grid = &problem.operators.grid;
     let places = (0..grid.strips).flat_map(|strip| grid.row(strip));
     let overlap = problem.settings.mechanics.overlap;
     let in_contact = scratch.contact.cells() > 0;
@@ -310,7 +311,7 @@ fn fills_window(problem: &Problem, fields: &PatchFields, scratch: &Scratch) -> R
         && places.into_iter().any(|place| {
             !normal::is_free(grid, place) && scratch.normal.separation[place] < -overlap || at_side(place)
         });
-    let load = problem.rail.unit_force() * fields.pressure.iter().sum::<f64>();
+    let load = problem.operators.unit_force() * fields.pressure.iter().sum::<f64>();
     if cut_off && load > problem.parameters.largest_load * (1.0 + 1e-9) {
         return Err(Error::ContactLeavesWindow {
             half_width: grid.half_length(),

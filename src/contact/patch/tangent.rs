@@ -8,8 +8,8 @@ use super::coupling::Coupling;
 use super::expansion;
 use super::fields::PatchFields;
 use super::memory;
+use super::operators::PatchOperators;
 use super::problem::{Problem, SlipWeights, rigid_slip};
-use super::rail::PatchRail;
 use super::response;
 use super::scratch::PathScratch;
 use crate::body::influence::{self, Window};
@@ -76,15 +76,15 @@ pub struct Tangent {
 
 impl Tangent {
     /// For a rail.
-    pub fn new(rail: &PatchRail, settings: &Settings) -> Tangent {
-        let (grid, transform) = (&rail.grid, &rail.transform);
+    pub fn new(operators: &PatchOperators, settings: &Settings) -> Tangent {
+        let (grid, transform) = (&operators.grid, &operators.transform);
         let on_grid = || vec![0.0; grid.len()];
         let vectors = || [on_grid(), on_grid()];
         Tangent {
             contact: Contact::new(grid),
             normal: Normal::new(grid, transform, settings.patch),
             friction: Friction::new(grid, transform, settings.patch),
-            response: response::none(rail),
+            response: response::none(operators),
             products: transform.scratch(),
             weights: SlipWeights {
                 strain: 0.0,
@@ -118,10 +118,15 @@ impl Tangent {
     /// # Errors
     /// [`crate::error::Error::SingularContactMatrix`].
     pub fn linearise(&mut self, problem: &Problem, fields: &PatchFields) -> Result<()> {
-        let (rail, grid) = (problem.rail, &problem.rail.grid);
+        let (operators, grid) = (problem.operators, &problem.operators.grid);
         self.contact.list(grid, |place| fields.pressure[place] > 0.0);
         self.weights = problem.slip_weights(problem.transient(fields));
-        response::adapt(problem, &self.weights, problem.rail.grid.strips, &mut self.response);
+        response::adapt(
+            problem,
+            &self.weights,
+            problem.operators.grid.strips,
+            &mut self.response,
+        );
         self.soften(problem, fields);
         self.separate(problem, fields);
         let ahead = leading(problem);
@@ -154,7 +159,9 @@ impl Tangent {
                 self.separation[place.wrapping_add_signed(ahead)],
                 fields.pressure[place],
             );
-            self.edge[index] = rail.opening.map(|factor| self.weights.strain_speed * factor * opening);
+            self.edge[index] = operators
+                .opening
+                .map(|factor| self.weights.strain_speed * factor * opening);
         }
         let own = f64::from(self.response.own[0][self.response.origin]);
         // At rest without a step before there is the law for the slip ahead, and no response to it.
@@ -184,23 +191,23 @@ impl Tangent {
         if problem.conditions.duration <= 0.0 {
             return;
         }
-        let (rail, speed) = (problem.rail, problem.conditions.motion.rolling_speed.abs());
-        let own = CellStep::new(1.0 / problem.conditions.duration, rail.grid.length, speed).own;
-        let per_slip = problem.wear_per_slip() * own / rail.scales.displacement;
-        for place in self.contact.places(&rail.grid) {
+        let (operators, speed) = (problem.operators, problem.conditions.motion.rolling_speed.abs());
+        let own = CellStep::new(1.0 / problem.conditions.duration, operators.grid.length, speed).own;
+        let per_slip = problem.wear_per_slip() * own / operators.scales.displacement;
+        for place in self.contact.places(&operators.grid) {
             self.softness[place] = per_slip * fields.slip[0][place].hypot(fields.slip[1][place]);
         }
     }
 
     /// The separation of the cells.
     fn separate(&mut self, problem: &Problem, fields: &PatchFields) {
-        let (rail, grid) = (problem.rail, &problem.rail.grid);
+        let (operators, grid) = (problem.operators, &problem.operators.grid);
         self.lift_by_shear(problem, &fields.shear);
         for strip in 0..grid.strips {
             for (cell, place) in grid.row(strip).enumerate() {
                 let index = strip * grid.cells + cell;
-                self.gap[place] = rail.gap[place] + fields.wear.depth[index] / rail.scales.displacement
-                    - rail.expansion.bulge * fields.heat.content[index]
+                self.gap[place] = operators.gap[place] + fields.wear.depth[index] / operators.scales.displacement
+                    - operators.expansion.bulge * fields.heat.content[index]
                     - self.lift[0][place];
             }
         }
@@ -212,12 +219,13 @@ impl Tangent {
 
     /// Lift by the given shear, or its change, scaled, on the grid; 0 for like bodies.
     pub fn lift_by_shear(&mut self, problem: &Problem, shear: &[Vec<f64>; 2]) -> &[f64] {
-        let rail = problem.rail;
-        if let Some(tables) = &rail.coupling {
+        let operators = problem.operators;
+        if let Some(tables) = &operators.coupling {
             let [lift, ignored] = &mut self.lift;
             let load = [&shear[0][..], &shear[1][..]];
-            let window = Window::whole(&rail.grid);
-            rail.transform
+            let window = Window::whole(&operators.grid);
+            operators
+                .transform
                 .apply(tables, &window, load, [lift, ignored], &mut self.products);
         }
         &self.lift[0]
@@ -236,7 +244,7 @@ impl Tangent {
         tangent: &mut PatchFields,
         tolerance: f64,
     ) -> Result<()> {
-        let (rail, grid) = (problem.rail, &problem.rail.grid);
+        let (operators, grid) = (problem.operators, &problem.operators.grid);
         let law = problem.friction();
         for strip in 0..grid.strips {
             for (cell, place) in grid.row(strip).enumerate() {
@@ -257,14 +265,14 @@ impl Tangent {
                 tangent.friction[place] = if touches { resting } else { 0.0 };
             }
         }
-        let total = direction.inputs.normal_load / rail.unit_force();
+        let total = direction.inputs.normal_load / operators.unit_force();
         let constraint = match problem.constraint() {
             Constraint::Total(_) => Constraint::Total(total),
             Constraint::Penetration(_) => Constraint::Penetration(0.0),
         };
         let size = [
             largest(&tangent.pressure),
-            largest(&self.gap) / rail.approach.own,
+            largest(&self.gap) / operators.approach.own,
             total.abs() / self.contact.cells() as f64,
         ];
         let size = size.into_iter().fold(LEAST_CHANGE, f64::max);
@@ -316,12 +324,12 @@ impl Tangent {
         if !noise.is_finite() {
             return 0.0;
         }
-        let (kernel, origin) = (&problem.rail.own[0], self.response.origin);
+        let (kernel, origin) = (&problem.operators.own[0], self.response.origin);
         let weights = problem.slip_weights_tangent(fields, direction.speed);
         let next = kernel[origin.wrapping_add_signed(leading(problem))];
         let own_change = weights.strain * (kernel[origin] - next) + weights.change * kernel[origin];
         let own = f64::from(self.response.own[0][origin]);
-        let places = self.contact.places(&problem.rail.grid);
+        let places = self.contact.places(&problem.operators.grid);
         let peak = places.max_by(|a, b| fields.pressure[*a].total_cmp(&fields.pressure[*b]));
         let pressure = peak.map_or(0.0, |place| pressure[place] / fields.pressure[place]);
         noise * (own_change / own + pressure)
@@ -339,7 +347,7 @@ impl Tangent {
             let changes = (self.normal.separation[next], tangent.pressure[place]);
             let change = strain_speed * problem.opening(gap, pressure)
                 + self.weights.strain_speed * problem.opening_tangent((gap, pressure), changes);
-            self.edge_change[index] = problem.rail.opening.map(|factor| factor * change);
+            self.edge_change[index] = problem.operators.opening.map(|factor| factor * change);
         }
     }
 
@@ -351,16 +359,21 @@ impl Tangent {
         (direction, iterate): (&Direction, &Coupling),
         pressure: &[f64],
     ) {
-        let (rail, grid) = (problem.rail, &problem.rail.grid);
+        let (operators, grid) = (problem.operators, &problem.operators.grid);
         self.given.iter_mut().for_each(|component| component.fill(0.0));
-        if let Some(tables) = &rail.coupling {
+        if let Some(tables) = &operators.coupling {
             let [x, y] = &mut self.given;
             let load = [pressure, &self.nothing[..]];
             let window = Window::whole(grid);
-            rail.transform.apply(tables, &window, load, [x, y], &mut self.products);
+            operators
+                .transform
+                .apply(tables, &window, load, [x, y], &mut self.products);
         }
         let heat = &mut self.expansion;
-        if rail.expansion.displace(grid, &rail.transform, iterate.lift(), heat) {
+        if operators
+            .expansion
+            .displace(grid, &operators.transform, iterate.lift(), heat)
+        {
             for (given, by_heat) in self.given.iter_mut().zip(&heat.displacement) {
                 add_multiple(by_heat, 1.0, given);
             }
@@ -385,7 +398,7 @@ impl Tangent {
 
     /// The change of the slip at the centres of the cells.
     fn mean_slip(&self, problem: &Problem, fields: &PatchFields, tangent: &mut PatchFields) {
-        let grid = &problem.rail.grid;
+        let grid = &problem.operators.grid;
         let behind = -leading(problem);
         for run in self.contact.runs() {
             for (index, place) in run.own().zip(run.places(grid)) {
@@ -411,7 +424,7 @@ fn leading(problem: &Problem) -> isize {
 /// The leading cell of a run among all cells, and its place.
 fn leading_cell(problem: &Problem, run: &crate::mechanics::patch::contact::Run) -> (usize, usize) {
     let last = if problem.is_forward() { run.cells - 1 } else { 0 };
-    (run.offset + last, run.places(&problem.rail.grid).start + last)
+    (run.offset + last, run.places(&problem.operators.grid).start + last)
 }
 
 fn normal_problem<'a>(
@@ -422,9 +435,9 @@ fn normal_problem<'a>(
     tolerance: f64,
 ) -> NormalProblem<'a> {
     NormalProblem {
-        grid: &problem.rail.grid,
-        transform: &problem.rail.transform,
-        approach: &problem.rail.approach,
+        grid: &problem.operators.grid,
+        transform: &problem.operators.transform,
+        approach: &problem.operators.approach,
         gap,
         softness,
         constraint,
@@ -447,8 +460,8 @@ fn friction_problem<'a>(
     slip: &'a [Vec<f64>; 2],
 ) -> FrictionProblem<'a> {
     FrictionProblem {
-        grid: &problem.rail.grid,
-        transform: &problem.rail.transform,
+        grid: &problem.operators.grid,
+        transform: &problem.operators.transform,
         contact,
         response,
         edge,

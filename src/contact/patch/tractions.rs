@@ -20,7 +20,7 @@ use crate::numerics::dense::{add_multiple, largest, largest_change};
 
 /// Adapts the response of the slip to speed and step.
 pub fn respond(problem: &Problem, weights: SlipWeights, strips: usize, scratch: &mut Scratch) {
-    scratch.strips = problem.rail.transform_for(strips).0.strips();
+    scratch.strips = problem.operators.transform_for(strips).0.strips();
     let conditions = (weights, problem.is_forward(), scratch.strips);
     if scratch.weights == Some(conditions) {
         return;
@@ -32,7 +32,7 @@ pub fn respond(problem: &Problem, weights: SlipWeights, strips: usize, scratch: 
 /// (31): pressure for the shear there is, then friction for that pressure.
 pub fn solve(problem: &Problem, fields: &mut PatchFields, scratch: &mut Scratch, tolerance: f64) -> Result<Sweep> {
     if problem.constraint() == Constraint::Total(0.0) {
-        scratch.contact.list(&problem.rail.grid, |_| false);
+        scratch.contact.list(&problem.operators.grid, |_| false);
         lift(problem, fields, scratch);
         return Ok(Sweep::NONE);
     }
@@ -76,14 +76,15 @@ fn lift(problem: &Problem, fields: &mut PatchFields, scratch: &mut Scratch) {
 
 /// (37). Returns whether other cells are under pressure than before.
 fn solve_normal(problem: &Problem, fields: &mut PatchFields, scratch: &mut Scratch, tolerance: f64) -> Result<bool> {
-    let rail = problem.rail;
-    let grid = &rail.grid;
-    let coupled = match &rail.coupling {
+    let operators = problem.operators;
+    let grid = &operators.grid;
+    let coupled = match &operators.coupling {
         Some(tables) => {
             let window = Window::whole(grid);
             let [lift, ignored] = &mut scratch.lift;
             let load = [&fields.shear[0][..], &fields.shear[1][..]];
-            rail.transform
+            operators
+                .transform
                 .apply(tables, &window, load, [lift, ignored], &mut scratch.products);
             true
         }
@@ -93,15 +94,15 @@ fn solve_normal(problem: &Problem, fields: &mut PatchFields, scratch: &mut Scrat
         for cell in 0..grid.cells {
             let (place, index) = (grid.place(strip, cell), strip * grid.cells + cell);
             let lift = scratch.iterate.lift()[index] + if coupled { scratch.lift[0][place] } else { 0.0 };
-            scratch.gap[place] = rail.gap[place] + scratch.iterate.wear()[index] - lift;
+            scratch.gap[place] = operators.gap[place] + scratch.iterate.wear()[index] - lift;
         }
     }
     std::mem::swap(&mut scratch.contact, &mut scratch.contact_before);
     let solved = scratch.normal.solve(
         &NormalProblem {
             grid,
-            transform: &rail.transform,
-            approach: &rail.approach,
+            transform: &operators.transform,
+            approach: &operators.approach,
             gap: &scratch.gap,
             softness: &scratch.softness,
             constraint: problem.constraint(),
@@ -116,8 +117,8 @@ fn solve_normal(problem: &Problem, fields: &mut PatchFields, scratch: &mut Scrat
 
 /// (10), (30) for given pressure, and the slip that follows.
 fn solve_friction(problem: &Problem, fields: &mut PatchFields, scratch: &mut Scratch, tolerance: f64) -> Result<()> {
-    let rail = problem.rail;
-    let grid = &rail.grid;
+    let operators = problem.operators;
+    let grid = &operators.grid;
     let weights = problem.slip_weights(problem.transient(fields));
     let strips = scratch.contact.window(grid, 0).strips.len();
     if strips > scratch.strips {
@@ -156,7 +157,7 @@ fn solve_friction(problem: &Problem, fields: &mut PatchFields, scratch: &mut Scr
             scratch.edge[index] = if k == leading {
                 let gap = scratch.normal.separation[place.wrapping_add_signed(ahead)];
                 let ratio = problem.opening(gap, fields.pressure[place]);
-                rail.opening.map(|factor| weights.strain_speed * factor * ratio)
+                operators.opening.map(|factor| weights.strain_speed * factor * ratio)
             } else {
                 [0.0; 2]
             };
@@ -181,7 +182,7 @@ fn solve_friction(problem: &Problem, fields: &mut PatchFields, scratch: &mut Scr
     } else {
         let friction_problem = FrictionProblem {
             grid,
-            transform: rail.transform_for(scratch.strips).0,
+            transform: operators.transform_for(scratch.strips).0,
             contact: &scratch.contact,
             response: &scratch.response,
             edge: &scratch.edge,
@@ -233,8 +234,8 @@ fn keep_within_bounds(grid: &Grid, contact: &Contact, bound: &[f64], fields: &mu
 
 /// The slip ahead of the cells without the response to their shear.
 fn free_slip(problem: &Problem, weights: &SlipWeights, fields: &PatchFields, scratch: &mut Scratch) {
-    let rail = problem.rail;
-    let grid = &rail.grid;
+    let operators = problem.operators;
+    let grid = &operators.grid;
     given_displacement(problem, fields, scratch);
     let ahead: isize = if problem.is_forward() { 1 } else { -1 };
     let half = 0.5 * ahead as f64 * grid.length;
@@ -257,15 +258,15 @@ fn free_slip(problem: &Problem, weights: &SlipWeights, fields: &PatchFields, scr
 
 /// The displacement that does not come from shear: by pressure where the bodies differ, and by heat.
 fn given_displacement(problem: &Problem, fields: &PatchFields, scratch: &mut Scratch) {
-    let rail = problem.rail;
-    let grid = &rail.grid;
+    let operators = problem.operators;
+    let grid = &operators.grid;
     let window = Window::whole(grid);
     for component in &mut scratch.given {
         component.fill(0.0);
     }
-    if let Some(tables) = &rail.coupling {
+    if let Some(tables) = &operators.coupling {
         let [x, y] = &mut scratch.given;
-        rail.transform.apply(
+        operators.transform.apply(
             tables,
             &window,
             [&fields.pressure, &scratch.nothing],
@@ -274,9 +275,9 @@ fn given_displacement(problem: &Problem, fields: &PatchFields, scratch: &mut Scr
         );
     }
     let heat = &mut scratch.expansion;
-    if rail
+    if operators
         .expansion
-        .displace(grid, &rail.transform, scratch.iterate.lift(), heat)
+        .displace(grid, &operators.transform, scratch.iterate.lift(), heat)
     {
         for (given, by_heat) in scratch.given.iter_mut().zip(&heat.displacement) {
             add_multiple(by_heat, 1.0, given);
@@ -291,7 +292,7 @@ fn slide_on_the_spot(
     (contact, bound, free_slip): (&Contact, &mut [f64], &[Vec<f64>; 2]),
     fields: &mut PatchFields,
 ) {
-    let grid = &problem.rail.grid;
+    let grid = &problem.operators.grid;
     let epsilon = problem.parameters.slip_regularisation;
     for run in contact.runs() {
         for (k, (index, place)) in run.own().zip(run.places(grid)).enumerate() {
@@ -328,7 +329,7 @@ fn slide_on_the_spot(
 
 /// The slip at the centres of the cells, the mean of that ahead and that behind: it heats, wears and takes power.
 fn mean_slip(problem: &Problem, fields: &mut PatchFields, scratch: &mut Scratch) {
-    let grid = &problem.rail.grid;
+    let grid = &problem.operators.grid;
     let moves = f64::from(scratch.response.own[0][scratch.response.origin]) != 0.0;
     let behind: isize = if problem.is_forward() { -1 } else { 1 };
     for component in &mut fields.slip {

@@ -371,7 +371,7 @@ pub fn is_free(grid: &Grid, place: usize) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::contact::patch::rail::PatchRail;
+    use crate::contact::patch::operators::PatchOperators;
     use crate::parameters::{ContactModel, Parameters};
     use crate::settings::Settings;
 
@@ -382,7 +382,7 @@ mod tests {
             contact_model: ContactModel::Patch,
             ..Parameters::default()
         };
-        let rail = PatchRail::new(&parameters).unwrap();
+        let rail = PatchOperators::new(&parameters).unwrap();
         let grid = &rail.grid;
         let mut normal = Normal::new(grid, &rail.transform, Settings::default().patch);
         let mut contact = Contact::new(grid);
@@ -425,7 +425,7 @@ mod tests {
             contact_model: ContactModel::Patch,
             ..Parameters::default()
         };
-        let rail = PatchRail::new(&parameters).unwrap();
+        let rail = PatchOperators::new(&parameters).unwrap();
         let grid = &rail.grid;
         let mut settings = Settings::default().patch;
         settings.normal_passes = 0;

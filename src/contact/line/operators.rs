@@ -11,7 +11,7 @@ use crate::mechanics::front::NearField;
 use crate::parameters::Parameters;
 
 /// The rail and the wheel's profile, built at initialisation.
-pub struct Rail {
+pub struct LineOperators {
     /// Triangulation.
     pub mesh: Mesh,
     /// Units of the contact problem.
@@ -29,12 +29,12 @@ pub struct Rail {
     pub profile: Vec<f64>,
 }
 
-impl Rail {
+impl LineOperators {
     /// Mesh, compliance, thermal maps.
     ///
     /// # Errors
     /// [`crate::error::Error::StiffnessNotPositiveDefinite`], [`crate::error::Error::DepthBasis`].
-    pub fn new(parameters: &Parameters) -> Result<Rail> {
+    pub fn new(parameters: &Parameters) -> Result<LineOperators> {
         let mesh = Mesh::new(parameters);
         let scales = Scales::new(parameters);
         let (mut compliance, thermal) = pair::build(&mesh, parameters, &scales)?;
@@ -57,7 +57,7 @@ impl Rail {
                 -x * x / (r0 + (r0 * r0 - x * x).sqrt()) / scales.displacement
             })
             .collect();
-        Ok(Rail {
+        Ok(LineOperators {
             mesh,
             scales,
             compliance,

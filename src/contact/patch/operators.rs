@@ -27,7 +27,7 @@ const NARROW: [f64; 3] = [0.35, 0.55, 0.76];
 const RELAXATION_SHARE: f64 = 0.6;
 
 /// The rail and the wheel's profile, built at initialisation.
-pub struct PatchRail {
+pub struct PatchOperators {
     /// The cells.
     pub grid: Grid,
     /// Units of the contact problem.
@@ -62,12 +62,12 @@ pub struct PatchRail {
     pub relaxation_length: f64,
 }
 
-impl PatchRail {
+impl PatchOperators {
     /// Grid, influence, depth modes.
     ///
     /// # Errors
     /// [`crate::error::Error::DepthBasis`].
-    pub fn new(parameters: &Parameters) -> Result<PatchRail> {
+    pub fn new(parameters: &Parameters) -> Result<PatchOperators> {
         let (half_length, half_breadth) = parameters.patch_window();
         let grid = Grid::new(
             parameters.patch_nodes,
@@ -148,7 +148,7 @@ impl PatchRail {
             FIRST_DEPTH * 40.0 / depths as f64,
         );
         let basis = DepthBasis::new(&mesh.depth)?;
-        Ok(PatchRail {
+        Ok(PatchOperators {
             approach: Approach::new(&grid, &transform, normal),
             displacement: transform.tables(along, mixed, across),
             narrow: narrow
