@@ -10,6 +10,7 @@
 #   make test    formatting, lints, order of the modules, documentation, all Rust tests, `wheelrail verify`, all Python tests
 #   make test-debug  the Rust tests in the debug build: overflow and debug assertions are checked
 #   make soak [MINUTES=60] [SEED=7]  random tests drawn anew, round after round; a seed draws one of them again
+#   make bits BEFORE=<revision>  what the component computes, to the bit, against that of another revision of git
 #   make description  the XML files in modelDescription/, after a change of a variable
 #   make docs    the generated tables and pictures of README.md and of the documentation
 #   make site    the documentation as a site: target/site/index.html
@@ -49,7 +50,7 @@ install = $(PY) -m uv pip install --quiet --python $(PY) -r $(1) \
 COUPLINGS := longitudinal stiff multibody train sweep hunting adhesion maintenance
 WHEELSET := target/Wheelset.fmu
 
-.PHONY: fmu fmu3 platforms wheel demo measurements measurements-docs test test-debug soak docs site bench clean lint rust-test verify python-test hosts library command couplings packages
+.PHONY: fmu fmu3 platforms wheel demo measurements measurements-docs test test-debug soak bits docs site bench clean lint rust-test verify python-test hosts library command couplings packages
 .PHONY: pytest couplings-set-up couplings-docs sweep-scaling description $(addprefix coupling-,$(COUPLINGS))
 
 # ---- set-up -------------------------------------------------------------------------------------------------------
@@ -215,6 +216,12 @@ test-debug:
 soak: fmu fmu3 $(VENV)/ready
 	$(call say,Random tests - new in every round)
 	@$(PY) tools/soak.py $(if $(MINUTES),--minutes $(MINUTES)) $(if $(SEED),--seed $(SEED)) -- --target $(PORTABLE) --glibc $(GLIBC)
+
+# After a change that is to leave the results as they are. LEAVE_OUT=state where what is saved has changed alone.
+bits: fmu $(VENV)/ready
+	@: $(or $(BEFORE),$(error which revision of git to compare with: make bits BEFORE=main))
+	$(call say,The same bits as $(BEFORE))
+	@$(PY) tools/bits.py revision $(BEFORE) $(FMU) $(addprefix --leave-out ,$(LEAVE_OUT)) -- --target $(PORTABLE) --glibc $(GLIBC)
 
 # target/verification.txt is what the tables of the documentation are made of and compared with.
 verify: command
