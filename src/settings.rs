@@ -25,6 +25,8 @@ pub struct Settings {
     pub sensitivity: SensitivitySettings,
     /// The mechanics of the patch.
     pub patch: PatchSettings,
+    /// The interface vector of hard steps, and the linear systems of its changes.
+    pub interface: InterfaceSettings,
 }
 
 /// How a step is divided into sub-steps.
@@ -176,6 +178,9 @@ pub struct SensitivitySettings {
     pub accelerate_after: usize,
     /// Change of the tangents, relative to the largest, at which the linear split rests.
     pub tolerance: f64,
+    /// Residual of the linear system, relative to its right-hand side, above which it counts as not solved: what round-off leaves may be
+    /// more than `tolerance`.
+    pub largest_residual: f64,
     /// Relative step of the central difference of the outputs along the tangent of the fields. The outputs are sums,
     /// products and ratios of the fields: truncation is 1e-14, round-off 1e-9.
     pub output_step: f64,
@@ -299,6 +304,7 @@ impl Default for SensitivitySettings {
             iterations: 400,
             accelerate_after: 6,
             tolerance: 1e-9,
+            largest_residual: 1e-6,
             output_step: 1e-7,
             linear_output_step: 1e-5,
             least_output_step: 1e-9,
@@ -482,4 +488,52 @@ pub(crate) mod limits {
             settings.heat.rim_iterations = limit;
         }),
     ];
+}
+
+/// The interface vector of hard steps by Newton's method, and the linear systems of its changes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct InterfaceSettings {
+    /// Iterations of the fixed point after which Newton's method takes over: a step that contracts is done by then.
+    pub fixed_point_iterations: usize,
+    /// Limit of the Newton steps.
+    pub newton_steps: usize,
+    /// Change of the interface vector at which they end, in tolerances of the split: the sweep that closes the step adds to it.
+    pub newton_margin: f64,
+    /// Residual of the linear system of a Newton step, relative to the right-hand side.
+    pub newton_krylov_tolerance: f64,
+    /// Limit of the halvings of a Newton step.
+    pub halvings: usize,
+    /// Share of the decrease that the linear system predicts which must be there for a step to be taken.
+    pub descent: f64,
+    /// Limit of the solutions of the mechanics for one interface vector: nodes under pressure may change in each.
+    pub mechanics_sweeps: usize,
+    /// Change of the shear at which they end, relative to the peak pressure.
+    pub mechanics_tolerance: f64,
+    /// Limit of the Krylov iterations of one linear system in single precision.
+    pub krylov_iterations: usize,
+    /// The smallest residual that is asked of it: round-off of single precision.
+    pub krylov_tolerance: f64,
+    /// Limit of the corrections in single precision to a solution in double precision.
+    pub refinements: usize,
+    /// Ratio of two residuals above which round-off has been reached.
+    pub least_refinement: f64,
+}
+
+impl Default for InterfaceSettings {
+    fn default() -> Self {
+        InterfaceSettings {
+            fixed_point_iterations: 20,
+            newton_steps: 40,
+            newton_margin: 0.3,
+            newton_krylov_tolerance: 1e-3,
+            halvings: 8,
+            descent: 1e-4,
+            mechanics_sweeps: 30,
+            mechanics_tolerance: 1e-11,
+            krylov_iterations: 60,
+            krylov_tolerance: 1e-5,
+            refinements: 8,
+            least_refinement: 0.5,
+        }
+    }
 }

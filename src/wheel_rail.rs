@@ -1,14 +1,14 @@
 //! The stepped model: inputs in, state advanced, outputs out. It knows nothing of FMI.
 
 #[cfg(feature = "verification")]
-use crate::contact::line::fields::Fields;
+use crate::contact::line::fields::LineFields;
 use crate::contact::line::operators::LineOperators;
 #[cfg(feature = "verification")]
 use crate::contact::patch::fields::PatchFields;
 #[cfg(feature = "verification")]
 use crate::contact::patch::operators::PatchOperators;
-use crate::contact::task::{Conditions, Task};
-use crate::contact::{ContactState, ContactWorkspace, Engine};
+use crate::contact::problem::{Conditions, Task};
+use crate::contact::{ContactState, ContactWorkspace, Operators};
 use crate::error::{Error, Result};
 use crate::friction;
 use crate::numerics::dense;
@@ -17,15 +17,15 @@ use crate::settings::Settings;
 use crate::signals::{Inputs, Motion, OUTPUTS, Outputs};
 use serde::{Deserialize, Serialize};
 
+pub use crate::contact::problem::Convergence;
 pub use crate::contact::profiles::{ContactNode, DEPTH_POINTS, PROFILE_POINTS, Profiles, STRIP_POINTS, StripProfiles};
-pub use crate::contact::task::Convergence;
 
 /// Everything that does not change after initialisation: the contact engine, the parameters (but for the tunable ones), the
 /// limits of the methods.
 pub struct Model {
     parameters: Parameters,
     settings: Settings,
-    engine: Engine,
+    operators: Operators,
 }
 
 /// Scratch of a step. What a step leaves in it changes no result of another one.
@@ -58,7 +58,7 @@ impl State {
     /// # Errors
     /// [`Error::OtherContactModel`].
     #[cfg(feature = "verification")]
-    pub(crate) fn fields(&self) -> Result<&Fields> {
+    pub(crate) fn fields(&self) -> Result<&LineFields> {
         Ok(&self.contact.line()?.fields)
     }
 
@@ -98,11 +98,11 @@ impl Model {
     /// As [`Model::new`].
     pub fn with_settings(parameters: Parameters, settings: Settings) -> Result<Model> {
         parameters.validate()?;
-        let engine = Engine::new(&parameters)?;
+        let operators = Operators::new(&parameters)?;
         Ok(Model {
             parameters,
             settings,
-            engine,
+            operators,
         })
     }
 
@@ -124,7 +124,7 @@ impl Model {
     /// # Errors
     /// [`Error::OtherContactModel`].
     pub(crate) fn line_operators(&self) -> Result<&LineOperators> {
-        Ok(self.engine.line()?.operators())
+        self.operators.line()
     }
 
     /// What the patch engine has computed once: grid, influence functions, depth modes.
@@ -133,7 +133,7 @@ impl Model {
     /// [`Error::OtherContactModel`].
     #[cfg(feature = "verification")]
     pub(crate) fn patch_operators(&self) -> Result<&PatchOperators> {
-        Ok(self.engine.patch()?.operators())
+        self.operators.patch()
     }
 
     /// Takes the tunable parameters (slip regularisation and friction coefficients) from `parameters`; the others stay.
@@ -151,7 +151,7 @@ impl Model {
     /// Scratch for [`Model::step`].
     pub fn workspace(&self) -> Workspace {
         Workspace {
-            contact: self.engine.workspace(&self.settings),
+            contact: self.operators.workspace(&self.settings),
         }
     }
 
@@ -163,8 +163,8 @@ impl Model {
     pub fn initial_state(&self, workspace: &mut Workspace, inputs: &Inputs) -> Result<State> {
         inputs.check(&self.parameters)?;
         let task = self.task(inputs, f64::INFINITY);
-        let (contact, readings) = self.engine.initial_state(&task, &mut workspace.contact)?;
-        let outputs = readings.outputs(&self.parameters, inputs);
+        let (contact, integrals) = self.operators.initial_state(&task, &mut workspace.contact)?;
+        let outputs = integrals.outputs(&self.parameters, inputs);
         Ok(State {
             time: 0.0,
             inputs: *inputs,
@@ -178,7 +178,7 @@ impl Model {
 
     /// Whether a state (of another source) has the sizes of this model and finite content.
     pub fn accepts(&self, state: &State) -> bool {
-        self.engine.accepts(&state.contact)
+        self.operators.accepts(&state.contact)
             && OUTPUTS.iter().all(|signal| (signal.get)(&state.outputs).is_finite())
             && state.time.is_finite()
             && state.duration >= 0.0
@@ -268,10 +268,10 @@ impl Model {
         duration: f64,
     ) -> Result<Convergence> {
         let task = self.task(inputs, duration);
-        let (convergence, readings) =
-            self.engine
+        let (convergence, integrals) =
+            self.operators
                 .solve(&task, &mut workspace.contact, &state.contact, state.duration)?;
-        let outputs = readings.outputs_after(&self.parameters, &task.conditions, &state.outputs);
+        let outputs = integrals.outputs_after(&self.parameters, &task.conditions, &state.outputs);
         for signal in OUTPUTS {
             let rate = ((signal.get)(&outputs) - (signal.get)(&state.outputs)) / duration;
             (signal.set)(&mut state.output_rates, rate);
@@ -327,7 +327,7 @@ impl Model {
 
     /// Time in which rail material crosses the contact window, `s`; infinite at rest.
     fn passage_time(&self, inputs: &Inputs) -> f64 {
-        self.engine.window_length() / inputs.motion(&self.parameters).rolling_speed.abs()
+        self.operators.window_length() / inputs.motion(&self.parameters).rolling_speed.abs()
     }
 
     /// Rates of change of the outputs at the communication point, per second: over the last sub-step.
@@ -350,7 +350,7 @@ impl Model {
         inputs: impl IntoIterator<Item = usize>,
     ) -> Result<Vec<Outputs>> {
         let task = self.task(&state.inputs, state.duration);
-        self.engine
+        self.operators
             .sensitivities(&task, &mut workspace.contact, &state.contact, inputs)
     }
 
@@ -361,12 +361,12 @@ impl Model {
 
     /// The fields at the nodes of the contact window, from the rear to the front for V > 0.
     pub fn contact_nodes(&self, state: &State) -> Vec<ContactNode> {
-        self.engine.contact_nodes(&state.contact)
+        self.operators.contact_nodes(&state.contact)
     }
 
     /// Profiles for plotting.
     pub fn profiles(&self, state: &State) -> Profiles {
-        self.engine
+        self.operators
             .profiles(&self.task(&state.inputs, state.duration), &state.contact)
     }
 }

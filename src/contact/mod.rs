@@ -1,98 +1,135 @@
 //! The contact of wheel and rail: one implicit step of tractions, temperature and wear.
 //!
-//! An engine resolves the contact: [`mod@line`] along the rail, [`patch`] along and across it. What does not depend on how it
-//! is resolved is shared: the [`task`] of a step, [`resultants`] of the fields, [`outputs`] from them, [`profiles`] for plotting,
-//! the wheel's [`rim`].
-//!
-//! The engines stand side by side in enums, not behind a trait, because their states are serialised.
+//! [`engine`] says what a contact offers, [`mod@line`] and [`patch`] offer it: a contact resolved along the rail, and along and
+//! across it. All else is written once: the [`problem`] of a step, its [`fields`], the [`interface`] vector between mechanics and
+//! heat, the [`step`], [`newton`] for the hard ones, [`sensitivity`] and its [`linear`] system, [`integrals`] of the fields and
+//! [`outputs`] from them, [`profiles`] for plotting, what friction has in [`memory`], the wheel's [`rim`].
 
+pub mod convergence;
+pub mod engine;
+pub mod fields;
+pub mod integrals;
+pub mod interface;
 pub mod line;
+pub mod linear;
+pub mod memory;
+pub mod newton;
 pub mod outputs;
 pub mod patch;
+pub mod problem;
 pub mod profiles;
-pub mod rest;
-pub mod resultants;
 pub mod rim;
-pub mod task;
+pub mod sensitivity;
+pub mod step;
 
 use crate::error::{Error, Result};
 use crate::parameters::{ContactModel, Parameters};
 use crate::settings::Settings;
 use crate::signals::Outputs;
-use line::engine::{Line, LineState, LineWorkspace};
-use outputs::Readings;
-use patch::engine::{Patch, PatchState, PatchWorkspace};
+use engine::Engine;
+use fields::State;
+use integrals::Integrals;
+use line::fields::LineFields;
+use line::operators::LineOperators;
+use patch::fields::PatchFields;
+use patch::operators::PatchOperators;
+use problem::{Convergence, Problem, Task};
 use profiles::{ContactNode, Profiles};
 use serde::{Deserialize, Serialize};
-use task::{Convergence, Task};
+use step::Workspace;
 
-/// What is computed once.
+/// Operators of a contact, computed once.
 #[allow(clippy::large_enum_variant, reason = "there are few, and they are not moved")]
-pub enum Engine {
-    /// A line contact.
-    Line(Line),
-    /// A patch.
-    Patch(Patch),
+pub enum Operators {
+    /// Line contact.
+    Line(LineOperators),
+    /// Patch.
+    Patch(PatchOperators),
 }
 
-/// The fields of a contact, all that a step changes.
+/// State of a contact: its fields, all that a step changes.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[allow(
     clippy::large_enum_variant,
     reason = "there are few, and what they hold is elsewhere"
 )]
 pub enum ContactState {
-    /// Of a line contact.
-    Line(LineState),
-    /// Of a patch.
-    Patch(PatchState),
+    /// Line contact.
+    Line(State<LineFields>),
+    /// Patch.
+    Patch(State<PatchFields>),
 }
 
-/// Scratch of a step.
+/// Solvers and buffers of a step.
 #[allow(clippy::large_enum_variant, reason = "there are few, and they are not moved")]
 pub enum ContactWorkspace {
-    /// Of a line contact.
-    Line(LineWorkspace),
-    /// Of a patch.
-    Patch(PatchWorkspace),
+    /// Line contact.
+    Line(Workspace<LineOperators>),
+    /// Patch.
+    Patch(Workspace<PatchOperators>),
 }
 
-impl Engine {
-    /// Meshes, compliance, thermal maps.
+/// Runs an expression with operators and state, and a workspace where one is given, of the same contact model. Those of different
+/// models make it [`Error::OtherContactModel`].
+macro_rules! with_model {
+    ($operators:expr, $state:expr, |$o:ident, $s:ident| $body:expr) => {
+        match ($operators, $state) {
+            (Operators::Line($o), ContactState::Line($s)) => Ok($body),
+            (Operators::Patch($o), ContactState::Patch($s)) => Ok($body),
+            _ => Err(Error::OtherContactModel),
+        }
+    };
+    ($operators:expr, $workspace:expr, $state:expr, |$o:ident, $w:ident, $s:ident| $body:expr) => {
+        match ($operators, $workspace, $state) {
+            (Operators::Line($o), ContactWorkspace::Line($w), ContactState::Line($s)) => $body,
+            (Operators::Patch($o), ContactWorkspace::Patch($w), ContactState::Patch($s)) => $body,
+            _ => Err(Error::OtherContactModel),
+        }
+    };
+}
+
+impl Operators {
+    /// Computes meshes, compliance, thermal maps.
     ///
     /// # Errors
     /// [`Error::StiffnessNotPositiveDefinite`], [`Error::DepthBasis`].
-    pub fn new(parameters: &Parameters) -> Result<Engine> {
+    pub fn new(parameters: &Parameters) -> Result<Operators> {
         Ok(match parameters.contact_model {
-            ContactModel::Line => Engine::Line(Line::new(parameters)?),
-            ContactModel::Patch => Engine::Patch(Patch::new(parameters)?),
+            ContactModel::Line => Operators::Line(LineOperators::new(parameters)?),
+            ContactModel::Patch => Operators::Patch(PatchOperators::new(parameters)?),
         })
     }
 
-    /// Scratch for the steps.
+    /// Workspace for the steps.
     pub fn workspace(&self, settings: &Settings) -> ContactWorkspace {
         match self {
-            Engine::Line(line) => ContactWorkspace::Line(line.workspace(settings)),
-            Engine::Patch(patch) => ContactWorkspace::Patch(patch.workspace(settings)),
+            Operators::Line(operators) => ContactWorkspace::Line(Workspace::new(operators, settings)),
+            Operators::Patch(operators) => ContactWorkspace::Patch(Workspace::new(operators, settings)),
         }
     }
 
-    /// Rail and wheel at ambient and unworn: mechanics solved, no heat and no wear yet, nothing has come in. With it what its
-    /// outputs are made of.
+    /// State of rail and wheel at ambient and unworn: mechanics solved, no heat and no wear yet, nothing has come in. With it the
+    /// integrals that its outputs are made of.
     ///
     /// # Errors
     /// A solver that did not converge, or [`Error::OtherContactModel`].
-    pub fn initial_state(&self, task: &Task, workspace: &mut ContactWorkspace) -> Result<(ContactState, Readings)> {
+    pub fn initial_state(&self, task: &Task, workspace: &mut ContactWorkspace) -> Result<(ContactState, Integrals)> {
+        fn initial<E: Engine>(
+            operators: &E,
+            task: &Task,
+            workspace: &mut Workspace<E>,
+        ) -> Result<(State<E::Fields>, Integrals)> {
+            let problem = Problem::new(operators, task);
+            let state = step::initial_state(&problem, workspace)?;
+            let integrals = E::integrals(&problem, &state.fields);
+            Ok((state, integrals))
+        }
         match (self, workspace) {
-            (Engine::Line(line), ContactWorkspace::Line(workspace)) => {
-                let state = line.initial_state(task, workspace)?;
-                let readings = line.readings(task, &state);
-                Ok((ContactState::Line(state), readings))
+            (Operators::Line(operators), ContactWorkspace::Line(workspace)) => {
+                initial(operators, task, workspace).map(|(state, integrals)| (ContactState::Line(state), integrals))
             }
-            (Engine::Patch(patch), ContactWorkspace::Patch(workspace)) => {
-                let state = patch.initial_state(task, workspace)?;
-                let readings = patch.readings(task, &state);
-                Ok((ContactState::Patch(state), readings))
+            (Operators::Patch(operators), ContactWorkspace::Patch(workspace)) => {
+                initial(operators, task, workspace).map(|(state, integrals)| (ContactState::Patch(state), integrals))
             }
             _ => Err(Error::OtherContactModel),
         }
@@ -109,20 +146,23 @@ impl Engine {
         workspace: &mut ContactWorkspace,
         state: &ContactState,
         last_duration: f64,
-    ) -> Result<(Convergence, Readings)> {
-        match (self, workspace, state) {
-            (Engine::Line(line), ContactWorkspace::Line(workspace), ContactState::Line(state)) => {
-                line.solve(task, workspace, state, last_duration)
-            }
-            (Engine::Patch(patch), ContactWorkspace::Patch(workspace), ContactState::Patch(state)) => {
-                patch.solve(task, workspace, state, last_duration)
-            }
-            _ => Err(Error::OtherContactModel),
+    ) -> Result<(Convergence, Integrals)> {
+        fn solve<E: Engine>(
+            problem: &Problem<E>,
+            workspace: &mut Workspace<E>,
+            state: &State<E::Fields>,
+            last_duration: f64,
+        ) -> Result<(Convergence, Integrals)> {
+            let convergence = step::solve(problem, state, last_duration, workspace)?;
+            Ok((convergence, E::integrals(problem, workspace.solution())))
         }
+        with_model!(self, workspace, state, |operators, workspace, state| {
+            solve(&Problem::new(operators, task), workspace, state, last_duration)
+        })
     }
 
-    /// Derivatives of all outputs with respect to each of the given rows of [`crate::signals::INPUTS`], from the linearised
-    /// step that ended in `state`.
+    /// Computes the derivatives of all outputs with respect to each of the given rows of [`crate::signals::INPUTS`], from the
+    /// linearised step that ended in `state`.
     ///
     /// # Errors
     /// A linear system that could not be solved, or [`Error::OtherContactModel`].
@@ -133,79 +173,65 @@ impl Engine {
         state: &ContactState,
         inputs: impl IntoIterator<Item = usize>,
     ) -> Result<Vec<Outputs>> {
-        match (self, workspace, state) {
-            (Engine::Line(line), ContactWorkspace::Line(workspace), ContactState::Line(state)) => {
-                line.sensitivities(task, workspace, state, inputs)
-            }
-            (Engine::Patch(patch), ContactWorkspace::Patch(workspace), ContactState::Patch(state)) => {
-                patch.sensitivities(task, workspace, state, inputs)
-            }
-            _ => Err(Error::OtherContactModel),
-        }
+        with_model!(self, workspace, state, |operators, workspace, state| {
+            sensitivity::outputs(&Problem::new(operators, task), &state.fields, workspace, inputs)
+        })
     }
 
     /// Profiles for plotting; those of an untouched rail for a state of another contact model.
     pub fn profiles(&self, task: &Task, state: &ContactState) -> Profiles {
-        let ambient = task.conditions.inputs.ambient_temperature;
-        match (self, state) {
-            (Engine::Line(line), ContactState::Line(state)) => line.profiles(state, ambient),
-            (Engine::Patch(patch), ContactState::Patch(state)) => patch.profiles(task, state, ambient),
-            _ => Profiles::untouched(ambient),
-        }
+        let profiles: Result<Profiles> = with_model!(self, state, |operators, state| {
+            Engine::profiles(&Problem::new(operators, task), &state.fields)
+        });
+        profiles.unwrap_or_else(|_| Profiles::untouched(task.conditions.inputs.ambient_temperature))
     }
 
-    /// The fields at the nodes of the contact window; none for a state of another contact model.
+    /// Fields at the nodes of the contact window; none for a state of another contact model.
     pub fn contact_nodes(&self, state: &ContactState) -> Vec<ContactNode> {
-        match (self, state) {
-            (Engine::Line(line), ContactState::Line(state)) => line.contact_nodes(state),
-            (Engine::Patch(patch), ContactState::Patch(state)) => patch.contact_nodes(state),
-            _ => Vec::new(),
-        }
+        with_model!(self, state, |operators, state| operators.contact_nodes(&state.fields)).unwrap_or_default()
     }
 
-    /// Whether a state (of another source) has the sizes of this engine's and finite content.
+    /// Whether a state (of another source) has the sizes of these operators and finite content.
     pub fn accepts(&self, state: &ContactState) -> bool {
-        match (self, state) {
-            (Engine::Line(line), ContactState::Line(state)) => line.accepts(state),
-            (Engine::Patch(patch), ContactState::Patch(state)) => patch.accepts(state),
-            _ => false,
-        }
+        with_model!(self, state, |operators, state| state
+            .is_valid(&State::at_rest(operators.fields())))
+        .unwrap_or(false)
     }
 
     /// Length along the rail of the window in which the contact is sought, `m`.
     pub fn window_length(&self) -> f64 {
         match self {
-            Engine::Line(line) => line.window_length(),
-            Engine::Patch(patch) => patch.window_length(),
+            Operators::Line(operators) => operators.window_length(),
+            Operators::Patch(operators) => operators.window_length(),
         }
     }
 
-    /// The line engine.
+    /// Operators of a line contact.
     ///
     /// # Errors
     /// [`Error::OtherContactModel`].
-    pub fn line(&self) -> Result<&Line> {
+    pub fn line(&self) -> Result<&LineOperators> {
         match self {
-            Engine::Line(line) => Ok(line),
-            Engine::Patch(_) => Err(Error::OtherContactModel),
+            Operators::Line(operators) => Ok(operators),
+            Operators::Patch(_) => Err(Error::OtherContactModel),
         }
     }
 
-    /// The patch engine.
+    /// Operators of a patch.
     ///
     /// # Errors
     /// [`Error::OtherContactModel`].
     #[cfg(feature = "verification")]
-    pub fn patch(&self) -> Result<&Patch> {
+    pub fn patch(&self) -> Result<&PatchOperators> {
         match self {
-            Engine::Patch(patch) => Ok(patch),
-            Engine::Line(_) => Err(Error::OtherContactModel),
+            Operators::Patch(operators) => Ok(operators),
+            Operators::Line(_) => Err(Error::OtherContactModel),
         }
     }
 }
 
 impl ContactWorkspace {
-    /// Makes the solution of [`Engine::solve`] over `duration` `s` the state. What that has refused as of another contact model
+    /// Makes the solution of [`Operators::solve`] over `duration` `s` the state. What that has refused as of another contact model
     /// stays as it is.
     pub fn commit(&mut self, state: &mut ContactState, duration: f64) {
         match (self, state) {
@@ -217,33 +243,33 @@ impl ContactWorkspace {
 }
 
 impl ContactState {
-    /// The state of the line engine.
+    /// State of a line contact.
     ///
     /// # Errors
     /// [`Error::OtherContactModel`].
     #[cfg(feature = "verification")]
-    pub fn line(&self) -> Result<&LineState> {
+    pub fn line(&self) -> Result<&State<LineFields>> {
         match self {
             ContactState::Line(state) => Ok(state),
             ContactState::Patch(_) => Err(Error::OtherContactModel),
         }
     }
 
-    /// The state of the patch engine.
+    /// State of a patch.
     ///
     /// # Errors
     /// [`Error::OtherContactModel`].
     #[cfg(feature = "verification")]
-    pub fn patch(&self) -> Result<&PatchState> {
+    pub fn patch(&self) -> Result<&State<PatchFields>> {
         match self {
             ContactState::Patch(state) => Ok(state),
             ContactState::Line(_) => Err(Error::OtherContactModel),
         }
     }
 
-    /// The state of the line engine, for tests that prepare one.
+    /// State of a line contact, for tests that prepare one.
     #[cfg(test)]
-    pub fn line_mut(&mut self) -> &mut LineState {
+    pub fn line_mut(&mut self) -> &mut State<LineFields> {
         match self {
             ContactState::Line(state) => state,
             ContactState::Patch(_) => panic!("the state of a patch"),

@@ -1,44 +1,13 @@
-//! The outputs, from the resultants of a contact and what else can be read off its fields.
+//! The outputs, from the integrals over a contact.
 
-use super::resultants::Resultants;
-use super::rim::{self, ContactHeat};
-use super::task::Conditions;
+use super::integrals::Integrals;
+use super::problem::Conditions;
+use super::rim;
 use crate::friction;
 use crate::parameters::{ContactModel, Parameters};
 use crate::signals::{Inputs, Motion, Outputs};
 
-/// What an engine reads off its fields for the outputs.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Readings {
-    /// Sums over the contact.
-    pub resultants: Resultants,
-    /// Area that a node stands for, `m²`.
-    pub node_area: f64,
-    /// Unit of the scaled tractions, `Pa`.
-    pub pressure_scale: f64,
-    /// Penetration δ, `m`; 0 when lifted.
-    pub penetration: f64,
-    /// Length of the contact, `m`.
-    pub contact_length: f64,
-    /// Breadth of the contact across the rail, `m`; 0 of a line contact.
-    pub contact_breadth: f64,
-    /// Area of the contact, `m²`; 0 of a line contact.
-    pub contact_area: f64,
-    /// Largest temperature rise of the rail's surface, `K`.
-    pub peak_rise: f64,
-    /// Wear depth behind the contact, `m`.
-    pub wear_depth: f64,
-    /// Temperature rise of the rail's skin where it leaves, `K`.
-    pub leaving_rise: f64,
-    /// Wear depth of the rail where it leaves, `m`.
-    pub leaving_wear_depth: f64,
-    /// What the contact gives to the wheel.
-    pub wheel_heat: ContactHeat,
-    /// Temperature of the wheel's rim, absolute, `K`.
-    pub wheel_temperature: f64,
-}
-
-impl Readings {
+impl Integrals {
     /// Force of a scaled traction of 1 on a node, `N`.
     fn unit_force(&self) -> f64 {
         self.node_area * self.pressure_scale
@@ -46,12 +15,12 @@ impl Readings {
 
     /// ∫ |s| p dA, to which wear is proportional, `W`.
     fn sliding_power(&self) -> f64 {
-        self.unit_force() * self.resultants.sliding
+        self.unit_force() * self.sums.sliding
     }
 
     /// Friction power ∫ |τ s| dA, `W`.
     fn friction_power(&self) -> f64 {
-        self.unit_force() * self.resultants.friction_power
+        self.unit_force() * self.sums.friction_power
     }
 
     /// Volume worn off the rail per time, `m³/s`.
@@ -70,8 +39,8 @@ impl Readings {
     /// Writes what a line contact has none of: forces across the rail and about its normal, the contact's extent across.
     fn add_patch(&self, motion: &Motion, outputs: &mut Outputs) {
         let force = self.unit_force();
-        outputs.lateral_force = -force * self.resultants.lateral_shear;
-        outputs.spin_moment = -force * self.resultants.spin_moment;
+        outputs.lateral_force = -force * self.sums.lateral_shear;
+        outputs.spin_moment = -force * self.sums.spin_moment;
         outputs.contact_breadth = self.contact_breadth;
         outputs.contact_area = self.contact_area;
         // The signs are those of the forces on the wheel and of its motion; |V| makes it the work per distance either way.
@@ -84,7 +53,7 @@ impl Readings {
     /// The outputs at one instant; the totals are 0.
     pub fn outputs(&self, parameters: &Parameters, inputs: &Inputs) -> Outputs {
         let motion = inputs.motion(parameters);
-        let sums = &self.resultants;
+        let sums = &self.sums;
         let force = self.unit_force();
         let ambient = inputs.ambient_temperature;
         let load = force * sums.pressure;

@@ -186,7 +186,7 @@ impl FixedPoint {
     ///
     /// # Errors
     /// [`Error::WheelHeatNotConverged`].
-    pub fn rests(&mut self, image: f64) -> Result<bool> {
+    pub fn converges(&mut self, image: f64) -> Result<bool> {
         let residual = image - self.temperature;
         self.iterations += 1;
         let settings = &self.settings;
@@ -301,7 +301,7 @@ mod tests {
             let map = |t: f64| 300.0 + slope * (t - 350.0);
             let mut point = FixedPoint::new(293.15, HeatSettings::default());
             let mut iterations = 0;
-            while !point.rests(map(point.temperature())).unwrap() {
+            while !point.converges(map(point.temperature())).unwrap() {
                 iterations += 1;
                 assert!(iterations < 10, "{slope}");
             }
@@ -316,6 +316,6 @@ mod tests {
             rim_iterations: 0,
             ..HeatSettings::default()
         };
-        assert!(FixedPoint::new(300.0, none).rests(300.0).is_err());
+        assert!(FixedPoint::new(300.0, none).converges(300.0).is_err());
     }
 }

@@ -36,7 +36,7 @@ impl Brought {
 }
 
 /// What the nodes of a window remember.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Memory {
     /// Whether the step before has remembered.
     pub remembers: bool,

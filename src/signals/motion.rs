@@ -22,6 +22,16 @@ pub struct Motion {
     pub spin_rate: f64,
 }
 
+impl Motion {
+    /// Motion, or a change of it, all 0.
+    pub const ZERO: Motion = Motion {
+        rolling_speed: 0.0,
+        rigid_slip: 0.0,
+        lateral_speed: 0.0,
+        spin_rate: 0.0,
+    };
+}
+
 impl Inputs {
     /// Checks the rolling speed that the inputs make.
     ///

@@ -95,6 +95,7 @@ fn draw(random: &mut Random) -> Parameters {
     table(random, &mut parameters);
     tune(random, &mut parameters);
     falling(random, &mut parameters);
+    layer(random, &mut parameters);
     parameters
 }
 
@@ -109,7 +110,6 @@ fn patch(random: &mut Random, parameters: &mut Parameters) {
         _ => -random.decades(0.1, 10.0),
     };
     parameters.rail_transverse_curvature = sum - parameters.wheel_transverse_curvature;
-    layer(random, parameters);
     // Few cells more often than many: they are the hard ones, and fast.
     (parameters.patch_nodes, parameters.patch_strips) = match random.count(0, 5) {
         0 => (Parameters::default().patch_nodes, Parameters::default().patch_strips),
@@ -123,7 +123,7 @@ fn patch(random: &mut Random, parameters: &mut Parameters) {
 
 /// The steepest friction, `1/K`: the paper's. Where the coefficient changes much faster, a contact has several temperatures, and a
 /// step of any length may have to jump from one to another.
-const STEEPEST: f64 = 0.002;
+const STEEPEST: f64 = 0.02;
 
 /// A table of friction coefficients that rise or fall between temperatures some degrees to some hundred degrees apart.
 fn table(random: &mut Random, parameters: &mut Parameters) {

@@ -8,7 +8,7 @@
 //! friction power, not ᾱ of it.
 
 use super::row::{Row, larger};
-use crate::contact::line::fields::Fields;
+use crate::contact::line::fields::LineFields;
 use crate::contact::rim;
 use crate::error::Result;
 use crate::heat::step::ModeStep;
@@ -218,7 +218,7 @@ fn largest_defect(
     Ok((defect, total_defect, shares))
 }
 
-fn balance(run: &Simulation, before: &Fields, speed: f64, duration: f64) -> Result<Balance> {
+fn balance(run: &Simulation, before: &LineFields, speed: f64, duration: f64) -> Result<Balance> {
     let (rail, parameters) = (run.model.line_operators()?, run.model.parameters());
     let after = run.state.fields()?;
     let ambient = run.state.inputs.ambient_temperature;
@@ -229,7 +229,7 @@ fn balance(run: &Simulation, before: &Fields, speed: f64, duration: f64) -> Resu
     let (speed, kappa) = (transport.speed(), parameters.thermal_diffusivity);
     let bottom_cell = rail.mesh.depth[rail.mesh.rows() - 1] - rail.mesh.depth[rail.mesh.rows() - 2];
     for column in transport.columns() {
-        let amplitudes = |fields: &Fields, index| fields.column(rail, index).to_vec();
+        let amplitudes = |fields: &LineFields, index| fields.column(rail, index).to_vec();
         let [upstream, own] = [column.upstream, column.index].map(|index| amplitudes(after, index));
         let [old_upstream, old_own] = [column.upstream, column.index].map(|index| amplitudes(before, index));
         for mode in 0..basis.len() {

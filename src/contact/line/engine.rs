@@ -1,374 +1,276 @@
-//! The line engine from outside: built once, stepped from state to state.
+//! The line as an [`Engine`].
 
-use super::fields::{Fields, Trend};
+use super::fields::LineFields;
+use super::heat_and_wear;
+use super::integrals;
+use super::mechanics::{self, Problem};
 use super::operators::LineOperators;
-use super::problem::Problem;
 use super::profiles;
-use super::readings::readings;
-use super::sensitivity::Linearisation;
-use super::split::{self, Scratch};
-use crate::contact::outputs::Readings;
+use super::solvers::LineSolvers;
+use super::tangent::{self, LineTangent};
+use crate::contact::engine::{Along, Direction, Engine, Linearised, MaterialPath};
+use crate::contact::fields::Fields;
+use crate::contact::integrals::Integrals;
+use crate::contact::interface::Interface;
 use crate::contact::profiles::{ContactNode, Profiles};
-use crate::contact::task::{Convergence, Task};
+use crate::contact::rim::HeatedNode;
 use crate::error::Result;
+use crate::mechanics::sweep::Sweep;
 use crate::parameters::Parameters;
-use crate::settings::Settings;
-use crate::signals::Outputs;
-use serde::{Deserialize, Serialize};
+use crate::settings::{SensitivitySettings, Settings, SplitSettings};
+use std::iter;
 
-/// A line contact: what is computed once.
-pub struct Line {
-    operators: LineOperators,
-}
+impl Engine for LineOperators {
+    type Fields = LineFields;
+    type Solvers = LineSolvers;
+    type Tangent = LineTangent;
 
-/// The state of a line contact.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct LineState {
-    /// Temperature, wear, tractions.
-    pub fields: Fields,
-    /// How they changed over the last step.
-    pub trend: Trend,
-}
-
-/// Scratch of a step. What a step leaves in it changes no result of another one.
-pub struct LineWorkspace {
-    scratch: Scratch,
-    /// The fields that a step works on, its solution until it is committed.
-    trial: Fields,
-}
-
-impl LineWorkspace {
-    /// Makes the solution the state.
-    pub fn commit(&mut self, state: &mut LineState, duration: f64) {
-        state.trend.update(&state.fields, &self.trial, duration);
-        std::mem::swap(&mut state.fields, &mut self.trial);
+    fn new(parameters: &Parameters) -> Result<LineOperators> {
+        LineOperators::build(parameters)
     }
-}
 
-impl Line {
-    /// Mesh, compliance, thermal maps.
-    ///
-    /// # Errors
-    /// [`crate::error::Error::StiffnessNotPositiveDefinite`], [`crate::error::Error::DepthBasis`].
-    pub fn new(parameters: &Parameters) -> Result<Line> {
-        Ok(Line {
-            operators: LineOperators::new(parameters)?,
+    fn fields(&self) -> LineFields {
+        LineFields::new(self)
+    }
+
+    fn solvers(&self, settings: &Settings) -> LineSolvers {
+        LineSolvers::new(self, settings)
+    }
+
+    fn tangent(&self, _settings: &Settings) -> LineTangent {
+        LineTangent::new(self)
+    }
+
+    fn interface(&self) -> Interface {
+        Interface::new(self.mesh.contact_nodes, 2)
+    }
+
+    fn split_settings(settings: &Settings) -> SplitSettings {
+        settings.split
+    }
+
+    fn sensitivity_settings(settings: &Settings) -> SensitivitySettings {
+        settings.sensitivity
+    }
+
+    fn window_length(&self) -> f64 {
+        2.0 * self.mesh.window_half_width()
+    }
+
+    fn half_window(&self) -> f64 {
+        self.mesh.window_half_width()
+    }
+
+    fn spacing(&self) -> f64 {
+        self.mesh.contact_spacing()
+    }
+
+    fn displacement_scale(&self) -> f64 {
+        self.scales.displacement
+    }
+
+    fn pressure_scale(&self) -> f64 {
+        self.scales.pressure
+    }
+
+    fn unit_force(&self, parameters: &Parameters) -> f64 {
+        self.node_area(parameters) * self.scales.pressure
+    }
+
+    fn own_displacement(&self, parameters: &Parameters) -> f64 {
+        self.near_field.direct * self.scales.displacement + parameters.layer_compliance * self.scales.pressure
+    }
+
+    fn relaxation_length(problem: &Problem, fields: &LineFields) -> f64 {
+        let (load, relaxation) = (problem.load(fields), &problem.operators.relaxation);
+        if load > 0.0 {
+            let half_length = problem.parameters.hertz_half_length(load);
+            relaxation.length(half_length.min(relaxation.half_length))
+        } else {
+            relaxation.length(relaxation.half_length)
+        }
+    }
+
+    fn paths(&self) -> impl Iterator<Item = MaterialPath> + '_ {
+        let nodes = 0..self.mesh.contact_nodes;
+        iter::once(MaterialPath {
+            nodes: nodes.clone(),
+            places: nodes,
         })
     }
 
-    /// What was computed once.
-    pub fn operators(&self) -> &LineOperators {
-        &self.operators
+    fn pressure(fields: &LineFields) -> &[f64] {
+        &fields.pressure
     }
 
-    /// Length along the rail of the window in which the contact is sought, `m`.
-    pub fn window_length(&self) -> f64 {
-        2.0 * self.operators.mesh.window_half_width()
+    fn surface_rise<'f>(&self, fields: &'f LineFields) -> &'f [f64] {
+        &fields.surface_temperature[self.mesh.window()]
     }
 
-    /// Scratch for the steps.
-    pub fn workspace(&self, settings: &Settings) -> LineWorkspace {
-        LineWorkspace {
-            scratch: Scratch::new(&self.operators, settings),
-            trial: Fields::new(&self.operators),
+    fn wheel_temperature(fields: &LineFields) -> f64 {
+        fields.wheel_temperature
+    }
+
+    fn set_wheel_temperature(fields: &mut LineFields, temperature: f64) {
+        fields.wheel_temperature = temperature;
+    }
+
+    fn begin(
+        problem: &Problem,
+        before: Option<&LineFields>,
+        now: &mut LineFields,
+        solvers: &mut LineSolvers,
+    ) -> Result<()> {
+        match before {
+            Some(before) => {
+                now.relaxation_length = Self::relaxation_length(problem, before);
+                solvers.data.displacement_before.copy_from_slice(&before.displacement);
+                heat_and_wear::keep_inflow(problem, before, now);
+            }
+            None => solvers.data.displacement_before.fill(0.0),
+        }
+        solvers.mechanics.start_step();
+        solvers.wear_compliance.start_step();
+        heat_and_wear::update_wear_compliance(problem, now, solvers);
+        Ok(())
+    }
+
+    fn read(problem: &Problem, fields: &LineFields, solvers: &mut LineSolvers, interface: &mut Interface) {
+        heat_and_wear::read(problem, fields, solvers, interface);
+    }
+
+    fn solve_mechanics(
+        problem: &Problem,
+        interface: &Interface,
+        now: &mut LineFields,
+        solvers: &mut LineSolvers,
+        tolerance: f64,
+    ) -> Result<Sweep> {
+        mechanics::solve(problem, interface, now, solvers, tolerance)
+    }
+
+    fn march_wear(problem: &Problem, before: &LineFields, now: &mut LineFields, solvers: &mut LineSolvers) {
+        heat_and_wear::march_wear(problem, before, now, solvers);
+    }
+
+    fn march_heat(
+        problem: &Problem,
+        before: &LineFields,
+        wheel_rise: f64,
+        now: &mut LineFields,
+        solvers: &mut LineSolvers,
+    ) -> Result<()> {
+        heat_and_wear::march_heat(problem, before, wheel_rise, now, solvers)
+    }
+
+    fn update_wear_compliance(problem: &Problem, now: &LineFields, solvers: &mut LineSolvers) {
+        heat_and_wear::update_wear_compliance(problem, now, solvers);
+    }
+
+    fn pending_displacement(problem: &Problem, now: &LineFields, solvers: &LineSolvers) -> f64 {
+        heat_and_wear::pending_displacement(problem, now, solvers)
+    }
+
+    fn map_displacement(problem: &Problem, now: &mut LineFields, solvers: &mut LineSolvers, interface: &mut Interface) {
+        heat_and_wear::map_displacement(problem, now, solvers, interface);
+    }
+
+    fn close_friction(problem: &Problem, now: &mut LineFields, _solvers: &LineSolvers) {
+        let law = problem.friction();
+        let first = problem.operators.mesh.first_contact;
+        let of_slip = problem.path_law().is_some();
+        for node in 0..now.pressure.len() {
+            let resting = law.coefficient(now.surface_temperature[first + node]).0;
+            let mut mu = resting;
+            if of_slip && now.pressure[node] > 0.0 {
+                mu = now.memory.close(node, resting);
+            }
+            now.friction[node] = mu;
+            if now.pressure[node] > 0.0 {
+                now.shear[node] = -mu * now.pressure[node] * now.saturation[node];
+            }
         }
     }
 
-    fn problem<'a>(&'a self, task: &Task<'a>) -> Problem<'a> {
-        Problem {
-            operators: &self.operators,
-            parameters: task.parameters,
-            settings: task.settings,
-            conditions: task.conditions,
-        }
+    fn close_displacement(problem: &Problem, interface: &Interface, now: &mut LineFields, solvers: &mut LineSolvers) {
+        mechanics::close_displacement(problem, interface, now, &solvers.data);
     }
 
-    /// Cold and unworn, mechanics solved.
-    ///
-    /// # Errors
-    /// A solver that did not converge.
-    pub fn initial_state(&self, task: &Task, workspace: &mut LineWorkspace) -> Result<LineState> {
-        let mut fields = Fields::new(&self.operators);
-        fields.wheel_temperature = task.conditions.inputs.ambient_temperature;
-        split::solve_mechanics(&self.problem(task), &mut fields, &mut workspace.scratch)?;
-        Ok(LineState {
-            fields,
-            trend: Trend::new(&self.operators),
+    fn finalise(_: &Problem, _: &LineFields, _: &mut LineFields, _: &mut LineSolvers) -> Result<()> {
+        Ok(())
+    }
+
+    fn is_cut_off(_problem: &Problem, now: &LineFields, solvers: &LineSolvers) -> bool {
+        solvers.mechanics.is_cut_off() && now.pressure.iter().any(|&p| p > 0.0)
+    }
+
+    fn heated_nodes<'f>(
+        problem: &'f Problem,
+        _fields: &'f LineFields,
+        values: &'f LineFields,
+    ) -> impl Iterator<Item = HeatedNode> + 'f {
+        let surface = problem.operators.surface_rise(values);
+        (0..values.pressure.len()).map(move |node| HeatedNode {
+            pressure: values.pressure[node],
+            shear: [values.shear[node], 0.0],
+            slip: [values.slip[node], 0.0],
+            rise: surface[node],
         })
     }
 
-    /// One implicit step from `state`, into the workspace. The step before took `last_duration` `s`.
-    ///
-    /// # Errors
-    /// The first solver that did not converge, or a contact that leaves the window.
-    pub fn solve(
-        &self,
-        task: &Task,
-        workspace: &mut LineWorkspace,
-        state: &LineState,
-        last_duration: f64,
-    ) -> Result<(Convergence, Readings)> {
-        let LineWorkspace { scratch, trial } = workspace;
-        // The first guess is extrapolated, over no longer than the trend was observed. The temperature below the surface is
-        // left out: the march computes it anew from that of the step before.
-        trial.copy_surface_from(&state.fields);
-        state
-            .trend
-            .extrapolate(trial, task.conditions.duration.min(last_duration));
-        let problem = self.problem(task);
-        let convergence = split::solve(&problem, &state.fields, trial, scratch)?;
-        Ok((convergence, readings(&problem, trial)))
-    }
-
-    /// What the outputs are made of.
-    pub fn readings(&self, task: &Task, state: &LineState) -> Readings {
-        readings(&self.problem(task), &state.fields)
-    }
-
-    /// Derivatives of all outputs with respect to each of the given rows of [`crate::signals::INPUTS`].
-    ///
-    /// # Errors
-    /// A linear system that could not be solved.
-    pub fn sensitivities(
-        &self,
-        task: &Task,
-        workspace: &mut LineWorkspace,
-        state: &LineState,
-        inputs: impl IntoIterator<Item = usize>,
-    ) -> Result<Vec<Outputs>> {
-        let LineWorkspace { scratch, trial } = workspace;
-        trial.copy_from(&state.fields);
-        let mut step = Linearisation::new(self.problem(task), trial, scratch)?;
-        inputs.into_iter().map(|input| step.output_sensitivity(input)).collect()
-    }
-
-    /// Profiles for plotting.
-    pub fn profiles(&self, state: &LineState, ambient: f64) -> Profiles {
-        profiles::profiles(&self.operators, &state.fields, ambient)
-    }
-
-    /// The fields at the nodes of the contact window, from the rear to the front for V > 0.
-    pub fn contact_nodes(&self, state: &LineState) -> Vec<ContactNode> {
-        profiles::contact_nodes(&self.operators, &state.fields)
-    }
-
-    /// Whether a state (of another source) has the sizes of this rail and finite content.
-    pub fn accepts(&self, state: &LineState) -> bool {
-        let same = |own: &[&Vec<f64>], expected: &[&Vec<f64>]| {
-            own.iter()
-                .zip(expected)
-                .all(|(own, expected)| own.len() == expected.len() && own.iter().all(|value| value.is_finite()))
-        };
-        let fields = Fields::new(&self.operators);
-        same(&state.fields.vectors(), &fields.vectors())
-            && same(&state.fields.memory.vectors(), &fields.memory.vectors())
-            && same(&state.trend.vectors(), &Trend::new(&self.operators).vectors())
-            && state.fields.penetration.is_finite()
-            && state.fields.relaxation_length.is_finite()
-            && state.fields.relaxation_length > 0.0
-            && state.fields.wheel_temperature.is_finite()
-    }
-}
-
-/// What must hold of the fields of a running simulation.
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::numerics::dense;
-    use crate::parameters::{Control, NormalSolver, SlipSource, Wheel};
-    use crate::signals::Inputs;
-    use crate::simulation::Simulation as Run;
-    use crate::transport::{CellStep, Upwind};
-    use proptest::prelude::*;
-
-    /// Largest difference, relative to the largest value.
-    fn largest_difference(a: &[f64], b: &[f64]) -> f64 {
-        dense::largest_change(a, b) / dense::largest(a)
-    }
-
-    /// What the wear depth on the rail grows by in a step, ∫(W − Wⁿ) dx as the march balances it, `m²`.
-    fn deposited(x: &[f64], speed: f64, duration: f64, before: &[f64], after: &[f64]) -> f64 {
-        let transport = Upwind::new(x, speed);
-        let growth = |i: usize| after[i] - before[i];
-        transport
-            .columns()
-            .map(|column| {
-                let step = CellStep::new(1.0 / duration, column.spacing, transport.speed());
-                column.spacing * step.mean(growth(column.upstream), growth(column.index))
-            })
-            .sum()
-    }
-
-    /// d/dt ∫W dx + |V| W(outflow) = ∫ k|s|p dx: the balances of the cells add up.
-    #[test]
-    fn worn_volume_is_the_depth_on_the_rail_and_what_left_it() {
-        let parameters = Parameters {
-            slip_source: SlipSource::VehicleSpeed,
-            ..Parameters::default()
-        };
-        for direction in [1.0, -1.0] {
-            let inputs = |step: i32| {
-                let speed = direction * (10.0 + 0.05 * f64::from(step));
-                Inputs {
-                    vehicle_speed: speed,
-                    wheel_speed: 1.03 * speed / parameters.wheel_radius,
-                    normal_load: 60e3 + 500.0 * f64::from(step % 3),
-                    ..Inputs::default()
-                }
-            };
-            let mut run = Run::new(&parameters, &inputs(0)).unwrap();
-            let (mut on_the_rail, mut left) = (0.0, 0.0);
-            for step in 0..100 {
-                let before = run.state.fields().unwrap().wear.clone();
-                run.step(&inputs(step), 5e-3).unwrap();
-                // The first step after the cold start is no jump: none is divided.
-                assert_eq!(run.state.duration, 5e-3);
-                let speed = inputs(step).vehicle_speed;
-                let (x, after) = (
-                    &run.model.line_operators().unwrap().mesh.x,
-                    &run.state.fields().unwrap().wear,
-                );
-                left += speed.abs() * 5e-3 * after[Upwind::new(x, speed).outflow()];
-                on_the_rail += deposited(x, speed, 5e-3, &before, after);
-            }
-            let volume = parameters.contact_width * (on_the_rail + left);
-            let expected = run.state.outputs.worn_volume;
-            assert!(
-                left > 0.1 * on_the_rail,
-                "the wear must have reached the end of the strip"
-            );
-            assert!((volume / expected - 1.0).abs() < 1e-10, "{volume} {expected}");
-            // The depth as it lies there at last, between columns linear, but for the order of the march.
-            let (x, wear) = (
-                &run.model.line_operators().unwrap().mesh.x,
-                &run.state.fields().unwrap().wear,
-            );
-            let cells = x.windows(2).zip(wear.windows(2));
-            let area: f64 = cells.map(|(x, w)| (x[1] - x[0]) * 0.5 * (w[0] + w[1])).sum();
-            assert!((area / on_the_rail - 1.0).abs() < 0.01, "{area} {on_the_rail}");
+    fn begin_linearisation(problem: &Problem, fields: &LineFields, solvers: &mut LineSolvers) {
+        let nodes = fields.displacement.iter().zip(&fields.displacement_change);
+        for (before, (now, change)) in solvers.data.displacement_before.iter_mut().zip(nodes) {
+            *before = now - change;
         }
+        solvers.mechanics.start_step();
+        solvers.wear_compliance.start_step();
+        heat_and_wear::update_wear_compliance(problem, fields, solvers);
     }
 
-    fn assert_signs(fields: &Fields) {
-        let power: f64 = fields
-            .shear
-            .iter()
-            .zip(&fields.slip)
-            .map(|(tau, slip)| (tau * slip).abs())
-            .sum();
-        for node in 0..fields.pressure.len() {
-            let (p, tau, slip) = (fields.pressure[node], fields.shear[node], fields.slip[node]);
-            assert!(p >= 0.0);
-            assert!(tau.abs() <= fields.friction[node] * p * (1.0 + 1e-9) + 1e-12);
-            // Friction resists slip. That of a node is the mean over its cells, one of which reaches out of the contact at
-            // the edges; the little power of the other sign that may come of it is left out.
-            assert!(tau * slip <= 0.02 * power + 1e-12, "{tau} {slip} {power}");
-            if p == 0.0 {
-                assert_eq!((tau, slip), (0.0, 0.0));
-            }
-        }
-        assert!(fields.wear.iter().all(|&w| w >= 0.0));
-        // Round-off of the sums over the modes.
-        assert!(fields.surface_temperature.iter().all(|&t| t > -1e-9));
+    fn linearise(
+        problem: &Problem,
+        interface: &Interface,
+        fields: &mut LineFields,
+        solvers: &mut LineSolvers,
+        _tangent: &mut LineTangent,
+    ) -> Result<()> {
+        mechanics::linearise(problem, interface, fields, solvers)
     }
 
-    proptest! {
-        #![proptest_config(ProptestConfig::with_cases(12))]
-        #[test]
-        fn every_field_has_its_sign(
-            steps in prop::collection::vec((1.0..30.0_f64, -0.05..0.05_f64, 5e3..95e3_f64), 1..6),
-            backward in any::<bool>(),
-        ) {
-            let parameters = Parameters { slip_source: SlipSource::VehicleSpeed, ..Parameters::default() };
-            let direction = if backward { -1.0 } else { 1.0 };
-            let inputs = |(speed, creepage, load): (f64, f64, f64)| Inputs {
-                vehicle_speed: direction * speed,
-                wheel_speed: direction * speed * (1.0 + creepage) / parameters.wheel_radius,
-                normal_load: load,
-                ..Inputs::default()
-            };
-            let mut run = Run::new(&parameters, &inputs(steps[0])).unwrap();
-            for &step in &steps {
-                run.hold(&inputs(step), 2e-3, 5).unwrap();
-                assert_signs(run.state.fields().unwrap());
-            }
-        }
+    fn begin_direction(
+        _problem: &Problem,
+        _fields: &LineFields,
+        _direction: &Direction,
+        change: &mut LineFields,
+        _tangent: &mut LineTangent,
+    ) {
+        change.clear();
     }
 
-    /// The two methods for the normal problem give the same fields to 1e-8 in the whole model: with friction, heat and wear, under
-    /// load and under penetration. The second runs as the reference: tight by itself, and started anew at each step, from no
-    /// tractions and without extrapolation.
-    mod solvers {
-        use super::*;
+    fn mechanics_tangent(at: &mut Linearised<Self>, along: &Along, change: &mut LineFields) -> Result<()> {
+        tangent::mechanics(at, along, change);
+        Ok(())
+    }
 
-        /// Leaves temperature, wear, displacement and load, the state proper, and nothing that a step only starts its iteration
-        /// from.
-        fn forget_the_start(run: &mut Run) {
-            let fields = &mut run.state.contact.line_mut().fields;
-            let mean = fields.pressure.iter().sum::<f64>() / fields.pressure.len() as f64;
-            fields.pressure.fill(mean);
-            for start in [&mut fields.shear, &mut fields.slip, &mut fields.saturation] {
-                start.fill(0.0);
-            }
-            let trend = &mut run.state.contact.line_mut().trend;
-            for trend in [
-                &mut trend.shear,
-                &mut trend.surface_temperature,
-                &mut trend.thermal_displacement,
-                &mut trend.wear,
-            ] {
-                trend.fill(0.0);
-            }
-        }
+    fn march_tangent(at: &mut Linearised<Self>, along: &Along, change: &mut LineFields) -> Result<()> {
+        tangent::wear(at, along, change);
+        tangent::heat(at, along, change);
+        Ok(())
+    }
 
-        fn run_with(normal_solver: NormalSolver, control: Control) -> Run {
-            let parameters = Parameters {
-                // Normal and tangential problem are coupled.
-                wheel: Wheel::Rigid,
-                normal_solver,
-                control,
-                slip_source: SlipSource::VehicleSpeed,
-                // Both solvers must work in the model; the linearisation takes minutes on the default mesh.
-                contact_nodes: 31,
-                depth_nodes: 21,
-                ..Parameters::default()
-            };
-            let inputs = |slide: f64, load: f64| Inputs {
-                wheel_speed: 10.0 * (1.0 - slide) / parameters.wheel_radius,
-                normal_load: load,
-                ..Inputs::default()
-            };
-            let mut run = Run::new(&parameters, &inputs(0.0, 60e3)).unwrap();
-            for (slide, load) in [(0.001, 60e3), (0.002, 55e3), (0.01, 50e3), (0.02, 70e3)] {
-                for _ in 0..4 {
-                    if normal_solver == NormalSolver::Pschenichnyj {
-                        forget_the_start(&mut run);
-                    }
-                    run.hold(&inputs(slide, load), 5e-3, 1).unwrap();
-                }
-            }
-            run
-        }
+    fn finalise_tangent(_: &mut Linearised<Self>, _: &Direction, _: &mut LineFields) {}
 
-        #[test]
-        fn active_set_and_linearisation_give_the_same_fields() {
-            for control in [Control::Load, Control::Penetration] {
-                let (active, linearised) = (
-                    run_with(NormalSolver::ActiveSet, control),
-                    run_with(NormalSolver::Pschenichnyj, control),
-                );
-                let (a, b) = (active.state.fields().unwrap(), linearised.state.fields().unwrap());
-                for (name, a, b) in [
-                    ("pressure", &a.pressure, &b.pressure),
-                    ("shear", &a.shear, &b.shear),
-                    ("temperature", &a.surface_temperature, &b.surface_temperature),
-                    ("wear", &a.wear, &b.wear),
-                ] {
-                    let difference = largest_difference(a, b);
-                    assert!(difference <= 1e-8, "{control:?} {name} {difference:e}");
-                }
-                assert!((a.penetration / b.penetration - 1.0).abs() <= 1e-8);
-            }
-        }
+    fn integrals(problem: &Problem, fields: &LineFields) -> Integrals {
+        integrals::integrals(problem, fields)
+    }
+
+    fn profiles(problem: &Problem, fields: &LineFields) -> Profiles {
+        let ambient = problem.conditions.inputs.ambient_temperature;
+        profiles::profiles(problem.operators, fields, ambient)
+    }
+
+    fn contact_nodes(&self, fields: &LineFields) -> Vec<ContactNode> {
+        profiles::contact_nodes(self, fields)
     }
 }

@@ -1,13 +1,13 @@
-//! The fields of the contact, all that a step changes, and their trend from step to step.
+//! The fields of a line contact, all that a step changes.
 
-use crate::contact::line::operators::LineOperators;
+use super::operators::LineOperators;
+use crate::contact::fields::{Fields, Number, Row, number, row};
 use crate::friction::memory::Memory;
-use crate::numerics::dense;
 use serde::{Deserialize, Serialize};
 
-/// The fields of the contact at one instant; n contact nodes.
+/// Fields of the contact at one instant; n contact nodes.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Fields {
+pub struct LineFields {
     /// Modal amplitudes of the temperature rise, columns × modes, column by column.
     pub temperature: Vec<f64>,
     /// Temperature rise at the surface of the columns, `K`.
@@ -45,11 +45,11 @@ pub struct Fields {
     pub wheel_temperature: f64,
 }
 
-impl Fields {
-    /// A cold, unworn rail without contact; the wheel's temperature is 0 K.
-    pub fn new(operators: &LineOperators) -> Fields {
+impl LineFields {
+    /// Fields of a cold, unworn rail without contact; the wheel's temperature is 0 K.
+    pub fn new(operators: &LineOperators) -> LineFields {
         let (n, columns) = (operators.mesh.contact_nodes, operators.mesh.columns());
-        Fields {
+        LineFields {
             temperature: vec![0.0; columns * operators.heat.basis.len()],
             surface_temperature: vec![0.0; columns],
             thermal_displacement: vec![0.0; 2 * n],
@@ -70,87 +70,6 @@ impl Fields {
         }
     }
 
-    /// The vectors, in the order of their declaration.
-    pub fn vectors(&self) -> [&Vec<f64>; 13] {
-        [
-            &self.temperature,
-            &self.surface_temperature,
-            &self.thermal_displacement,
-            &self.wear,
-            &self.replaced_inflow,
-            &self.pressure,
-            &self.shear,
-            &self.slip,
-            &self.saturation,
-            &self.friction,
-            &self.heat_flux,
-            &self.displacement,
-            &self.displacement_change,
-        ]
-    }
-
-    /// Whether the outputs are linear functions of a vector or its largest value, in the order of [`Fields::vectors`]: so of
-    /// temperatures, wear and heat flux, not of tractions, slip and friction. None where no output depends on it.
-    pub const OUTPUTS_ARE_LINEAR: [Option<bool>; 13] = [
-        Some(true),
-        Some(true),
-        Some(true),
-        Some(true),
-        None,
-        Some(false),
-        Some(false),
-        Some(false),
-        Some(false),
-        Some(false),
-        Some(true),
-        None,
-        None,
-    ];
-
-    fn vectors_mut(&mut self) -> [&mut Vec<f64>; 13] {
-        [
-            &mut self.temperature,
-            &mut self.surface_temperature,
-            &mut self.thermal_displacement,
-            &mut self.wear,
-            &mut self.replaced_inflow,
-            &mut self.pressure,
-            &mut self.shear,
-            &mut self.slip,
-            &mut self.saturation,
-            &mut self.friction,
-            &mut self.heat_flux,
-            &mut self.displacement,
-            &mut self.displacement_change,
-        ]
-    }
-
-    /// Overwrites these fields with others of the same sizes, without allocating.
-    pub fn copy_from(&mut self, other: &Fields) {
-        self.temperature.copy_from_slice(&other.temperature);
-        self.copy_surface_from(other);
-    }
-
-    /// As [`Fields::copy_from`], but for the temperature below the surface, most of all values.
-    pub fn copy_surface_from(&mut self, other: &Fields) {
-        for (own, other) in self.vectors_mut().into_iter().zip(other.vectors()).skip(1) {
-            own.copy_from_slice(other);
-        }
-        self.memory.copy_from(&other.memory);
-        self.relaxation_length = other.relaxation_length;
-        self.penetration = other.penetration;
-        self.wheel_temperature = other.wheel_temperature;
-    }
-
-    /// Adds a multiple of other fields of the same sizes.
-    pub fn add_multiple(&mut self, factor: f64, other: &Fields) {
-        for (own, other) in self.vectors_mut().into_iter().zip(other.vectors()) {
-            dense::add_multiple(other, factor, own);
-        }
-        self.penetration += factor * other.penetration;
-        self.wheel_temperature += factor * other.wheel_temperature;
-    }
-
     /// Modal amplitudes of one column.
     pub fn column(&self, operators: &LineOperators, column: usize) -> &[f64] {
         let m = operators.heat.basis.len();
@@ -158,67 +77,33 @@ impl Fields {
     }
 }
 
-/// Rates of change of what a step starts its iteration from, per second: the first guess is extrapolated.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Trend {
-    /// Of the shear, n.
-    pub shear: Vec<f64>,
-    /// Of the surface temperature, columns.
-    pub surface_temperature: Vec<f64>,
-    /// Of the thermal displacement, 2n.
-    pub thermal_displacement: Vec<f64>,
-    /// Of the wear depth, columns.
-    pub wear: Vec<f64>,
-}
+impl Fields for LineFields {
+    const ROWS: &'static [Row<LineFields>] = &[
+        row!(Linear, Computed, temperature),
+        row!(Linear, Extrapolated, surface_temperature),
+        row!(Linear, Extrapolated, thermal_displacement),
+        row!(Linear, Extrapolated, wear),
+        row!(Independent, Before, replaced_inflow),
+        row!(Nonlinear, Before, pressure),
+        row!(Nonlinear, Extrapolated, shear),
+        row!(Nonlinear, Before, slip),
+        row!(Nonlinear, Before, saturation),
+        row!(Nonlinear, Before, friction),
+        row!(Linear, Before, heat_flux),
+        row!(Independent, Before, displacement),
+        row!(Independent, Before, displacement_change),
+    ];
+    const NUMBERS: &'static [Number<LineFields>] = &[
+        number!(true, true, relaxation_length),
+        number!(false, true, penetration),
+        number!(false, true, wheel_temperature),
+    ];
 
-impl Trend {
-    /// No change.
-    pub fn new(operators: &LineOperators) -> Trend {
-        let fields = Fields::new(operators);
-        Trend {
-            shear: fields.shear,
-            surface_temperature: fields.surface_temperature,
-            thermal_displacement: fields.thermal_displacement,
-            wear: fields.wear,
-        }
+    fn memory(&self) -> &Memory {
+        &self.memory
     }
 
-    /// The vectors, in the order of their declaration.
-    pub fn vectors(&self) -> [&Vec<f64>; 4] {
-        [
-            &self.shear,
-            &self.surface_temperature,
-            &self.thermal_displacement,
-            &self.wear,
-        ]
-    }
-
-    /// The trend between two fields `duration` `s` apart.
-    pub fn update(&mut self, before: &Fields, after: &Fields, duration: f64) {
-        let update = |trend: &mut [f64], before: &[f64], after: &[f64]| {
-            for ((trend, before), after) in trend.iter_mut().zip(before).zip(after) {
-                *trend = (after - before) / duration;
-            }
-        };
-        update(&mut self.shear, &before.shear, &after.shear);
-        update(
-            &mut self.surface_temperature,
-            &before.surface_temperature,
-            &after.surface_temperature,
-        );
-        update(
-            &mut self.thermal_displacement,
-            &before.thermal_displacement,
-            &after.thermal_displacement,
-        );
-        update(&mut self.wear, &before.wear, &after.wear);
-    }
-
-    /// Moves the first guess on by `duration` `s`.
-    pub fn extrapolate(&self, fields: &mut Fields, duration: f64) {
-        dense::add_multiple(&self.shear, duration, &mut fields.shear);
-        dense::add_multiple(&self.surface_temperature, duration, &mut fields.surface_temperature);
-        dense::add_multiple(&self.thermal_displacement, duration, &mut fields.thermal_displacement);
-        dense::add_multiple(&self.wear, duration, &mut fields.wear);
+    fn memory_mut(&mut self) -> &mut Memory {
+        &mut self.memory
     }
 }

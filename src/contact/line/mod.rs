@@ -1,18 +1,18 @@
-//! The line engine: plane strain, the contact resolved along the rail and uniform across it.
+//! The line contact: plane strain, the contact resolved along the rail and uniform across it.
 //!
-//! [`engine`] is what the outside sees. [`rail`] is what is computed once, with [`relaxation`], the way on which rolling
-//! forgets a change. [`fields`] is what a step changes, [`problem`] one step as a problem: its data and the parts of its
-//! equations. [`split`] solves it as section 4 of the paper does, over the values of [`coupling`], until
-//! [`crate::contact::rest`] says that they rest; [`sensitivity`] is its derivative. [`readings`] and [`profiles`] are what is
-//! read off the fields.
+//! [`operators`] are what is computed once, with [`relaxation`], the distance on which rolling forgets a change. [`fields`] are
+//! what a step changes, [`solvers`] its solvers and buffers. The parts of a step are [`mechanics`] and [`heat_and_wear`],
+//! [`tangent`] their derivatives, and [`engine`] puts them together. [`integrals`] and [`profiles`] are read off the fields.
 
-pub mod coupling;
-pub mod engine;
+mod engine;
 pub mod fields;
+mod heat_and_wear;
+mod integrals;
+mod mechanics;
 pub mod operators;
-pub mod problem;
-pub mod profiles;
-pub mod readings;
-pub mod relaxation;
-pub mod sensitivity;
-pub mod split;
+mod profiles;
+mod relaxation;
+pub mod solvers;
+pub mod tangent;
+#[cfg(test)]
+mod tests;

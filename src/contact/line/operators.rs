@@ -34,7 +34,7 @@ impl LineOperators {
     ///
     /// # Errors
     /// [`crate::error::Error::StiffnessNotPositiveDefinite`], [`crate::error::Error::DepthBasis`].
-    pub fn new(parameters: &Parameters) -> Result<LineOperators> {
+    pub fn build(parameters: &Parameters) -> Result<LineOperators> {
         let mesh = Mesh::new(parameters);
         let scales = Scales::new(parameters);
         let (mut compliance, thermal) = pair::build(&mesh, parameters, &scales)?;

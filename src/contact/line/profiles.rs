@@ -1,12 +1,12 @@
 //! Profiles of a line contact for plotting, and its fields node by node.
 
-use super::fields::Fields;
+use super::fields::LineFields;
 use super::operators::LineOperators;
 use crate::contact::profiles::{self, ContactNode, PROFILE_POINTS, Profiles, StripProfiles};
 use crate::numerics::interpolation::between;
 
 /// Samples the fields, linear between the nodes.
-pub fn profiles(operators: &LineOperators, fields: &Fields, ambient: f64) -> Profiles {
+pub fn profiles(operators: &LineOperators, fields: &LineFields, ambient: f64) -> Profiles {
     let mesh = &operators.mesh;
     let n = mesh.contact_nodes;
     let surface: Vec<f64> = (0..n)
@@ -41,7 +41,7 @@ pub fn profiles(operators: &LineOperators, fields: &Fields, ambient: f64) -> Pro
 }
 
 /// The fields at the nodes of the contact window, from the rear to the front for V > 0.
-pub fn contact_nodes(operators: &LineOperators, fields: &Fields) -> Vec<ContactNode> {
+pub fn contact_nodes(operators: &LineOperators, fields: &LineFields) -> Vec<ContactNode> {
     let (mesh, scale) = (&operators.mesh, operators.scales.pressure);
     (0..mesh.contact_nodes)
         .map(|i| ContactNode {

@@ -1,180 +1,310 @@
-//! The patch engine from outside: built once, stepped from state to state.
+//! The patch as an [`Engine`].
 
-use super::fields::{PatchFields, PatchTrend};
+use super::fields::PatchFields;
+use super::heat_and_wear;
+use super::integrals;
+use super::march_tangent;
+use super::mechanics;
 use super::operators::PatchOperators;
 use super::problem::Problem;
 use super::profiles;
-use super::readings::readings;
-use super::scratch::Scratch;
-use super::sensitivity::{Linearisation, SensitivityScratch};
-use super::split;
-use crate::contact::outputs::Readings;
+use super::solvers::PatchSolvers;
+use super::tangent::PatchTangent;
+use crate::contact::engine::{Along, Direction, Engine, Linearised, MaterialPath};
+use crate::contact::integrals::Integrals;
+use crate::contact::interface::Interface;
 use crate::contact::profiles::{ContactNode, Profiles};
-use crate::contact::task::{Convergence, Task};
+use crate::contact::rim::HeatedNode;
 use crate::error::Result;
+use crate::mechanics::patch::normal;
+use crate::mechanics::sweep::Sweep;
 use crate::parameters::Parameters;
-use crate::settings::Settings;
-use crate::signals::Outputs;
-use serde::{Deserialize, Serialize};
+use crate::settings::{SensitivitySettings, Settings, SplitSettings};
 
-/// A patch: what is computed once.
-pub struct Patch {
-    operators: PatchOperators,
-}
+impl Engine for PatchOperators {
+    type Fields = PatchFields;
+    type Solvers = PatchSolvers;
+    type Tangent = PatchTangent;
 
-/// The state of a patch.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct PatchState {
-    /// Temperature, wear, tractions.
-    pub fields: PatchFields,
-    /// How they changed over the last step.
-    pub trend: PatchTrend,
-}
-
-/// Scratch of a step. What a step leaves in it changes no result of another one.
-pub struct PatchWorkspace {
-    scratch: Scratch,
-    /// The fields that a step works on, its solution until it is committed.
-    trial: PatchFields,
-    /// For derivatives, from the first that is asked for.
-    sensitivity: Option<Box<SensitivityScratch>>,
-}
-
-impl PatchWorkspace {
-    /// Makes the solution the state.
-    pub fn commit(&mut self, state: &mut PatchState, duration: f64) {
-        state.trend.update(&state.fields, &self.trial, duration);
-        std::mem::swap(&mut state.fields, &mut self.trial);
+    fn new(parameters: &Parameters) -> Result<PatchOperators> {
+        PatchOperators::build(parameters)
     }
-}
 
-impl Patch {
-    /// Grid, influence functions, depth modes.
-    ///
-    /// # Errors
-    /// [`Error::DepthBasis`].
-    pub fn new(parameters: &Parameters) -> Result<Patch> {
-        Ok(Patch {
-            operators: PatchOperators::new(parameters)?,
+    fn fields(&self) -> PatchFields {
+        PatchFields::new(self)
+    }
+
+    fn solvers(&self, settings: &Settings) -> PatchSolvers {
+        PatchSolvers::new(self, settings)
+    }
+
+    fn tangent(&self, settings: &Settings) -> PatchTangent {
+        PatchTangent::new(self, settings)
+    }
+
+    fn interface(&self) -> Interface {
+        Interface::new(self.grid.strips * self.grid.cells, 1)
+    }
+
+    fn split_settings(settings: &Settings) -> SplitSettings {
+        settings.patch_split()
+    }
+
+    fn sensitivity_settings(settings: &Settings) -> SensitivitySettings {
+        settings.patch_sensitivity()
+    }
+
+    fn window_length(&self) -> f64 {
+        2.0 * self.grid.half_length()
+    }
+
+    fn half_window(&self) -> f64 {
+        self.grid.half_length()
+    }
+
+    fn spacing(&self) -> f64 {
+        self.grid.length
+    }
+
+    fn displacement_scale(&self) -> f64 {
+        self.scales.displacement
+    }
+
+    fn pressure_scale(&self) -> f64 {
+        self.scales.pressure
+    }
+
+    fn unit_force(&self, _parameters: &Parameters) -> f64 {
+        self.grid.cell_area() * self.scales.pressure
+    }
+
+    fn own_displacement(&self, _parameters: &Parameters) -> f64 {
+        self.scales.displacement * self.own[0][self.grid.stride()]
+    }
+
+    /// In the ratio of the contact's length.
+    fn relaxation_length(problem: &Problem, fields: &PatchFields) -> f64 {
+        let load = problem.load(fields);
+        let ratio = (load / problem.parameters.largest_load).cbrt().min(1.0);
+        problem.operators.relaxation_length * if load > 0.0 { ratio } else { 1.0 }
+    }
+
+    fn paths(&self) -> impl Iterator<Item = MaterialPath> + '_ {
+        let grid = &self.grid;
+        (0..grid.strips).map(|strip| MaterialPath {
+            nodes: strip * grid.cells..(strip + 1) * grid.cells,
+            places: grid.row(strip),
         })
     }
 
-    /// What was computed once.
-    #[cfg(feature = "verification")]
-    pub fn operators(&self) -> &PatchOperators {
-        &self.operators
+    fn pressure(fields: &PatchFields) -> &[f64] {
+        &fields.pressure
     }
 
-    /// Scratch for the steps.
-    pub fn workspace(&self, settings: &Settings) -> PatchWorkspace {
-        PatchWorkspace {
-            scratch: Scratch::new(&self.operators, settings),
-            trial: PatchFields::new(&self.operators),
-            sensitivity: None,
+    fn surface_rise<'f>(&self, fields: &'f PatchFields) -> &'f [f64] {
+        &fields.heat.surface
+    }
+
+    fn wheel_temperature(fields: &PatchFields) -> f64 {
+        fields.wheel_temperature
+    }
+
+    fn set_wheel_temperature(fields: &mut PatchFields, temperature: f64) {
+        fields.wheel_temperature = temperature;
+    }
+
+    fn begin(
+        problem: &Problem,
+        before: Option<&PatchFields>,
+        now: &mut PatchFields,
+        solvers: &mut PatchSolvers,
+    ) -> Result<()> {
+        for component in 0..2 {
+            match before {
+                Some(before) => solvers.before[component].copy_from_slice(&before.displacement[component]),
+                None => solvers.before[component].fill(0.0),
+            }
+        }
+        if let Some(before) = before {
+            now.relaxation_length = Self::relaxation_length(problem, before);
+        }
+        solvers.normal.start_step();
+        solvers.friction.start_step();
+        solvers.softness.fill(0.0);
+        let grid = &problem.operators.grid;
+        solvers.contact.list(grid, |place| now.pressure[place] > 0.0);
+        let strips = solvers.contact.window(grid, 0).strips.len();
+        let weights = problem.slip_weights(problem.transient(now.relaxation_length));
+        mechanics::respond(problem, weights, strips, solvers);
+        if let Some(before) = before {
+            let rise = problem.incoming_rise();
+            let march = problem.heat_march();
+            march.start(&before.heat, rise, &mut now.heat, &mut solvers.heat)?;
+        }
+        Ok(())
+    }
+
+    /// What was not under pressure is not extrapolated into it.
+    fn limit_guess(before: &PatchFields, now: &mut PatchFields) {
+        for (pressure, before) in now.pressure.iter_mut().zip(&before.pressure) {
+            *pressure = if *before > 0.0 { pressure.max(0.0) } else { 0.0 };
         }
     }
 
-    /// Length along the rail of the window in which the contact is sought, `m`.
-    pub fn window_length(&self) -> f64 {
-        2.0 * self.operators.grid.half_length()
+    fn read(problem: &Problem, fields: &PatchFields, solvers: &mut PatchSolvers, interface: &mut Interface) {
+        heat_and_wear::read(problem, fields, solvers, interface);
     }
 
-    fn problem<'a>(&'a self, task: &Task<'a>) -> Problem<'a> {
-        Problem {
-            operators: &self.operators,
-            parameters: task.parameters,
-            settings: task.settings,
-            conditions: task.conditions,
-        }
+    fn solve_mechanics(
+        problem: &Problem,
+        interface: &Interface,
+        now: &mut PatchFields,
+        solvers: &mut PatchSolvers,
+        tolerance: f64,
+    ) -> Result<Sweep> {
+        mechanics::solve(problem, interface, now, solvers, tolerance)
     }
 
-    /// Cold and unworn, mechanics solved.
-    ///
-    /// # Errors
-    /// A solver that did not converge.
-    pub fn initial_state(&self, task: &Task, workspace: &mut PatchWorkspace) -> Result<PatchState> {
-        let mut fields = PatchFields::new(&self.operators);
-        fields.wheel_temperature = task.conditions.inputs.ambient_temperature;
-        split::solve_mechanics(&self.problem(task), &mut fields, &mut workspace.scratch)?;
-        Ok(PatchState {
-            fields,
-            trend: PatchTrend::new(&self.operators),
-        })
+    fn march_wear(problem: &Problem, before: &PatchFields, now: &mut PatchFields, solvers: &mut PatchSolvers) {
+        heat_and_wear::march_wear(problem, before, now, solvers);
     }
 
-    /// One implicit step from `state`, into the workspace. The step before took `last_duration` `s`.
-    ///
-    /// # Errors
-    /// The first solver that did not converge, or a contact that leaves the window.
-    pub fn solve(
-        &self,
-        task: &Task,
-        workspace: &mut PatchWorkspace,
-        state: &PatchState,
-        last_duration: f64,
-    ) -> Result<(Convergence, Readings)> {
-        let PatchWorkspace { scratch, trial, .. } = workspace;
-        trial.copy_contact_from(&state.fields);
-        let problem = self.problem(task);
-        let ahead = task.conditions.duration.min(last_duration);
-        let convergence = split::solve(&problem, &state.fields, (&state.trend, ahead), trial, scratch)?;
-        Ok((convergence, readings(&problem, trial)))
+    fn march_heat(
+        problem: &Problem,
+        _before: &PatchFields,
+        wheel_rise: f64,
+        now: &mut PatchFields,
+        solvers: &mut PatchSolvers,
+    ) -> Result<()> {
+        heat_and_wear::march_heat(problem, wheel_rise, now, solvers)
     }
 
-    /// What the outputs are made of.
-    pub fn readings(&self, task: &Task, state: &PatchState) -> Readings {
-        readings(&self.problem(task), &state.fields)
+    fn update_wear_compliance(problem: &Problem, now: &PatchFields, solvers: &mut PatchSolvers) {
+        heat_and_wear::update_wear_compliance(problem, now, solvers);
     }
 
-    /// Derivatives of all outputs with respect to each of the given rows of [`crate::signals::INPUTS`].
-    ///
-    /// # Errors
-    /// A linear system that could not be solved.
-    pub fn sensitivities(
-        &self,
-        task: &Task,
-        workspace: &mut PatchWorkspace,
-        state: &PatchState,
-        inputs: impl IntoIterator<Item = usize>,
-    ) -> Result<Vec<Outputs>> {
-        let scratch = workspace
-            .sensitivity
-            .get_or_insert_with(|| Box::new(SensitivityScratch::new(&self.operators, task.settings)));
-        let mut step = Linearisation::new(self.problem(task), &state.fields, scratch)?;
-        inputs.into_iter().map(|input| step.output_sensitivity(input)).collect()
+    fn close_friction(problem: &Problem, now: &mut PatchFields, solvers: &PatchSolvers) {
+        heat_and_wear::close_friction(problem, now, &solvers.contact);
     }
 
-    /// Profiles for plotting.
-    pub fn profiles(&self, task: &Task, state: &PatchState, ambient: f64) -> Profiles {
-        profiles::profiles(&self.problem(task), &state.fields, ambient)
+    fn close_displacement(
+        problem: &Problem,
+        _interface: &Interface,
+        now: &mut PatchFields,
+        solvers: &mut PatchSolvers,
+    ) {
+        mechanics::close_displacement(problem, now, solvers);
     }
 
-    /// The fields at the cells of the window, strip by strip.
-    pub fn contact_nodes(&self, state: &PatchState) -> Vec<ContactNode> {
-        profiles::contact_nodes(&self.operators, &state.fields)
+    fn finalise(
+        problem: &Problem,
+        before: &PatchFields,
+        now: &mut PatchFields,
+        solvers: &mut PatchSolvers,
+    ) -> Result<()> {
+        let breadth = problem.breadth(now);
+        let (heat, wear) = (problem.heat_march(), problem.wear_march());
+        heat.finish(&before.heat, breadth, &mut now.heat, &mut solvers.heat)?;
+        wear.finish(breadth, &before.wear, &mut now.wear, &mut solvers.wear_steps);
+        Ok(())
     }
 
-    /// Whether a state (of another source) has the sizes of this patch and finite content.
-    pub fn accepts(&self, state: &PatchState) -> bool {
-        let expected = PatchFields::new(&self.operators);
-        let same = |own: &Vec<f64>, expected: &Vec<f64>| {
-            own.len() == expected.len() && own.iter().all(|value| value.is_finite())
+    fn is_cut_off(problem: &Problem, now: &PatchFields, solvers: &PatchSolvers) -> bool {
+        let grid = &problem.operators.grid;
+        let overlap = problem.settings.mechanics.overlap;
+        let at_side = |place: usize| {
+            let strip = place / grid.stride();
+            (strip == 0 || strip + 1 == grid.strips) && now.pressure[place] > 0.0
         };
-        let trend = PatchTrend::new(&self.operators);
-        state
-            .fields
-            .vectors()
-            .zip(expected.vectors())
-            .all(|(own, expected)| same(own, expected))
-            && state
-                .trend
-                .vectors()
+        let mut places = (0..grid.strips).flat_map(|strip| grid.row(strip));
+        solvers.contact.cells() > 0
+            && places.any(|place| {
+                !normal::is_free(grid, place) && solvers.normal.separation[place] < -overlap || at_side(place)
+            })
+    }
+
+    fn heated_nodes<'f>(
+        problem: &'f Problem,
+        fields: &'f PatchFields,
+        values: &'f PatchFields,
+    ) -> impl Iterator<Item = HeatedNode> + 'f {
+        let grid = &problem.operators.grid;
+        (0..grid.strips).flat_map(move |strip| {
+            let cells = grid.row(strip).enumerate();
+            let heated = cells.filter(|(_, place)| fields.pressure[*place] > 0.0);
+            heated.map(move |(cell, place)| HeatedNode {
+                pressure: values.pressure[place],
+                shear: [values.shear[0][place], values.shear[1][place]],
+                slip: [values.slip[0][place], values.slip[1][place]],
+                rise: values.heat.surface[strip * grid.cells + cell],
+            })
+        })
+    }
+
+    fn begin_linearisation(problem: &Problem, fields: &PatchFields, solvers: &mut PatchSolvers) {
+        for component in 0..2 {
+            let nodes = fields.displacement[component]
                 .iter()
-                .zip(trend.vectors())
-                .all(|(own, expected)| same(own, expected))
-            && state.fields.numbers().iter().all(|number| number.is_finite())
-            && state.fields.relaxation_length > 0.0
-            && state.fields.heat.breadth > 0.0
-            && state.fields.wear.breadth > 0.0
+                .zip(&fields.displacement_change[component]);
+            for (before, (now, change)) in solvers.before[component].iter_mut().zip(nodes) {
+                *before = now - change;
+            }
+        }
+        heat_and_wear::take_all_wear(problem, fields, solvers);
+    }
+
+    fn linearise(
+        problem: &Problem,
+        interface: &Interface,
+        fields: &mut PatchFields,
+        solvers: &mut PatchSolvers,
+        tangent: &mut PatchTangent,
+    ) -> Result<()> {
+        tangent.linearise(problem, interface, fields, solvers)
+    }
+
+    fn begin_direction(
+        problem: &Problem,
+        fields: &PatchFields,
+        direction: &Direction,
+        change: &mut PatchFields,
+        tangent: &mut PatchTangent,
+    ) {
+        march_tangent::begin(problem, fields, direction, change, tangent);
+    }
+
+    fn mechanics_tangent(at: &mut Linearised<Self>, along: &Along, change: &mut PatchFields) -> Result<()> {
+        let Linearised {
+            problem,
+            interface,
+            fields,
+            solvers,
+            tangent,
+            tolerance,
+            ..
+        } = at;
+        tangent.tractions(problem, (*interface, &**fields, &**solvers), along, change, *tolerance)
+    }
+
+    fn march_tangent(at: &mut Linearised<Self>, along: &Along, change: &mut PatchFields) -> Result<()> {
+        march_tangent::wear(at, along.direction, change);
+        march_tangent::heat(at, along, change)
+    }
+
+    fn finalise_tangent(at: &mut Linearised<Self>, direction: &Direction, change: &mut PatchFields) {
+        march_tangent::finalise(at, direction, change);
+    }
+
+    fn integrals(problem: &Problem, fields: &PatchFields) -> Integrals {
+        integrals::integrals(problem, fields)
+    }
+
+    fn profiles(problem: &Problem, fields: &PatchFields) -> Profiles {
+        let ambient = problem.conditions.inputs.ambient_temperature;
+        profiles::profiles(problem, fields, ambient)
+    }
+
+    fn contact_nodes(&self, fields: &PatchFields) -> Vec<ContactNode> {
+        profiles::contact_nodes(self, fields)
     }
 }

@@ -1,23 +1,23 @@
-//! The patch engine: half-spaces, the contact resolved along the rail and across it.
+//! The patch: half-spaces, the contact resolved along the rail and across it.
 //!
-//! [`engine`] is what the outside sees. [`rail`] is what is computed once, with [`expansion`] by heat, [`fields`] what a step changes, [`problem`] one
-//! step as a problem. [`split`] solves it: [`tractions`], pressure and then friction with the [`response`] of the slip to it, for what wear and
-//! heat hand to the mechanics ([`coupling`]), then wear and heat for those tractions, until they rest. [`scratch`] are its buffers.
-//! [`sensitivity`] are its derivatives, with the [`tangent`] of the tractions. [`readings`] and [`profiles`] are what is read off the fields.
+//! [`operators`] are what is computed once, with the [`expansion`] by heat. [`fields`] are what a step changes, [`solvers`] its
+//! solvers and buffers, [`problem`] has the parts of its equations. The parts of a step are [`mechanics`], pressure and then friction
+//! with the [`response`] of the slip to it and what the cells' particles bring along ([`memory`]), and [`heat_and_wear`]; their
+//! derivatives are [`tangent`] and [`march_tangent`]. [`engine`] puts them together. [`integrals`], with the [`extent`] of the
+//! contact, and [`profiles`] are read off the fields.
 
-pub mod coupling;
-pub mod engine;
-pub mod expansion;
-pub mod extent;
+mod engine;
+mod expansion;
+mod extent;
 pub mod fields;
+mod heat_and_wear;
+mod integrals;
+mod march_tangent;
+mod mechanics;
 mod memory;
 pub mod operators;
-pub mod problem;
-pub mod profiles;
-pub mod readings;
-pub mod response;
-pub mod scratch;
-pub mod sensitivity;
-pub mod split;
+mod problem;
+mod profiles;
+mod response;
+pub mod solvers;
 pub mod tangent;
-pub mod tractions;

@@ -67,7 +67,7 @@ impl PatchOperators {
     ///
     /// # Errors
     /// [`crate::error::Error::DepthBasis`].
-    pub fn new(parameters: &Parameters) -> Result<PatchOperators> {
+    pub fn build(parameters: &Parameters) -> Result<PatchOperators> {
         let (half_length, half_breadth) = parameters.patch_window();
         let grid = Grid::new(
             parameters.patch_nodes,

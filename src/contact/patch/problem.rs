@@ -1,34 +1,17 @@
-//! One implicit step of the patch as a problem: its data, and the parts of its equations.
+//! Parts of the equations of a patch: slip, leading edge, sliding, heat exchange.
 
 use super::fields::PatchFields;
 use super::operators::PatchOperators;
-use crate::contact::rim::HeatedNode;
-use crate::contact::task::Conditions;
-use crate::friction::FrictionState;
 use crate::friction::coulomb::Sliding;
-use crate::friction::path::{PathLaw, PathStep};
 use crate::heat::strips::StripHeatMarch;
 use crate::heat::surface::{SurfaceCondition, SurfaceExchange};
-use crate::mechanics::normal::problem::Constraint;
 use crate::mechanics::transient::Transient;
-use crate::parameters::{Control, Parameters, WheelHeating};
-use crate::settings::Settings;
-use crate::signals::{Inputs, Motion};
+use crate::signals::Motion;
 use crate::wear::strips::StripWearMarch;
 use std::ops::Range;
 
-/// One implicit step.
-#[derive(Clone, Copy)]
-pub struct Problem<'a> {
-    /// What is computed once.
-    pub operators: &'a PatchOperators,
-    /// The parameters.
-    pub parameters: &'a Parameters,
-    /// Limits and tolerances.
-    pub settings: &'a Settings,
-    /// What the step holds fixed.
-    pub conditions: Conditions,
-}
+/// Problem of a step of the patch.
+pub type Problem<'a> = crate::contact::problem::Problem<'a, PatchOperators>;
 
 /// How the slip ahead of a cell follows from displacements, `m/s` per scaled displacement: of u less that of the cell ahead, of u
 /// less that of the step before, and of the latter less that of the cell ahead then.
@@ -52,81 +35,6 @@ impl SlipWeights {
 }
 
 impl<'a> Problem<'a> {
-    /// The same problem under other inputs.
-    pub fn under(&self, inputs: Inputs) -> Problem<'a> {
-        Problem {
-            conditions: Conditions {
-                inputs,
-                motion: inputs.motion(self.parameters),
-                ..self.conditions
-            },
-            ..*self
-        }
-    }
-
-    /// The friction law at this ambient temperature and scale.
-    pub fn friction(&self) -> FrictionState<'a> {
-        FrictionState {
-            parameters: self.parameters,
-            ambient: self.conditions.inputs.ambient_temperature,
-            scale: self.conditions.inputs.friction_scale,
-        }
-    }
-
-    /// How friction depends on slip and on what was before; none where it does not.
-    pub fn path_law(&self) -> Option<PathLaw> {
-        let operators = self.operators;
-        let origin = operators.grid.stride();
-        PathLaw::new(
-            self.parameters,
-            &PathStep {
-                duration: self.conditions.duration,
-                spacing: operators.grid.length,
-                speed: self.conditions.motion.rolling_speed,
-                displacement: operators.scales.displacement * operators.own[0][origin],
-                pressure: operators.scales.pressure,
-            },
-        )
-    }
-
-    /// Load or penetration, scaled.
-    pub fn constraint(&self) -> Constraint {
-        match self.parameters.control {
-            Control::Load => {
-                let load = self.conditions.inputs.normal_load;
-                let load = self.settings.mechanics.felt(load, self.parameters.largest_load);
-                Constraint::Total(load / self.operators.unit_force())
-            }
-            Control::Penetration => {
-                Constraint::Penetration(self.parameters.prescribed_penetration / self.operators.scales.displacement)
-            }
-        }
-    }
-
-    /// Whether rail material moves towards −x; V = 0 counts so.
-    pub fn is_forward(&self) -> bool {
-        self.conditions.motion.rolling_speed >= 0.0
-    }
-
-    /// Temperature rise θ_w of the wheel in (23) at the rim's temperature, `K`.
-    pub fn wheel_rise(&self, wheel_temperature: f64) -> f64 {
-        match self.parameters.wheel_heating {
-            WheelHeating::Off => 0.0,
-            WheelHeating::On => wheel_temperature - self.conditions.inputs.ambient_temperature,
-        }
-    }
-
-    /// ∂u/∂t over the step, with the relaxation length of the fields.
-    pub fn transient(&self, fields: &PatchFields) -> Transient {
-        Transient::new(
-            self.conditions.duration,
-            self.conditions.motion.rolling_speed.abs(),
-            self.operators.grid.length,
-            fields.relaxation_length,
-            self.operators.scales.displacement,
-        )
-    }
-
     /// How the slip follows from displacements.
     pub fn slip_weights(&self, transient: Transient) -> SlipWeights {
         let speed = self.conditions.motion.rolling_speed.abs();
@@ -142,13 +50,8 @@ impl<'a> Problem<'a> {
 
     /// Change of the weights with |V|, by `speed` `m/s`.
     pub fn slip_weights_tangent(&self, fields: &PatchFields, speed: f64) -> SlipWeights {
-        let transient = self.transient(fields);
-        let change = transient.tangent(
-            self.conditions.duration,
-            self.conditions.motion.rolling_speed.abs(),
-            self.operators.grid.length,
-            fields.relaxation_length,
-        );
+        let transient = self.transient(fields.relaxation_length);
+        let change = self.transient_per_speed(fields.relaxation_length);
         let strain_speed = speed * self.operators.scales.displacement / self.operators.grid.length;
         let centred = speed * (change.centring * transient.rate + transient.centring * change.rate);
         SlipWeights {
@@ -178,13 +81,6 @@ impl<'a> Problem<'a> {
         self.settings.patch.largest_opening * self.operators.approach.own
     }
 
-    /// Relaxation length of a contact under the load that it had in the given fields, `m`: in the ratio of the contact's length.
-    pub fn relaxation_length(&self, fields: &PatchFields) -> f64 {
-        let load = self.operators.unit_force() * fields.pressure.iter().sum::<f64>();
-        let ratio = (load / self.parameters.largest_load).cbrt().min(1.0);
-        self.operators.relaxation_length * if load > 0.0 { ratio } else { 1.0 }
-    }
-
     /// The cells of a strip that have one ahead of them: the slip is taken between the two.
     pub fn cells_with_next(&self) -> Range<usize> {
         let cells = self.operators.grid.cells;
@@ -194,25 +90,6 @@ impl<'a> Problem<'a> {
     /// Rigid slip of the rail relative to the wheel at a point, `m/s`: w_x = V(ξ + φ y), w_y = −V(η + φ x).
     pub fn rigid_slip(&self, x: f64, y: f64) -> [f64; 2] {
         rigid_slip(&self.conditions.motion, x, y)
-    }
-
-    /// The cells under the pressure of `fields` as the rim sees them in `values`: the same fields, or with changes of them their changes.
-    pub fn heated_nodes<'f>(
-        &'f self,
-        fields: &'f PatchFields,
-        values: &'f PatchFields,
-    ) -> impl Iterator<Item = HeatedNode> + 'f {
-        let grid = &self.operators.grid;
-        (0..grid.strips).flat_map(move |strip| {
-            let cells = grid.row(strip).enumerate();
-            let heated = cells.filter(|(_, place)| fields.pressure[*place] > 0.0);
-            heated.map(move |(cell, place)| HeatedNode {
-                pressure: values.pressure[place],
-                shear: [values.shear[0][place], values.shear[1][place]],
-                slip: [values.slip[0][place], values.slip[1][place]],
-                rise: values.heat.surface[strip * grid.cells + cell],
-            })
-        })
     }
 
     /// The heat march of the step.
@@ -237,11 +114,6 @@ impl<'a> Problem<'a> {
             speed: self.conditions.motion.rolling_speed,
             duration: self.conditions.duration,
         }
-    }
-
-    /// Wear rate per slip and scaled pressure.
-    pub fn wear_per_slip(&self) -> f64 {
-        self.parameters.wear_coefficient * self.operators.scales.pressure
     }
 
     /// Sliding of a cell, by its place on the grid.

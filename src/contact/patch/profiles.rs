@@ -1,9 +1,9 @@
 //! Profiles of a patch for plotting: along its middle strip, and across the strips.
 
 use super::fields::PatchFields;
+use super::integrals::wear_left_behind;
 use super::operators::PatchOperators;
 use super::problem::Problem;
-use super::readings::wear_left_behind;
 use crate::contact::profiles::{ContactNode, PROFILE_POINTS, Profiles, STRIP_POINTS, StripProfiles, depths};
 use crate::friction::coulomb;
 use crate::numerics::interpolation::between;

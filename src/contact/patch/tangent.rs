@@ -4,17 +4,21 @@
 //! It has solvers and tables of its own: what a step has left in the others is not needed, so that it starts from the fields
 //! alone.
 
-use super::coupling::Coupling;
 use super::expansion;
 use super::fields::PatchFields;
 use super::memory;
 use super::operators::PatchOperators;
 use super::problem::{Problem, SlipWeights, rigid_slip};
 use super::response;
-use super::scratch::PathScratch;
+use super::solvers::{PatchSolvers, PathScratch};
 use crate::body::influence::{self, Window};
+use crate::contact::engine::{Along, Direction};
+use crate::contact::interface::Interface;
+use crate::contact::memory as path_memory;
 use crate::error::Result;
 use crate::friction::path::PathLaw;
+use crate::heat::strips::StripHeatScratch;
+use crate::heat::surface::{ExchangeTangent, SurfaceExchange};
 use crate::mechanics::normal::problem::Constraint;
 use crate::mechanics::patch::contact::Contact;
 use crate::mechanics::patch::friction::{
@@ -24,24 +28,9 @@ use crate::mechanics::patch::law::Vector;
 use crate::mechanics::patch::normal::{Normal, NormalProblem};
 use crate::numerics::dense::{add_multiple, largest};
 use crate::settings::Settings;
-use crate::signals::{Inputs, Motion};
-use crate::transport::CellStep;
-
-/// Change of the inputs in one direction and of the motion that they make.
-#[derive(Debug, Clone, Copy)]
-pub struct Direction {
-    /// Of the inputs.
-    pub inputs: Inputs,
-    /// Of the motion.
-    pub motion: Motion,
-    /// d|V|, `m/s`.
-    pub speed: f64,
-    /// Least step along it of the difference of the outputs.
-    pub least_step: f64,
-}
 
 /// The linearised mechanics: solvers, what they are linearised at, and buffers.
-pub struct Tangent {
+pub struct PatchTangent {
     contact: Contact,
     normal: Normal,
     friction: Friction,
@@ -50,19 +39,16 @@ pub struct Tangent {
     weights: SlipWeights,
     /// What the friction law of all cells has in common: r, w, ε.
     scheme: [f64; 3],
-    /// On the grid: softness by wear, slip ahead but for the leading edge, u before the step, separation.
-    pub softness: Vec<f64>,
+    /// On the grid: slip ahead but for the leading edge, separation.
     slip: [Vec<f64>; 2],
-    before: [Vec<f64>; 2],
     separation: Vec<f64>,
     /// Of the cells: bound, slip per shear by the leading edge.
     bound: Vec<f64>,
     edge: Vec<Vector>,
-    /// Changes on the grid: gap, u that does not come from shear, slip ahead but for the shear's part, lift by shear.
+    /// Changes on the grid: gap, u that does not come from shear, slip ahead but for the shear's part.
     gap: Vec<f64>,
     given: [Vec<f64>; 2],
     free_slip: [Vec<f64>; 2],
-    lift: [Vec<f64>; 2],
     /// Changes of the cells.
     bound_change: Vec<f64>,
     edge_change: Vec<Vector>,
@@ -72,15 +58,20 @@ pub struct Tangent {
     path_law: Option<PathLaw>,
     path: PathScratch,
     friction_change: Vec<f64>,
+    /// Heat march, change of the wear rate, surface exchange at the solution and its change.
+    pub(super) heat: StripHeatScratch,
+    pub(super) wear_rate: Vec<f64>,
+    pub(super) exchange: Vec<SurfaceExchange>,
+    pub(super) exchange_change: Vec<ExchangeTangent>,
 }
 
-impl Tangent {
+impl PatchTangent {
     /// For a rail.
-    pub fn new(operators: &PatchOperators, settings: &Settings) -> Tangent {
+    pub fn new(operators: &PatchOperators, settings: &Settings) -> PatchTangent {
         let (grid, transform) = (&operators.grid, &operators.transform);
         let on_grid = || vec![0.0; grid.len()];
         let vectors = || [on_grid(), on_grid()];
-        Tangent {
+        PatchTangent {
             contact: Contact::new(grid),
             normal: Normal::new(grid, transform, settings.patch),
             friction: Friction::new(grid, transform, settings.patch),
@@ -93,16 +84,13 @@ impl Tangent {
                 strain_speed: 0.0,
             },
             scheme: [0.0; 3],
-            softness: on_grid(),
             slip: vectors(),
-            before: vectors(),
             separation: on_grid(),
             bound: on_grid(),
             edge: vec![[0.0; 2]; grid.len()],
             gap: on_grid(),
             given: vectors(),
             free_slip: vectors(),
-            lift: vectors(),
             bound_change: on_grid(),
             edge_change: vec![[0.0; 2]; grid.len()],
             expansion: expansion::Scratch::new(grid, transform),
@@ -110,6 +98,10 @@ impl Tangent {
             path_law: None,
             path: PathScratch::new(grid.strips * grid.cells),
             friction_change: vec![0.0; grid.strips * grid.cells],
+            heat: StripHeatScratch::new(&operators.basis, &operators.strips),
+            wear_rate: vec![0.0; grid.strips * grid.cells],
+            exchange: vec![SurfaceExchange::default(); grid.strips * grid.cells],
+            exchange_change: vec![ExchangeTangent::default(); grid.strips * grid.cells],
         }
     }
 
@@ -117,26 +109,27 @@ impl Tangent {
     ///
     /// # Errors
     /// [`crate::error::Error::SingularContactMatrix`].
-    pub fn linearise(&mut self, problem: &Problem, fields: &PatchFields) -> Result<()> {
+    pub fn linearise(
+        &mut self,
+        problem: &Problem,
+        interface: &Interface,
+        fields: &PatchFields,
+        solvers: &PatchSolvers,
+    ) -> Result<()> {
         let (operators, grid) = (problem.operators, &problem.operators.grid);
         self.contact.list(grid, |place| fields.pressure[place] > 0.0);
-        self.weights = problem.slip_weights(problem.transient(fields));
+        self.weights = problem.slip_weights(problem.transient(fields.relaxation_length));
         response::adapt(
             problem,
             &self.weights,
             problem.operators.grid.strips,
             &mut self.response,
         );
-        self.soften(problem, fields);
-        self.separate(problem, fields);
+        self.separate(problem, interface, fields, solvers);
         let ahead = leading(problem);
         for (component, slip) in self.slip.iter_mut().enumerate() {
             let now = &fields.displacement[component];
-            let changes = now.iter().zip(&fields.displacement_change[component]);
-            for (before, (now, change)) in self.before[component].iter_mut().zip(changes) {
-                *before = now - change;
-            }
-            let before = &self.before[component];
+            let before = &solvers.before[component];
             for strip in 0..grid.strips {
                 for cell in problem.cells_with_next() {
                     let place = grid.place(strip, cell);
@@ -185,71 +178,41 @@ impl Tangent {
         self.friction.linearise(&law, &fields.shear)
     }
 
-    /// The wear of the step per pressure: all of it is in the normal problem, where it is stiff.
-    fn soften(&mut self, problem: &Problem, fields: &PatchFields) {
-        self.softness.fill(0.0);
-        if problem.conditions.duration <= 0.0 {
-            return;
-        }
-        let (operators, speed) = (problem.operators, problem.conditions.motion.rolling_speed.abs());
-        let own = CellStep::new(1.0 / problem.conditions.duration, operators.grid.length, speed).own;
-        let per_slip = problem.wear_per_slip() * own / operators.scales.displacement;
-        for place in self.contact.places(&operators.grid) {
-            self.softness[place] = per_slip * fields.slip[0][place].hypot(fields.slip[1][place]);
-        }
-    }
-
     /// The separation of the cells.
-    fn separate(&mut self, problem: &Problem, fields: &PatchFields) {
+    fn separate(&mut self, problem: &Problem, interface: &Interface, fields: &PatchFields, solvers: &PatchSolvers) {
         let (operators, grid) = (problem.operators, &problem.operators.grid);
-        self.lift_by_shear(problem, &fields.shear);
         for strip in 0..grid.strips {
             for (cell, place) in grid.row(strip).enumerate() {
                 let index = strip * grid.cells + cell;
-                self.gap[place] = operators.gap[place] + fields.wear.depth[index] / operators.scales.displacement
-                    - operators.expansion.bulge * fields.heat.content[index]
-                    - self.lift[0][place];
+                self.gap[place] = operators.gap[place] + interface.gap()[index] - interface.displacement()[index];
             }
         }
-        let data = normal_problem(problem, &self.gap, &self.nothing, problem.constraint(), 0.0);
+        let data = normal_problem(problem, &self.gap, &solvers.softness, problem.constraint(), 0.0);
         self.normal
             .separation_of(&data, &self.contact, &fields.pressure, fields.penetration);
         self.separation.copy_from_slice(&self.normal.separation);
     }
 
-    /// Lift by the given shear, or its change, scaled, on the grid; 0 for like bodies.
-    pub fn lift_by_shear(&mut self, problem: &Problem, shear: &[Vec<f64>; 2]) -> &[f64] {
-        let operators = problem.operators;
-        if let Some(tables) = &operators.coupling {
-            let [lift, ignored] = &mut self.lift;
-            let load = [&shear[0][..], &shear[1][..]];
-            let window = Window::whole(&operators.grid);
-            operators
-                .transform
-                .apply(tables, &window, load, [lift, ignored], &mut self.products);
-        }
-        &self.lift[0]
-    }
-
-    /// The change of tractions, friction coefficient and slip from the given one to that under the given changes of temperature, lift and
-    /// wear; with the wear the lift by shear is handed over.
+    /// The change of tractions, friction coefficient and slip from the given one to that under the given change of the
+    /// interface vector.
     ///
     /// # Errors
     /// [`crate::error::Error::NormalNotConverged`], [`crate::error::Error::TangentialNotConverged`].
     pub fn tractions(
         &mut self,
         problem: &Problem,
-        fields: &PatchFields,
-        (direction, iterate): (&Direction, &Coupling),
+        (interface, fields, solvers): (&Interface, &PatchFields, &PatchSolvers),
+        along: &Along,
         tangent: &mut PatchFields,
         tolerance: f64,
     ) -> Result<()> {
-        let (operators, grid) = (problem.operators, &problem.operators.grid);
+        let (operators, grid, direction) = (problem.operators, &problem.operators.grid, along.direction);
+        let iterate = along.interface;
         let law = problem.friction();
         for strip in 0..grid.strips {
             for (cell, place) in grid.row(strip).enumerate() {
                 let index = strip * grid.cells + cell;
-                self.gap[place] = iterate.wear()[index] - iterate.lift()[index];
+                self.gap[place] = iterate.gap()[index] - iterate.displacement()[index];
                 let touches = fields.pressure[place] > 0.0;
                 let resting = if touches || self.path_law.is_some() {
                     let changes = [
@@ -257,7 +220,7 @@ impl Tangent {
                         direction.inputs.ambient_temperature,
                         direction.inputs.friction_scale,
                     ];
-                    law.coefficient_tangent(fields.heat.surface[index], changes)
+                    law.coefficient_tangent(interface.temperature(index), changes)
                 } else {
                     0.0
                 };
@@ -265,7 +228,7 @@ impl Tangent {
                 tangent.friction[place] = if touches { resting } else { 0.0 };
             }
         }
-        let total = direction.inputs.normal_load / operators.unit_force();
+        let total = direction.inputs.normal_load / problem.unit_force();
         let constraint = match problem.constraint() {
             Constraint::Total(_) => Constraint::Total(total),
             Constraint::Penetration(_) => Constraint::Penetration(0.0),
@@ -276,12 +239,19 @@ impl Tangent {
             total.abs() / self.contact.cells() as f64,
         ];
         let size = size.into_iter().fold(LEAST_CHANGE, f64::max);
-        let data = normal_problem(problem, &self.gap, &self.softness, constraint, tolerance * size);
+        let data = normal_problem(problem, &self.gap, &solvers.softness, constraint, tolerance * size);
         tangent.penetration = self.normal.tangent(&data, &self.contact, &mut tangent.pressure)?;
         self.edges(problem, fields, direction, tangent);
         if let Some(path_law) = &self.path_law {
-            let changes = (direction.speed, &tangent.memory.now.resting[..], &tangent.pressure[..]);
-            memory::tangent(problem, path_law, fields, changes, &mut self.friction_change);
+            path_memory::tangent(
+                problem,
+                path_law,
+                fields,
+                direction.speed,
+                &tangent.memory.now.resting,
+                Some(&tangent.pressure),
+                &mut self.friction_change,
+            );
             for run in self.contact.runs() {
                 let own = &self.friction_change[run.strip * grid.cells + run.first..];
                 tangent.friction[run.places(grid)].copy_from_slice(&own[..run.cells]);
@@ -291,7 +261,7 @@ impl Tangent {
             self.bound_change[index] =
                 tangent.friction[place] * fields.pressure[place] + fields.friction[place] * tangent.pressure[place];
         }
-        self.free_slip(problem, fields, (direction, iterate), &tangent.pressure);
+        self.free_slip(problem, (fields, solvers), along, &tangent.pressure);
         let path = path_of_cells(self.path_law, &self.path);
         let law = friction_problem(
             problem,
@@ -355,10 +325,11 @@ impl Tangent {
     fn free_slip(
         &mut self,
         problem: &Problem,
-        fields: &PatchFields,
-        (direction, iterate): (&Direction, &Coupling),
+        (fields, solvers): (&PatchFields, &PatchSolvers),
+        along: &Along,
         pressure: &[f64],
     ) {
+        let (direction, iterate) = (along.direction, along.interface);
         let (operators, grid) = (problem.operators, &problem.operators.grid);
         self.given.iter_mut().for_each(|component| component.fill(0.0));
         if let Some(tables) = &operators.coupling {
@@ -372,7 +343,7 @@ impl Tangent {
         let heat = &mut self.expansion;
         if operators
             .expansion
-            .displace(grid, &operators.transform, iterate.lift(), heat)
+            .displace(grid, &operators.transform, iterate.displacement(), heat)
         {
             for (given, by_heat) in self.given.iter_mut().zip(&heat.displacement) {
                 add_multiple(by_heat, 1.0, given);
@@ -381,7 +352,7 @@ impl Tangent {
         let ahead = leading(problem);
         let weights_change = problem.slip_weights_tangent(fields, direction.speed);
         for component in 0..2 {
-            let (now, before) = (&fields.displacement[component], &self.before[component]);
+            let (now, before) = (&fields.displacement[component], &solvers.before[component]);
             let given = &self.given[component];
             for strip in 0..grid.strips {
                 for cell in problem.cells_with_next() {

@@ -1,29 +1,33 @@
-//! When the operator split rests (Step 4 of section 4 of the paper: ‖Δθ‖ ≤ η), and how accurately its parts are to be solved
-//! until then.
+//! Convergence of the interface vector (Step 4 of section 4 of the paper: ‖Δθ‖ ≤ η), and how accurately the parts of a sweep are to
+//! be solved until then.
 //!
 //! The iteration contracts: each change is some ratio of the one before, and so the error that remains after a change
-//! is about that change times the ratio. The split rests where that estimate is below the tolerance, which saves the
+//! is about that change times the ratio. The step has converged where that estimate is below the tolerance, which saves the
 //! iteration that would only confirm it.
 
+use crate::error::Error;
 use crate::mechanics::sweep::Sweep;
 use crate::settings::SplitSettings;
 
-/// Judges the iterations of one split.
+/// Test of the iterations on one interface vector.
 #[derive(Debug, Clone, Copy)]
-pub struct Rest {
+pub struct ConvergenceTest {
     settings: SplitSettings,
-    /// Change of the last iteration; infinite before the first.
+    /// Change of the interface vector in the last iteration; infinite before the first.
     change: f64,
+    /// Change of the shear in the last iteration, relative to the peak pressure.
+    shear_change: f64,
     /// Factor on the tolerance of the mechanics: smaller after iterations that did not contract.
     sharpened: f64,
 }
 
-impl Rest {
+impl ConvergenceTest {
     /// Before the first iteration.
-    pub fn new(settings: SplitSettings) -> Rest {
-        Rest {
+    pub fn new(settings: SplitSettings) -> ConvergenceTest {
+        ConvergenceTest {
             settings,
             change: f64::INFINITY,
+            shear_change: f64::INFINITY,
             sharpened: 1.0,
         }
     }
@@ -37,13 +41,14 @@ impl Rest {
         )
     }
 
-    /// Takes the change of an iteration and what its mechanics changed. Whether the split rests.
-    pub fn is_reached(&mut self, change: f64, sweep: &Sweep) -> bool {
+    /// Takes the change of an iteration and what its mechanics changed. Returns whether the vector has converged.
+    pub fn is_passed(&mut self, change: f64, sweep: &Sweep) -> bool {
         let contraction = self.contraction(change);
         if contraction == 1.0 && self.change.is_finite() {
             self.sharpened *= self.settings.sharpening;
         }
         self.change = change;
+        self.shear_change = sweep.shear_change;
         // A node that comes and goes with next to no pressure holds nothing up.
         let margin = if sweep.set_changed {
             self.settings.set_margin
@@ -67,6 +72,23 @@ impl Rest {
     /// Replaces the change of the last iteration, after more of it has been computed.
     pub fn amend(&mut self, change: f64) {
         self.change = change;
+    }
+
+    /// Error of a step that has not converged: it names the residual that is too large.
+    pub fn error(&self, iterations: usize) -> Error {
+        let (tolerance, shear_tolerance) = (self.settings.tolerance, self.settings.shear_tolerance);
+        if self.change <= tolerance && self.shear_change > shear_tolerance {
+            return Error::MechanicsNotConverged {
+                iterations,
+                residual: self.shear_change,
+                tolerance: shear_tolerance,
+            };
+        }
+        Error::SplitNotConverged {
+            iterations,
+            residual: self.change,
+            tolerance,
+        }
     }
 
     /// Change of the last iteration.

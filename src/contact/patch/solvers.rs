@@ -1,6 +1,5 @@
-//! The buffers of a split: made once, so that a step allocates nothing.
+//! Solvers and buffers of a step of the patch, made once, so that a step allocates nothing.
 
-use super::coupling::Coupling;
 use super::expansion;
 use super::operators::PatchOperators;
 use super::problem::SlipWeights;
@@ -12,12 +11,11 @@ use crate::heat::surface::SurfaceExchange;
 use crate::mechanics::patch::contact::Contact;
 use crate::mechanics::patch::friction::{Friction, SlipResponse};
 use crate::mechanics::patch::normal::Normal;
-use crate::numerics::anderson::Anderson;
 use crate::settings::Settings;
 use crate::wear::strips::StripWearSteps;
 
-/// Buffers of a split.
-pub struct Scratch {
+/// Solvers and buffers of a step.
+pub struct PatchSolvers {
     pub(super) contact: Contact,
     pub(super) contact_before: Contact,
     pub(super) normal: Normal,
@@ -28,9 +26,6 @@ pub struct Scratch {
     /// Strips that its transform serves.
     pub(super) strips: usize,
     pub(super) products: influence::Scratch<f64>,
-    pub(super) iterate: Coupling,
-    pub(super) image: Coupling,
-    pub(super) anderson: Anderson,
     pub(super) exchange: Vec<SurfaceExchange>,
     pub(super) heat: StripHeatScratch,
     pub(super) wear_rate: Vec<f64>,
@@ -73,15 +68,14 @@ impl PathScratch {
     }
 }
 
-impl Scratch {
-    /// Buffers for the given rail.
-    pub fn new(operators: &PatchOperators, settings: &Settings) -> Scratch {
+impl PatchSolvers {
+    /// Solvers for the given operators.
+    pub fn new(operators: &PatchOperators, settings: &Settings) -> PatchSolvers {
         let (grid, transform) = (&operators.grid, &operators.transform);
         let on_grid = || vec![0.0; grid.len()];
         let vectors = || [on_grid(), on_grid()];
-        let iterate = Coupling::new(operators);
         let cells = grid.strips * grid.cells;
-        Scratch {
+        PatchSolvers {
             contact: Contact::new(grid),
             contact_before: Contact::new(grid),
             normal: Normal::new(grid, transform, settings.patch),
@@ -90,9 +84,6 @@ impl Scratch {
             weights: None,
             strips: grid.strips,
             products: transform.scratch(),
-            anderson: Anderson::new(iterate.values.len()),
-            image: iterate.clone(),
-            iterate,
             exchange: vec![SurfaceExchange::default(); cells],
             heat: StripHeatScratch::new(&operators.basis, &operators.strips),
             wear_rate: vec![0.0; cells],

@@ -1,5 +1,6 @@
 //! What the fields of a contact sum up to. The sums of two parts of a contact add up to those of the whole.
 
+use super::rim::ContactHeat;
 use crate::friction::coulomb;
 
 /// State of one surface node.
@@ -27,9 +28,40 @@ pub struct Node {
     pub sticks: bool,
 }
 
+/// Integrals over a contact, its extent, and what else the outputs are made of.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Integrals {
+    /// Sums over the nodes.
+    pub sums: Sums,
+    /// Area that a node stands for, `m²`.
+    pub node_area: f64,
+    /// Unit of the scaled tractions, `Pa`.
+    pub pressure_scale: f64,
+    /// Penetration δ, `m`; 0 when lifted.
+    pub penetration: f64,
+    /// Length of the contact, `m`.
+    pub contact_length: f64,
+    /// Breadth of the contact across the rail, `m`; 0 of a line contact.
+    pub contact_breadth: f64,
+    /// Area of the contact, `m²`; 0 of a line contact.
+    pub contact_area: f64,
+    /// Largest temperature rise of the rail's surface, `K`.
+    pub peak_rise: f64,
+    /// Wear depth behind the contact, `m`.
+    pub wear_depth: f64,
+    /// Temperature rise of the rail's skin where it leaves, `K`.
+    pub leaving_rise: f64,
+    /// Wear depth of the rail where it leaves, `m`.
+    pub leaving_wear_depth: f64,
+    /// Heat that the contact gives to the wheel.
+    pub wheel_heat: ContactHeat,
+    /// Temperature of the wheel's rim, absolute, `K`.
+    pub wheel_temperature: f64,
+}
+
 /// Sums and largest values over the nodes. Tractions are scaled; every node stands for the same area.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Resultants {
+pub struct Sums {
     /// Σ p.
     pub pressure: f64,
     /// Σ p x, `m`.
@@ -58,10 +90,10 @@ pub struct Resultants {
     pub peak_shear: f64,
 }
 
-impl Resultants {
+impl Sums {
     /// Of the given nodes.
-    pub fn of(nodes: impl Iterator<Item = Node>) -> Resultants {
-        let mut sum = Resultants::default();
+    pub fn of(nodes: impl Iterator<Item = Node>) -> Sums {
+        let mut sum = Sums::default();
         for node in nodes {
             sum.heat_flux += node.heat_flux;
             if node.pressure <= 0.0 {

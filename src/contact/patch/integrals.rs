@@ -2,19 +2,21 @@
 
 use super::extent::extent;
 use super::fields::PatchFields;
+use super::operators::PatchOperators;
 use super::problem::Problem;
-use crate::contact::outputs::Readings;
-use crate::contact::resultants::{Node, Resultants};
+use crate::contact::engine::Engine;
+use crate::contact::integrals::Integrals;
+use crate::contact::integrals::{Node, Sums};
 use crate::contact::rim::ContactHeat;
 use crate::friction::coulomb;
 
 /// Of the given fields under the problem's conditions.
-pub fn readings(problem: &Problem, fields: &PatchFields) -> Readings {
+pub fn integrals(problem: &Problem, fields: &PatchFields) -> Integrals {
     let operators = problem.operators;
     let extent = extent(operators, &fields.pressure);
     let heat = problem.heat_march();
-    Readings {
-        resultants: Resultants::of(nodes(problem, fields)),
+    Integrals {
+        sums: Sums::of(nodes(problem, fields)),
         node_area: operators.grid.cell_area(),
         pressure_scale: operators.scales.pressure,
         penetration: fields.penetration * operators.scales.displacement,
@@ -32,7 +34,7 @@ pub fn readings(problem: &Problem, fields: &PatchFields) -> Readings {
         wheel_heat: ContactHeat::new(
             problem.parameters,
             operators.unit_force(),
-            problem.heated_nodes(fields, fields),
+            PatchOperators::heated_nodes(problem, fields, fields),
         ),
         wheel_temperature: fields.wheel_temperature,
     }

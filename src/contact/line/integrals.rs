@@ -1,20 +1,21 @@
 //! What is read off the fields of a line contact for the outputs.
 
-use super::fields::Fields;
+use super::fields::LineFields;
+use super::mechanics::Problem;
 use super::operators::LineOperators;
-use super::problem::Problem;
-use crate::contact::outputs::Readings;
-use crate::contact::resultants::{Node, Resultants};
+use crate::contact::engine::Engine;
+use crate::contact::integrals::Integrals;
+use crate::contact::integrals::{Node, Sums};
 use crate::contact::rim::ContactHeat;
 use crate::friction::coulomb;
 
 /// Of the given fields under the problem's conditions.
-pub fn readings(problem: &Problem, fields: &Fields) -> Readings {
+pub fn integrals(problem: &Problem, fields: &LineFields) -> Integrals {
     let (operators, parameters) = (problem.operators, problem.parameters);
     let transport = problem.upwind();
     let surface = fields.surface_temperature.iter();
-    Readings {
-        resultants: Resultants::of(nodes(problem, fields)),
+    Integrals {
+        sums: Sums::of(nodes(problem, fields)),
         node_area: operators.node_area(parameters),
         pressure_scale: operators.scales.pressure,
         penetration: fields.penetration * operators.scales.displacement,
@@ -27,12 +28,16 @@ pub fn readings(problem: &Problem, fields: &Fields) -> Readings {
             .heat
             .equivalent_rise(fields.column(operators, transport.outflow())),
         leaving_wear_depth: fields.wear[transport.outflow()],
-        wheel_heat: ContactHeat::new(parameters, problem.unit_force(), problem.heated_nodes(fields)),
+        wheel_heat: ContactHeat::new(
+            parameters,
+            problem.unit_force(),
+            LineOperators::heated_nodes(problem, fields, fields),
+        ),
         wheel_temperature: fields.wheel_temperature,
     }
 }
 
-fn nodes(problem: &Problem, fields: &Fields) -> impl Iterator<Item = Node> {
+fn nodes(problem: &Problem, fields: &LineFields) -> impl Iterator<Item = Node> {
     let mesh = &problem.operators.mesh;
     let regularisation = problem.parameters.slip_regularisation;
     (0..mesh.contact_nodes).map(move |node| {
@@ -54,7 +59,7 @@ fn nodes(problem: &Problem, fields: &Fields) -> impl Iterator<Item = Node> {
 
 /// Distance between the ends of the contact. At an end the pressure falls like the root of the distance, so its
 /// square is linear there and its zero is found between the nodes.
-fn contact_length(operators: &LineOperators, fields: &Fields) -> f64 {
+fn contact_length(operators: &LineOperators, fields: &LineFields) -> f64 {
     let p = &fields.pressure;
     let beyond = |last: usize, inner: Option<usize>| {
         let (edge, inside) = (p[last], inner.map_or(0.0, |i| p[i]));
@@ -78,7 +83,7 @@ fn contact_length(operators: &LineOperators, fields: &Fields) -> f64 {
 }
 
 /// Wear depth at the end of the window where material leaves it; at rest the deepest, `m`.
-fn wear_left_behind(operators: &LineOperators, fields: &Fields, rolling_speed: f64) -> f64 {
+fn wear_left_behind(operators: &LineOperators, fields: &LineFields, rolling_speed: f64) -> f64 {
     let mesh = &operators.mesh;
     let window = &fields.wear[mesh.window()];
     if rolling_speed > 0.0 {

@@ -1,0 +1,167 @@
+//! Heat and wear of the line for given tractions: the marches across the columns, the thermal displacement, the wear compliance.
+
+use super::fields::LineFields;
+use super::mechanics::Problem;
+use super::solvers::LineSolvers;
+use crate::contact::interface::Interface;
+use crate::error::Result;
+use crate::friction::coulomb::Sliding;
+use crate::heat::march::{HeatMarch, Heated};
+use crate::heat::surface::{SurfaceCondition, SurfaceExchange};
+use crate::numerics::dense::{largest, largest_change, relative};
+use crate::transport::{CellStep, Upwind};
+use crate::wear::WearMarch;
+
+impl<'a> Problem<'a> {
+    /// Order in which material crosses the columns.
+    pub fn upwind(&self) -> Upwind<'a> {
+        Upwind::new(&self.operators.mesh.x, self.conditions.motion.rolling_speed)
+    }
+
+    /// Heat march of the step.
+    pub fn heat_march(&self) -> HeatMarch<'a> {
+        HeatMarch {
+            basis: &self.operators.heat.basis,
+            transport: self.upwind(),
+            first_contact: self.operators.mesh.first_contact,
+            duration: self.conditions.duration,
+            surface: SurfaceCondition {
+                friction: self.friction(),
+                settings: self.settings.heat,
+            },
+        }
+    }
+
+    /// Wear march of the step.
+    pub fn wear_march(&self) -> WearMarch<'a> {
+        WearMarch {
+            transport: self.upwind(),
+            duration: self.conditions.duration,
+            first_contact: self.operators.mesh.first_contact,
+        }
+    }
+
+    /// Computes what heats and cools the surface at the contact nodes with the wheel at θ_w.
+    pub fn exchange(&self, fields: &LineFields, wheel_rise: f64, exchange: &mut [SurfaceExchange]) {
+        let of_slip = self.path_law().is_some();
+        for (node, exchange) in exchange.iter_mut().enumerate() {
+            let pressure = fields.pressure[node] * self.operators.scales.pressure;
+            let sliding = Sliding::new(fields.slip[node], fields.saturation[node]);
+            *exchange = SurfaceExchange::new(self.parameters, pressure, sliding, wheel_rise);
+            if of_slip && pressure > 0.0 {
+                exchange.law = fields.memory.point_law(node);
+            }
+        }
+    }
+}
+
+/// Keeps what stands in the inflow column before something new enters there.
+pub fn keep_inflow(problem: &Problem, before: &LineFields, now: &mut LineFields) {
+    let inflow = problem.upwind().inflow();
+    let modes = problem.operators.heat.basis.len();
+    now.replaced_inflow[..modes].copy_from_slice(before.column(problem.operators, inflow));
+    now.replaced_inflow[modes] = before.wear[inflow];
+}
+
+/// Marches the wear (24).
+pub fn march_wear(problem: &Problem, before: &LineFields, now: &mut LineFields, solvers: &mut LineSolvers) {
+    let nodes = now.pressure.iter().zip(&now.slip);
+    for (rate, (pressure, slip)) in solvers.wear_rate.iter_mut().zip(nodes) {
+        *rate = problem.parameters.wear_coefficient * slip.abs() * pressure * problem.operators.scales.pressure;
+    }
+    let march = problem.wear_march();
+    now.wear[march.transport.inflow()] = problem.conditions.inputs.incoming_wear_depth;
+    march.advance(&solvers.wear_rate, &before.wear, &mut now.wear, &mut solvers.wear_steps);
+}
+
+/// Marches the heat (19), (23) with the wheel at θ_w.
+///
+/// # Errors
+/// [`crate::error::Error::SurfaceNotConverged`].
+pub fn march_heat(
+    problem: &Problem,
+    before: &LineFields,
+    wheel_rise: f64,
+    now: &mut LineFields,
+    solvers: &mut LineSolvers,
+) -> Result<()> {
+    problem.exchange(now, wheel_rise, &mut solvers.exchange);
+    let march = problem.heat_march();
+    let mut after = Heated {
+        temperature: &mut now.temperature,
+        surface: &mut now.surface_temperature,
+        flux: &mut now.heat_flux,
+    };
+    let heat = &problem.operators.heat;
+    heat.enter(problem.incoming_rise(), march.transport.inflow(), &mut after);
+    march.advance(&before.temperature, &solvers.exchange, &mut after, &mut solvers.cells)
+}
+
+/// Adapts the normal compliance to the wear of the step.
+pub fn update_wear_compliance(problem: &Problem, now: &LineFields, solvers: &mut LineSolvers) {
+    let (operators, transport) = (problem.operators, problem.upwind());
+    let changed = solvers.wear_compliance.update(
+        &operators.compliance.at_rest.normal_normal,
+        &now.slip,
+        operators.scales.compliance(problem.parameters.wear_coefficient),
+        CellStep::new(
+            1.0 / problem.conditions.duration,
+            operators.mesh.contact_spacing(),
+            transport.speed(),
+        ),
+        transport.is_forward(),
+    );
+    if changed {
+        solvers.mechanics.forget_normal_compliance();
+    }
+}
+
+/// Bound of the thermal displacement that the heat of this iteration would add if the thermal map were applied. The flux
+/// has changed by some share since the map was applied last; the displacement changes by less than that share, because
+/// most of the heat was there before; and the same holds of the share by which the surface temperature has changed, which tells
+/// the noise of next to no flux from heat. The bound spares the last iteration of a step the map, the
+/// largest part of its work: the fields keep the displacement that the tractions have felt.
+pub fn pending_displacement(problem: &Problem, now: &LineFields, solvers: &LineSolvers) -> f64 {
+    let share = |now: &[f64], mapped: &[f64]| relative(largest_change(now, mapped), largest(mapped));
+    let temperature = &now.surface_temperature[problem.operators.mesh.window()];
+    let share = share(&now.heat_flux, &solvers.mapped_flux).min(share(temperature, &solvers.mapped_temperature));
+    if share.is_infinite() {
+        share
+    } else {
+        share * largest(&now.thermal_displacement)
+    }
+}
+
+/// Applies the thermal map, for the fields and their interface vector.
+pub fn map_displacement(problem: &Problem, now: &mut LineFields, solvers: &mut LineSolvers, interface: &mut Interface) {
+    let displacement = &mut now.thermal_displacement;
+    let map = &problem.operators.heat.displacement;
+    map.apply(&now.temperature, &mut solvers.moments, displacement);
+    solvers.mapped_flux.copy_from_slice(&now.heat_flux);
+    let window = problem.operators.mesh.window();
+    solvers
+        .mapped_temperature
+        .copy_from_slice(&now.surface_temperature[window]);
+    read_displacement(problem, now, interface.parts().displacement);
+}
+
+/// Writes the interface vector of the fields, or of a change of them.
+pub fn read(problem: &Problem, fields: &LineFields, solvers: &LineSolvers, interface: &mut Interface) {
+    let mut parts = interface.parts();
+    let window = problem.operators.mesh.window();
+    parts.set_temperatures(&fields.surface_temperature[window.clone()], fields.wheel_temperature);
+    for (value, depth) in parts.gap.iter_mut().zip(&fields.wear[window]) {
+        *value = depth / problem.operators.scales.displacement;
+    }
+    solvers
+        .wear_compliance
+        .subtract_proportional(&fields.pressure, parts.gap);
+    read_displacement(problem, fields, parts.displacement);
+}
+
+/// Writes the displacement by heat and by the convective inertia of the tractions.
+fn read_displacement(problem: &Problem, fields: &LineFields, displacement: &mut [f64]) {
+    displacement.copy_from_slice(&fields.thermal_displacement);
+    let (along, upward) = displacement.split_at_mut(fields.pressure.len());
+    problem.add_inertia(problem.rho_v2(), &fields.pressure, &fields.shear, along, upward);
+}

@@ -1,0 +1,191 @@
+//! The change of tractions, wear and heat of a line with the inputs and the interface vector, at the point of a linearised step.
+
+use super::fields::LineFields;
+use super::mechanics::mechanics_problem;
+use super::operators::LineOperators;
+use crate::contact::engine::{Along, Linearised};
+use crate::contact::memory;
+use crate::friction::coulomb::Sliding;
+use crate::heat::march::{Heated, MarchChange};
+use crate::heat::surface::{CommonChange, ExchangeChange, ExchangeTangent, SurfaceExchange};
+use crate::mechanics::problem::{ProblemTangent, Tractions};
+use crate::mechanics::transient::Transient;
+use crate::parameters::WheelHeating;
+
+/// Buffers of a linearised step; n contact nodes.
+pub struct LineTangent {
+    /// Change of μ at unchanged slip, n.
+    friction_of_slip: Vec<f64>,
+    /// Change of the displacement that does not come from the tractions, along x₁ and upward, n.
+    along: Vec<f64>,
+    upward: Vec<f64>,
+    /// Change of the wear rate, n.
+    wear_rate: Vec<f64>,
+    exchange: Vec<SurfaceExchange>,
+    exchange_change: Vec<ExchangeTangent>,
+}
+
+impl LineTangent {
+    /// Buffers for the given operators.
+    pub fn new(operators: &LineOperators) -> LineTangent {
+        let n = operators.mesh.contact_nodes;
+        LineTangent {
+            friction_of_slip: vec![0.0; n],
+            along: vec![0.0; n],
+            upward: vec![0.0; n],
+            wear_rate: vec![0.0; n],
+            exchange: vec![SurfaceExchange::default(); n],
+            exchange_change: vec![ExchangeTangent::default(); n],
+        }
+    }
+}
+
+/// Computes the change of the tractions (31).
+pub fn mechanics(at: &mut Linearised<LineOperators>, step: &Along, change: &mut LineFields) {
+    let (problem, fields, direction) = (at.problem, &mut *at.fields, step.direction);
+    let LineTangent {
+        friction_of_slip,
+        along,
+        upward,
+        ..
+    } = &mut *at.tangent;
+    let law = problem.friction();
+    let common = [direction.inputs.ambient_temperature, direction.inputs.friction_scale];
+    let resting = &mut change.memory.now.resting;
+    let rises = at.interface.temperatures().zip(step.interface.temperatures());
+    for (mu, (rise, change)) in resting.iter_mut().zip(rises) {
+        *mu = law.coefficient_tangent(rise, [change, common[0], common[1]]);
+    }
+    match problem.path_law() {
+        Some(path_law) => {
+            memory::tangent(
+                problem,
+                &path_law,
+                fields,
+                direction.speed,
+                resting,
+                None,
+                friction_of_slip,
+            );
+        }
+        None => friction_of_slip.copy_from_slice(resting),
+    }
+    let (thermal_along, thermal_upward) = step.interface.displacement().split_at(along.len());
+    along.copy_from_slice(thermal_along);
+    for (upward, (lift, opening)) in upward.iter_mut().zip(thermal_upward.iter().zip(step.interface.gap())) {
+        *upward = lift - opening;
+    }
+    // d(ρV² C₁ f) = 2ρV dV C₁ f + ρV² C₁ df; the second part is in the interface vector.
+    let (density, speed) = (problem.parameters.density, problem.conditions.motion.rolling_speed);
+    let rho_v2_change = 2.0 * density * speed * direction.motion.rolling_speed;
+    problem.add_inertia(rho_v2_change, &fields.pressure, &fields.shear, along, upward);
+    let per_speed = problem.transient_per_speed(fields.relaxation_length);
+    let data = ProblemTangent {
+        profile: upward,
+        displacement: along,
+        friction: &change.memory.now.resting,
+        friction_of_slip,
+        total: direction.inputs.normal_load / problem.unit_force(),
+        rigid_slip: direction.motion.rigid_slip,
+        strain_speed: direction.speed * problem.strain_scale(),
+        transient: Transient {
+            rate: direction.speed * per_speed.rate,
+            centring: direction.speed * per_speed.centring,
+        },
+    };
+    let mut tractions = Tractions {
+        pressure: &mut change.pressure,
+        shear: &mut change.shear,
+        slip: &mut change.slip,
+        saturation: &mut change.saturation,
+        friction: &mut change.friction,
+        surfaces: &mut change.memory.now.friction,
+        flow: &mut change.memory.now.flow,
+        speed: &mut change.memory.now.speed,
+        share: &mut change.memory.share,
+        cap: &mut change.memory.cap,
+        penetration: &mut change.penetration,
+    };
+    let solvers = &mut *at.solvers;
+    let (mechanics, _) = mechanics_problem(problem, at.interface, fields, &solvers.data, &solvers.wear_compliance);
+    solvers.mechanics.tangent(&mechanics, &data, &mut tractions);
+}
+
+/// Computes the change of the wear (24).
+pub fn wear(at: &mut Linearised<LineOperators>, along: &Along, change: &mut LineFields) {
+    let (problem, fields, direction) = (at.problem, &*at.fields, along.direction);
+    let scale = problem.wear_per_slip();
+    let nodes = fields.pressure.iter().zip(&fields.slip);
+    let changes = change.pressure.iter().zip(&change.slip);
+    for (rate, ((p, s), (dp, ds))) in at.tangent.wear_rate.iter_mut().zip(nodes.zip(changes)) {
+        *rate = scale * (s.signum() * ds * p + s.abs() * dp);
+    }
+    let march = problem.wear_march();
+    change.wear[march.transport.inflow()] = direction.inputs.incoming_wear_depth;
+    let replaced = fields.replaced_inflow[problem.operators.heat.basis.len()];
+    let rate = (&at.tangent.wear_rate[..], direction.speed);
+    march.advance_tangent(rate, replaced, &fields.wear, &mut change.wear);
+}
+
+/// Computes the change of the temperature (19), (23), and of the thermal displacement, for the change of the wheel's temperature in
+/// the interface vector.
+pub fn heat(at: &mut Linearised<LineOperators>, along: &Along, change: &mut LineFields) {
+    let (problem, fields, direction) = (at.problem, &mut *at.fields, along.direction);
+    let LineTangent {
+        exchange,
+        exchange_change,
+        ..
+    } = &mut *at.tangent;
+    let (parameters, scale) = (problem.parameters, problem.operators.scales.pressure);
+    let wheel_rise = problem.wheel_rise(at.interface.wheel_temperature());
+    let wheel_rise_change = match parameters.wheel_heating {
+        WheelHeating::Off => 0.0,
+        WheelHeating::On => along.interface.wheel_temperature() - direction.inputs.ambient_temperature,
+    };
+    problem.exchange(fields, wheel_rise, exchange);
+    let of_slip = problem.path_law().is_some();
+    for (node, exchange_change) in exchange_change.iter_mut().enumerate() {
+        let (slip, saturation) = (fields.slip[node], fields.saturation[node]);
+        let node_change = ExchangeChange {
+            pressure: change.pressure[node] * scale,
+            sliding: Sliding::tangent((slip, saturation), (change.slip[node], change.saturation[node])),
+            wheel_rise: wheel_rise_change,
+            coefficient: if of_slip && fields.pressure[node] > 0.0 {
+                change.friction[node] - fields.memory.share_at(node) * change.memory.now.resting[node]
+            } else {
+                0.0
+            },
+        };
+        let (pressure, sliding) = (fields.pressure[node] * scale, Sliding::new(slip, saturation));
+        *exchange_change = SurfaceExchange::tangent(parameters, pressure, sliding, wheel_rise, &node_change);
+    }
+    let solution = Heated {
+        temperature: &mut fields.temperature,
+        surface: &mut fields.surface_temperature,
+        flux: &mut fields.heat_flux,
+    };
+    let mut heated = Heated {
+        temperature: &mut change.temperature,
+        surface: &mut change.surface_temperature,
+        flux: &mut change.heat_flux,
+    };
+    let march = problem.heat_march();
+    let heat = &problem.operators.heat;
+    let rise = direction.inputs.incoming_temperature - direction.inputs.ambient_temperature;
+    heat.enter(rise, march.transport.inflow(), &mut heated);
+    let data = MarchChange {
+        speed: direction.speed,
+        common: CommonChange {
+            ambient: direction.inputs.ambient_temperature,
+            friction_scale: direction.inputs.friction_scale,
+        },
+        exchange,
+        exchange_tangent: exchange_change,
+        replaced_inflow: &fields.replaced_inflow[..heat.basis.len()],
+    };
+    let solvers = &mut *at.solvers;
+    march.advance_tangent(&solution, &data, &mut heated, &mut solvers.cells);
+    let displacement = &mut change.thermal_displacement;
+    heat.displacement
+        .apply(&change.temperature, &mut solvers.moments, displacement);
+}

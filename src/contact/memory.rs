@@ -1,0 +1,71 @@
+//! Friction that depends on slip and on the past, on the paths of the rail's particles: what they bring into a step and take along.
+
+use super::engine::Engine;
+use super::fields::Fields;
+use super::problem::Problem;
+use crate::friction::memory::Memory;
+use crate::friction::path::PathLaw;
+
+/// Takes what the rail brings along from the step before.
+pub fn begin<E: Engine>(problem: &Problem<E>, before: &E::Fields, now: &mut E::Fields) {
+    let remembers = Memory::is_kept(problem.parameters);
+    let memory = now.memory_mut();
+    memory.remembers = remembers;
+    if remembers {
+        let (law, rise) = (problem.friction(), problem.operators.surface_rise(before));
+        memory.start_from(before.memory(), |node| law.coefficient(rise[node]).0);
+    }
+}
+
+/// Sets what the rail takes along into the next step.
+pub fn end<E: Engine>(problem: &Problem<E>, now: &mut E::Fields) {
+    let remembers = Memory::is_kept(problem.parameters);
+    now.memory_mut().remembers = remembers;
+    let (Some(path_law), true) = (problem.path_law(), remembers) else {
+        return;
+    };
+    let (operators, law) = (problem.operators, problem.friction());
+    let mut memory = std::mem::take(now.memory_mut());
+    for (resting, rise) in memory.now.resting.iter_mut().zip(operators.surface_rise(now)) {
+        *resting = law.coefficient(*rise).0;
+    }
+    for path in operators.paths() {
+        let pressure = &E::pressure(now)[path.places];
+        let before = memory.before.path(path.nodes.clone());
+        let after = &mut memory.now;
+        let touches = |node: usize| pressure[node] > 0.0;
+        path_law.close(
+            &before,
+            &after.resting[path.nodes.clone()],
+            touches,
+            &mut after.friction[path.nodes],
+        );
+    }
+    *now.memory_mut() = memory;
+}
+
+/// Writes the change of μ at unchanged slip into `friction`, node by node: with that of |V| by `speed` `m/s`, with that of μ(θ) in
+/// `resting` and with that of the pressure.
+pub fn tangent<E: Engine>(
+    problem: &Problem<E>,
+    law: &PathLaw,
+    fields: &E::Fields,
+    speed: f64,
+    resting: &[f64],
+    pressure_change: Option<&[f64]>,
+    friction: &mut [f64],
+) {
+    let memory = fields.memory();
+    for path in problem.operators.paths() {
+        let (nodes, places) = (path.nodes, path.places);
+        let pressure = &E::pressure(fields)[places.clone()];
+        let changes = pressure_change.map(|changes| &changes[places]);
+        let (before, now) = (memory.before.path(nodes.clone()), memory.now.path(nodes.clone()));
+        law.tangent(
+            (&before, &now),
+            (pressure, |node| changes.map_or(0.0, |changes| changes[node])),
+            (speed, &resting[nodes.clone()]),
+            &mut friction[nodes],
+        );
+    }
+}

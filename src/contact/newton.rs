@@ -1,0 +1,163 @@
+//! Newton's method on the interface vector, x − G(x) = 0, for steps whose fixed-point iteration does not contract.
+//!
+//! Friction and contact make G piecewise smooth: its derivative is that of the nodes that touch, stick and slip at x (a semismooth
+//! Newton method). Each step solves (1 − G′) d = G(x) − x by GMRES ([`super::linear`]) and is shortened until |x − G(x)| falls.
+
+use super::convergence::ConvergenceTest;
+use super::engine::{Engine, Linearised};
+use super::interface::Interface;
+use super::linear::LinearSystem;
+use super::problem::Problem;
+use super::step;
+use crate::error::Result;
+use crate::mechanics::sweep::Sweep;
+use crate::settings::Settings;
+
+/// Solvers and buffers of Newton's method, and of the derivatives of a step.
+pub struct Newton<E: Engine> {
+    pub(super) tangent: E::Tangent,
+    pub(super) system: LinearSystem<E>,
+    /// Newton's step.
+    pub(super) step: Interface,
+    /// Fields that have moved along a change.
+    pub(super) moved: E::Fields,
+    /// Iterate with the least residual so far, and that residual.
+    best: Interface,
+    least_residual: f64,
+}
+
+impl<E: Engine> Newton<E> {
+    /// Solvers for a contact.
+    pub fn new(operators: &E, settings: &Settings) -> Newton<E> {
+        let interface = operators.interface();
+        Newton {
+            tangent: operators.tangent(settings),
+            system: LinearSystem::new(operators, settings),
+            step: interface.clone(),
+            moved: operators.fields(),
+            best: interface,
+            least_residual: f64::INFINITY,
+        }
+    }
+
+    /// Forgets the step before.
+    pub fn restart(&mut self) {
+        self.least_residual = f64::INFINITY;
+    }
+
+    /// Keeps an iterate of the fixed-point iteration if its residual is the least so far: Newton's method begins there.
+    pub fn keep(&mut self, iterate: &Interface, image: &Interface) {
+        let residual = distance(iterate, image);
+        if residual < self.least_residual {
+            self.least_residual = residual;
+            self.best.values_mut().copy_from_slice(iterate.values());
+        }
+    }
+}
+
+/// Buffers that a sweep of Newton's method works on.
+pub struct Sweeps<'a, E: Engine> {
+    /// Fields at the beginning of the step.
+    pub before: &'a E::Fields,
+    /// Fields that it changes.
+    pub now: &'a mut E::Fields,
+    /// Solvers of the step.
+    pub solvers: &'a mut E::Solvers,
+    /// Iterate.
+    pub iterate: &'a mut Interface,
+    /// Image of the iterate.
+    pub image: &'a mut Interface,
+}
+
+impl<E: Engine> Sweeps<'_, E> {
+    /// One sweep x ↦ G(x), with mechanics that have come to rest and the wheel at the temperature of the iterate: a function of x
+    /// and of the fields before, whatever was swept last. Returns |x − G(x)|.
+    fn sweep(&mut self, problem: &Problem<E>) -> Result<f64> {
+        let settings = &problem.settings.interface;
+        let tolerance = E::split_settings(problem.settings).last_mechanics_tolerance;
+        for _ in 0..settings.mechanics_sweeps {
+            let Sweep {
+                shear_change,
+                set_changed,
+            } = E::solve_mechanics(problem, self.iterate, self.now, self.solvers, tolerance)?;
+            if !set_changed && shear_change <= settings.mechanics_tolerance {
+                break;
+            }
+        }
+        E::march_wear(problem, self.before, self.now, self.solvers);
+        let rise = problem.wheel_rise(self.iterate.wheel_temperature());
+        E::march_heat(problem, self.before, rise, self.now, self.solvers)?;
+        step::warm_wheel(problem, self.before, self.now);
+        E::read(problem, self.now, self.solvers, self.image);
+        E::map_displacement(problem, self.now, self.solvers, self.image);
+        Ok(distance(self.iterate, self.image))
+    }
+}
+
+/// Solves x = G(x) from the best iterate so far. The iterate is the solution in the end; the caller sweeps it once more, and closes the
+/// step. Returns the number of sweeps.
+///
+/// # Errors
+/// The first solver that did not converge; the error of `test` where |x − G(x)| does not fall any more.
+pub fn solve<E: Engine>(
+    problem: &Problem<E>,
+    newton: &mut Newton<E>,
+    mut sweeps: Sweeps<E>,
+    test: &mut ConvergenceTest,
+) -> Result<usize> {
+    let settings = problem.settings.interface;
+    let split = E::split_settings(problem.settings);
+    let Newton {
+        tangent,
+        system,
+        step,
+        best,
+        ..
+    } = newton;
+    sweeps.iterate.values_mut().copy_from_slice(best.values());
+    let mut residual = sweeps.sweep(problem)?;
+    let mut count = 1;
+    for _ in 0..settings.newton_steps {
+        let change = sweeps.iterate.change_to(sweeps.image, split.least_temperature);
+        test.amend(change);
+        if change <= settings.newton_margin * split.tolerance {
+            return Ok(count);
+        }
+        best.values_mut().copy_from_slice(sweeps.iterate.values());
+        let values = sweeps.iterate.values().iter().zip(sweeps.image.values());
+        for (step, (iterate, image)) in step.values_mut().iter_mut().zip(values) {
+            *step = image - iterate;
+        }
+        E::close_displacement(problem, sweeps.iterate, sweeps.now, sweeps.solvers);
+        let tolerance = settings.krylov_tolerance;
+        let mut at = Linearised::new(problem, sweeps.iterate, sweeps.now, sweeps.solvers, tangent, tolerance)?;
+        system.solve(&mut at, step.values_mut(), settings.newton_krylov_tolerance)?;
+        let mut damping = 1.0;
+        let mut falls = false;
+        for _ in 0..=settings.halvings {
+            let values = best.values().iter().zip(step.values());
+            for (iterate, (best, step)) in sweeps.iterate.values_mut().iter_mut().zip(values) {
+                *iterate = best + damping * step;
+            }
+            count += 1;
+            // Where a solver fails, the step is too long.
+            let trial = sweeps.sweep(problem).unwrap_or(f64::INFINITY);
+            if trial < (1.0 - settings.descent * damping) * residual {
+                residual = trial;
+                falls = true;
+                break;
+            }
+            damping *= 0.5;
+        }
+        if !falls {
+            break;
+        }
+    }
+    Err(test.error(count))
+}
+
+/// |x − G(x)|.
+fn distance(iterate: &Interface, image: &Interface) -> f64 {
+    let values = iterate.values().iter().zip(image.values());
+    values.map(|(a, b)| (a - b) * (a - b)).sum::<f64>().sqrt()
+}

@@ -1,0 +1,104 @@
+//! Derivatives of the outputs with respect to the inputs, from the linearised converged step.
+//!
+//! The step solves x = G(x, u) for the interface vector x under the inputs u, the fields z follow from it. At its solution dx/du
+//! solves (1 − ∂G/∂x) dx = ∂G/∂u du, and dz is that of one more sweep. Every part is linear and exact and stands beside what it is
+//! the tangent of; the nodes under pressure and those that slip stay the same under an infinitesimal change. Held fixed are the
+//! fields at the beginning of the sub-step and its length.
+
+use super::engine::{Direction, Engine, Linearised};
+use super::fields::Fields;
+use super::problem::Problem;
+use super::step::Workspace;
+use crate::error::Result;
+use crate::signals::{INPUTS, Inputs, OUTPUTS, OutputKind, Outputs};
+
+/// Computes the derivatives of all outputs with respect to each of the given rows of [`INPUTS`] at `fields`, the solution of the
+/// problem.
+///
+/// # Errors
+/// Mechanics that cannot be linearised, or a linear system that cannot be solved.
+pub fn outputs<E: Engine>(
+    problem: &Problem<E>,
+    fields: &E::Fields,
+    workspace: &mut Workspace<E>,
+    inputs: impl IntoIterator<Item = usize>,
+) -> Result<Vec<Outputs>> {
+    let Workspace {
+        solvers,
+        trial,
+        iterate,
+        newton,
+        ..
+    } = workspace;
+    trial.copy_from(fields);
+    E::begin_linearisation(problem, trial, solvers);
+    E::read(problem, trial, solvers, iterate);
+    let tolerance = E::sensitivity_settings(problem.settings).tolerance;
+    let mut at = Linearised::new(problem, iterate, trial, solvers, &mut newton.tangent, tolerance)?;
+    inputs
+        .into_iter()
+        .map(|input| {
+            let direction = direction(problem, input);
+            newton.system.fields_tangent(&mut at, &direction, &mut newton.step)?;
+            let least_step = problem.settings.sensitivity.least_output_step * INPUTS[input].nominal;
+            let change = &newton.system.change;
+            Ok(output_tangent(
+                problem,
+                fields,
+                &direction,
+                least_step,
+                change,
+                &mut newton.moved,
+            ))
+        })
+        .collect()
+}
+
+/// Direction of the input in a row of [`INPUTS`].
+fn direction<E: Engine>(problem: &Problem<E>, input: usize) -> Direction {
+    let mut inputs = Inputs::ZERO;
+    (INPUTS[input].set)(&mut inputs, 1.0);
+    let motion = problem.conditions.inputs.motion_tangent(&inputs, problem.parameters);
+    let speed = motion.rolling_speed;
+    Direction {
+        inputs,
+        motion,
+        speed: if problem.is_forward() { speed } else { -speed },
+    }
+}
+
+/// Derivatives of the outputs along a change of inputs and fields, by a central difference of at least `least_step`: the outputs
+/// are short expressions of the fields, and a step is known that suits all of them.
+fn output_tangent<E: Engine>(
+    problem: &Problem<E>,
+    fields: &E::Fields,
+    direction: &Direction,
+    least_step: f64,
+    change: &E::Fields,
+    moved: &mut E::Fields,
+) -> Outputs {
+    let conditions = &problem.conditions;
+    let step = fields
+        .output_step(change, &problem.settings.sensitivity)
+        .max(least_step);
+    moved.copy_from(fields);
+    let mut outputs = |step: f64| {
+        moved.move_along(fields, change, step);
+        let problem = problem.under(conditions.inputs.advanced(&direction.inputs, step));
+        // The totals before the step do not depend on the inputs of the step, so that the derivative is the same from 0.
+        E::integrals(&problem, moved).outputs_after(problem.parameters, &problem.conditions, &Outputs::default())
+    };
+    let (ahead, behind) = (outputs(step), outputs(-step));
+    let mut derivative = Outputs::default();
+    // What is counted is constant but for jumps.
+    for signal in OUTPUTS.iter().filter(|signal| signal.kind != OutputKind::Counted) {
+        let difference = (signal.get)(&ahead) - (signal.get)(&behind);
+        (signal.set)(&mut derivative, difference / (2.0 * step));
+    }
+    // It follows from the motion alone, whose tangent is exact.
+    derivative.distance = direction.speed * conditions.duration;
+    if problem.is_unloaded() {
+        derivative.penetration = 0.0;
+    }
+    derivative
+}

@@ -1,0 +1,248 @@
+//! One implicit step by the operator split of section 4 of the paper: mechanics for given temperature and wear, then wear and
+//! temperature for those tractions. What passes between them is the interface vector x, and one sweep makes G(x) of it. The step
+//! is solved where x = G(x): by fixed-point iteration with Anderson's method while that contracts, as it does in most steps in two
+//! or three sweeps, otherwise by Newton's method ([`super::newton`]).
+
+use super::convergence::ConvergenceTest;
+use super::engine::Engine;
+use super::fields::{Fields, State};
+use super::interface::Interface;
+use super::memory;
+use super::newton::{self, Newton, Sweeps};
+use super::problem::{Convergence, Problem};
+use super::rim::{self, ContactHeat};
+use crate::error::{Error, Result};
+use crate::mechanics::sweep::Sweep;
+use crate::numerics::anderson::Anderson;
+use crate::parameters::WheelHeating;
+use crate::settings::Settings;
+
+/// Solvers and buffers of a step and of its derivatives. What a step leaves in them changes no result of another one.
+pub struct Workspace<E: Engine> {
+    pub(super) solvers: E::Solvers,
+    /// Fields that a step works on, its solution until it is committed.
+    pub(super) trial: E::Fields,
+    /// Interface vector that the mechanics see in this sweep.
+    pub(super) iterate: Interface,
+    /// What the sweep makes of it.
+    pub(super) image: Interface,
+    anderson: Anderson,
+    pub(super) newton: Newton<E>,
+}
+
+impl<E: Engine> Workspace<E> {
+    /// Workspace for the steps of a contact.
+    pub fn new(operators: &E, settings: &Settings) -> Workspace<E> {
+        let interface = operators.interface();
+        Workspace {
+            solvers: operators.solvers(settings),
+            trial: operators.fields(),
+            anderson: Anderson::new(interface.values().len()),
+            newton: Newton::new(operators, settings),
+            image: interface.clone(),
+            iterate: interface,
+        }
+    }
+
+    /// Fields at the end of the step that was solved last.
+    pub fn solution(&self) -> &E::Fields {
+        &self.trial
+    }
+
+    /// Makes the solution of a step of `duration` `s` the state.
+    pub fn commit(&mut self, state: &mut State<E::Fields>, duration: f64) {
+        state.commit(&mut self.trial, duration);
+    }
+}
+
+/// Solves the step from `state` into the workspace. The step before took `last_duration` `s`: the first guess is extrapolated over
+/// no longer than the rates were observed.
+///
+/// # Errors
+/// The first solver that did not converge, or [`Error::ContactLeavesWindow`].
+pub fn solve<E: Engine>(
+    problem: &Problem<E>,
+    state: &State<E::Fields>,
+    last_duration: f64,
+    workspace: &mut Workspace<E>,
+) -> Result<Convergence> {
+    let settings = E::split_settings(problem.settings);
+    let before = &state.fields;
+    let Workspace {
+        solvers,
+        trial: now,
+        iterate,
+        image,
+        anderson,
+        newton,
+    } = workspace;
+    now.guess_from(before);
+    memory::begin(problem, before, now);
+    E::begin(problem, Some(before), now, solvers)?;
+    state.extrapolate(problem.conditions.duration.min(last_duration), now);
+    E::limit_guess(before, now);
+    E::read(problem, now, solvers, iterate);
+    anderson.restart();
+    newton.restart();
+    let mut test = ConvergenceTest::new(settings);
+    let fixed_point_iterations = problem.settings.interface.fixed_point_iterations;
+    let mut newton_sweeps = 0;
+    for iterations in 1..=settings.iterations {
+        let sweep = E::solve_mechanics(problem, iterate, now, solvers, test.mechanics_tolerance())?;
+        E::march_wear(problem, before, now, solvers);
+        march_heat(problem, before, iterate.wheel_temperature(), now, solvers)?;
+        // Newton's method has solved the step for the wear compliance that there is.
+        if newton_sweeps == 0 {
+            E::update_wear_compliance(problem, now, solvers);
+        }
+        E::read(problem, now, solvers, image);
+        // Not after the first sweep: the mechanics have not seen yet what it changed.
+        let pending = if iterations > 1 {
+            E::pending_displacement(problem, now, solvers)
+        } else {
+            f64::INFINITY
+        };
+        let change = iterate.change_to(image, settings.least_temperature);
+        if test.is_passed(change.max(pending), &sweep) {
+            let iterations = iterations + newton_sweeps;
+            return finish(problem, before, iterate, now, solvers, iterations, &test);
+        }
+        if pending > settings.unfelt * settings.tolerance {
+            E::map_displacement(problem, now, solvers, image);
+            test.amend(iterate.change_to(image, settings.least_temperature));
+        }
+        newton.keep(iterate, image);
+        if iterations >= fixed_point_iterations {
+            let sweeps = Sweeps {
+                before,
+                now: &mut *now,
+                solvers: &mut *solvers,
+                iterate: &mut *iterate,
+                image: &mut *image,
+            };
+            newton_sweeps += newton::solve(problem, newton, sweeps, &mut test)?;
+            anderson.restart();
+            continue;
+        }
+        if iterations > settings.accelerate_after {
+            anderson.next(iterate.values(), image.values_mut());
+        }
+        std::mem::swap(iterate, image);
+    }
+    Err(test.error(settings.iterations))
+}
+
+/// Ends a step whose interface vector has converged.
+fn finish<E: Engine>(
+    problem: &Problem<E>,
+    before: &E::Fields,
+    interface: &Interface,
+    now: &mut E::Fields,
+    solvers: &mut E::Solvers,
+    iterations: usize,
+    test: &ConvergenceTest,
+) -> Result<Convergence> {
+    let fills_window = fills_window(problem, now, solvers)?;
+    E::close_friction(problem, now, solvers);
+    memory::end(problem, now);
+    E::close_displacement(problem, interface, now, solvers);
+    E::finalise(problem, before, now, solvers)?;
+    warm_wheel(problem, before, now);
+    Ok(Convergence {
+        iterations,
+        residual: test.change(),
+        fills_window,
+    })
+}
+
+/// Solves the mechanics alone: rail and wheel at ambient and unworn, no time passes.
+///
+/// # Errors
+/// The first solver that did not converge, or [`Error::ContactLeavesWindow`].
+pub fn initial_state<E: Engine>(problem: &Problem<E>, workspace: &mut Workspace<E>) -> Result<State<E::Fields>> {
+    let settings = E::split_settings(problem.settings);
+    let tolerance = settings.mechanics_alone_tolerance;
+    let Workspace { solvers, iterate, .. } = workspace;
+    let mut now = problem.operators.fields();
+    E::set_wheel_temperature(&mut now, problem.conditions.inputs.ambient_temperature);
+    now.memory_mut().start_steady();
+    E::begin(problem, None, &mut now, solvers)?;
+    let mut sweep = Sweep::NONE;
+    for _ in 0..settings.iterations {
+        E::read(problem, &now, solvers, iterate);
+        sweep = E::solve_mechanics(problem, iterate, &mut now, solvers, tolerance)?;
+        if sweep.rests(tolerance) {
+            fills_window(problem, &now, solvers)?;
+            E::close_displacement(problem, iterate, &mut now, solvers);
+            memory::end(problem, &mut now);
+            return Ok(State::at_rest(now));
+        }
+    }
+    Err(Error::MechanicsNotConverged {
+        iterations: settings.iterations,
+        residual: sweep.shear_change,
+        tolerance,
+    })
+}
+
+/// Marches heat (19), (23) together with the rim's temperature: what the rail gives to the wheel and what the wheel takes is the
+/// same heat. With a cold wheel this is one march.
+fn march_heat<E: Engine>(
+    problem: &Problem<E>,
+    before: &E::Fields,
+    guess: f64,
+    now: &mut E::Fields,
+    solvers: &mut E::Solvers,
+) -> Result<()> {
+    let heating = problem.parameters.wheel_heating;
+    let guess = match heating {
+        WheelHeating::Off => problem.conditions.inputs.ambient_temperature,
+        WheelHeating::On => guess,
+    };
+    let mut wheel = rim::FixedPoint::new(guess, problem.settings.heat);
+    loop {
+        E::march_heat(problem, before, problem.wheel_rise(wheel.temperature()), now, solvers)?;
+        // The wheel takes the friction power at the temperature of this march, not at that of the mechanics: so the heat balance
+        // closes to round-off, whatever the tolerance of this iteration.
+        if heating == WheelHeating::On {
+            E::close_friction(problem, now, solvers);
+        }
+        warm_wheel(problem, before, now);
+        if wheel.converges(E::wheel_temperature(now))? {
+            return Ok(());
+        }
+    }
+}
+
+/// Sets the rim's temperature to that under the heat that the contact gives to it.
+pub(super) fn warm_wheel<E: Engine>(problem: &Problem<E>, before: &E::Fields, now: &mut E::Fields) {
+    let heat = ContactHeat::new(
+        problem.parameters,
+        problem.unit_force(),
+        E::heated_nodes(problem, now, now),
+    );
+    let temperature = rim::temperature(
+        problem.parameters,
+        E::wheel_temperature(before),
+        problem.conditions.inputs.ambient_temperature,
+        problem.conditions.duration,
+        &heat,
+    );
+    E::set_wheel_temperature(now, temperature);
+}
+
+/// Whether the contact is held within its window. Under a load that the window was made for it may be: a wheel that spins on the
+/// spot digs a groove that no window holds, and the groove is as wide as the window then. A load beyond that, by a penetration
+/// that is given, is an error.
+fn fills_window<E: Engine>(problem: &Problem<E>, now: &E::Fields, solvers: &E::Solvers) -> Result<bool> {
+    let cut_off = E::is_cut_off(problem, now, solvers);
+    let load = problem.load(now);
+    if cut_off && load > problem.parameters.largest_load * (1.0 + 1e-9) {
+        return Err(Error::ContactLeavesWindow {
+            half_width: problem.operators.half_window(),
+            load,
+            largest_load: problem.parameters.largest_load,
+        });
+    }
+    Ok(cut_off)
+}
