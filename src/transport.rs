@@ -29,7 +29,7 @@ pub struct Upwind<'a> {
 /// One column of a march.
 #[derive(Debug, Clone, Copy)]
 pub struct Column {
-    /// Its index.
+    /// Index of the column.
     pub index: usize,
     /// The column upstream of it.
     pub upstream: usize,
@@ -96,14 +96,14 @@ impl<'a> Upwind<'a> {
 /// mirror images.
 #[derive(Debug, Clone)]
 pub struct Cells {
-    /// Of the cell between a column and the next one, the place of its length in `lengths`.
+    /// Index into `lengths` for the cell between each column and the next one.
     length_of: Vec<usize>,
     /// The different lengths, `m`.
     pub lengths: Vec<f64>,
 }
 
 impl Cells {
-    /// Between columns at `x` `m`.
+    /// Cells between columns at `x` `m`.
     pub fn new(x: &[f64]) -> Cells {
         let mut lengths: Vec<f64> = Vec::new();
         let length_of = x
@@ -132,21 +132,21 @@ impl Cells {
 pub struct CellStep {
     /// Share of the value upstream that arrives.
     pub keep: f64,
-    /// Of the source upstream, `s`.
+    /// Weight of the source upstream, `s`.
     pub upstream: f64,
-    /// Of the column's own source, `s`.
+    /// Weight of the column's own source, `s`: the diagonal of the recurrence.
     pub own: f64,
 }
 
 impl CellStep {
-    /// Through no cell at all.
+    /// Step through no cell at all: the value upstream arrives unchanged.
     pub const NONE: CellStep = CellStep {
         keep: 1.0,
         upstream: 0.0,
         own: 0.0,
     };
 
-    /// In a step with 1/Δt `storage` `1/s`, through a cell of length Δ `spacing` `m` at |V| `speed` `m/s`.
+    /// Step with 1/Δt `storage` `1/s`, through a cell of length Δ `spacing` `m` at |V| `speed` `m/s`.
     pub fn new(storage: f64, spacing: f64, speed: f64) -> CellStep {
         let passages = speed / spacing;
         let share = if CellStep::is_short(storage, passages) {

@@ -26,7 +26,7 @@ pub struct WearSteps {
 }
 
 impl WearSteps {
-    /// Between columns at `x` `m`.
+    /// Steps for the cells between columns at `x` `m`.
     pub fn new(x: &[f64]) -> WearSteps {
         let cells = Cells::new(x);
         WearSteps {
@@ -123,7 +123,7 @@ mod tests {
     }
 
     proptest! {
-        /// In each cell, what is held more, what leaves and what enters balance with what is worn.
+        /// Balance of each cell: its increase, what leaves and what enters add up to what is worn.
         #[test]
         fn the_volume_is_conserved(
             before in prop::collection::vec(0.0..1.0, X.len()),
@@ -211,7 +211,8 @@ mod tests {
         }
     }
 
-    /// At V = 0 the derivative is that to positive speeds: nothing arrives yet, and the sources upstream begin to count.
+    /// One-sided derivative at V = 0, towards positive speeds: nothing arrives yet, and the sources upstream begin to
+    /// count.
     #[test]
     fn the_tangent_at_standstill_is_one_sided_and_finite() {
         let (before, rate) = ([0.3, 0.1, 0.7, 0.2, 0.4, 0.0, 0.9, 0.5, 0.6], [1.0, 0.0, 2.0, 0.5, 0.1]);

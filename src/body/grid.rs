@@ -20,7 +20,7 @@ pub struct Grid {
 }
 
 impl Grid {
-    /// Over a window of the given half-length and half-breadth, `m`.
+    /// Grid over a window of the given half-length and half-breadth, `m`.
     pub fn new(cells: usize, strips: usize, half_length: f64, half_breadth: f64) -> Grid {
         Grid {
             cells,

@@ -44,7 +44,7 @@ pub struct HalfSpaces {
 }
 
 impl HalfSpaces {
-    /// Of rail and wheel. A rigid wheel adds nothing.
+    /// Half-spaces of rail and wheel. A rigid wheel adds nothing.
     pub fn of_pair(parameters: &Parameters) -> HalfSpaces {
         let rail = HalfPlane::new(parameters.lame_lambda, parameters.shear_modulus);
         let wheel = match parameters.wheel {

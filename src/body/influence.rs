@@ -51,9 +51,9 @@ pub struct Transform {
 pub struct Scratch<T> {
     rows: Rows<T>,
     other: Rows<T>,
-    /// Of one harmonic the transforms of the x and of the y component, real and imaginary part.
+    /// Transforms of the x and of the y component at one harmonic, real and imaginary part.
     parts: [Vec<T>; 4],
-    /// Those of the product.
+    /// Transforms of the product at one harmonic, in the order of `parts`.
     sums: [Vec<T>; 4],
 }
 
@@ -69,7 +69,7 @@ pub struct Window {
 }
 
 impl Window {
-    /// All of a grid.
+    /// Window over all of a grid.
     pub fn whole(grid: &Grid) -> Window {
         Window {
             strips: 0..grid.strips,
@@ -80,7 +80,7 @@ impl Window {
 }
 
 impl Transform {
-    /// For loads and displacements on up to so many neighbouring strips of a grid.
+    /// Transform for loads and displacements on up to so many neighbouring strips of a grid.
     pub fn new(grid: &Grid, strips: usize) -> Transform {
         let (stride, size) = (grid.stride(), good_size(2 * strips - 1));
         Transform {
@@ -284,7 +284,7 @@ impl<T: Real> WithSimd for Product<'_, T> {
     }
 }
 
-/// What a convolution runs over.
+/// Ranges that a convolution runs over.
 struct Ranges {
     /// Cells with values.
     cells: Range<usize>,
@@ -331,7 +331,7 @@ fn convolve<T: Real, S: Simd>(
     }
 }
 
-/// As [`convolve`] with a alone, of one complex value.
+/// Convolution with the kernel a alone, of one complex value (see [`convolve`]).
 #[inline(always)]
 fn convolve_one<T: Real, S: Simd>(
     simd: S,
@@ -359,7 +359,8 @@ fn convolve_one<T: Real, S: Simd>(
     }
 }
 
-/// Of Z = X + iY the transforms of the real X and Y: (Z + Z̄')/2 and (Z − Z̄')/2i, with Z' at the opposite harmonic.
+/// Separates the transforms of the real X and Y from that of Z = X + iY: (Z + Z̄')/2 and (Z − Z̄')/2i, with Z' at the
+/// opposite harmonic.
 #[inline(always)]
 fn take_apart<T: Real, S: Simd>(
     simd: S,
@@ -443,7 +444,7 @@ impl Tables<f64> {
         }
     }
 
-    /// The same in single precision.
+    /// Tables in single precision.
     pub fn single(&self) -> Tables<f32> {
         let single = |table: &Vec<f64>| table.iter().map(|&value| value as f32).collect();
         Tables {
@@ -470,7 +471,7 @@ mod tests {
 
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(30))]
-        /// Against the whole matrix, in both precisions, for any part of any grid.
+        /// Product against the whole matrix, in both precisions, for any part of any grid.
         #[test]
         fn the_product_is_that_of_the_whole_matrix(
             cells in 3_usize..30, strips in 1_usize..14, from in 0.0..0.5_f64, to in 0.5..1.0_f64, seed in 0.0..6.0_f64,

@@ -99,7 +99,7 @@ pub const FIELDS: [FieldColumn; 9] = [
         description: "Depth of wear of the rail surface in the cells of the patch", value: |node, _| node.wear_depth },
 ];
 
-/// How long arrays are. Those of a patch's fields follow from parameters.
+/// Lengths of arrays. Those of a patch's fields follow from parameters.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Lengths {
     strips: usize,
@@ -107,7 +107,7 @@ pub struct Lengths {
 }
 
 impl Lengths {
-    /// As the parameters say.
+    /// Lengths that follow from the parameters.
     pub fn of(parameters: &Parameters) -> Lengths {
         Lengths {
             strips: parameters.patch_strips,
@@ -137,7 +137,7 @@ impl Lengths {
     }
 }
 
-/// Who sets a variable.
+/// Causality of a variable: who sets it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Causality {
     /// Set before the simulation, or during it where tunable.
@@ -153,7 +153,7 @@ pub enum Causality {
 }
 
 impl Causality {
-    /// As the standards name it.
+    /// Name of the causality in the standards.
     pub fn name(self) -> &'static str {
         match self {
             Causality::Parameter => "parameter",
@@ -165,21 +165,21 @@ impl Causality {
     }
 }
 
-/// When a variable changes.
+/// Variability of a variable: when it changes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Variability {
     /// Never after the initialisation.
     Fixed,
-    /// At communication points, by the importer.
+    /// Variable that the importer changes at communication points.
     Tunable,
-    /// At communication points.
+    /// Variable that changes at communication points.
     Discrete,
-    /// At all times.
+    /// Variable that changes at any time.
     Continuous,
 }
 
 impl Variability {
-    /// As the standards name it.
+    /// Name of the variability in the standards.
     pub fn name(self) -> &'static str {
         match self {
             Variability::Fixed => "fixed",
@@ -190,23 +190,23 @@ impl Variability {
     }
 }
 
-/// How many elements a variable has.
+/// Shape of a variable: its number of elements.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Shape {
     /// One; it is no array.
     Number,
-    /// As many as are given.
+    /// Array of a given number of elements.
     Array(usize),
-    /// Those of a row of [`FIELDS`]: over strips, cells along a strip, or both, as many of them as parameters say.
+    /// Array of a row of [`FIELDS`]: over strips, cells along a strip, or both, as many of them as parameters say.
     Field([bool; 2]),
 }
 
-/// What belongs to a real number, or to an array of them.
+/// Properties of a real number, or of an array of them.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RealKind {
-    /// Which one.
+    /// Variable of the model that it stands for.
     pub variable: RealVariable,
-    /// How many elements it has.
+    /// Shape: the number of elements.
     pub shape: Shape,
     /// Unit.
     pub unit: &'static str,
@@ -237,9 +237,9 @@ pub enum Kind {
     Real(RealKind),
     /// An integer.
     Integer {
-        /// Which one.
+        /// Variable of the model that it stands for.
         variable: IntegerVariable,
-        /// What it counts or chooses.
+        /// Kind of the integer: a count or a choice.
         kind: IntegerKind,
         /// Smallest value.
         minimum: Option<i32>,
@@ -257,15 +257,15 @@ pub struct Variable {
     pub name: &'static str,
     /// One sentence.
     pub description: &'static str,
-    /// Who sets it.
+    /// Causality: who sets it.
     pub causality: Causality,
-    /// When it changes.
+    /// Variability: when it changes.
     pub variability: Variability,
     /// Type, unit and range.
     pub kind: Kind,
 }
 
-/// What a real variable stands for; rows are those of the tables of the model.
+/// Quantity that a real variable stands for; rows are those of the tables of the model.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum RealVariable {
     /// Row of [`INPUTS`].
@@ -284,7 +284,7 @@ pub enum RealVariable {
     Time,
 }
 
-/// What an integer variable stands for.
+/// Quantity that an integer variable stands for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum IntegerVariable {
     /// Row of [`INTEGER_PARAMETERS`].
@@ -296,7 +296,7 @@ pub enum IntegerVariable {
 /// A real variable, or an element of an array, as a call names it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Real {
-    /// Its value reference, for messages.
+    /// Value reference of the variable, for messages.
     pub reference: ValueReference,
     /// The variable.
     pub variable: RealVariable,
@@ -307,14 +307,14 @@ pub struct Real {
 /// An integer variable, as a call names it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Integer {
-    /// Its value reference, for messages.
+    /// Value reference of the variable, for messages.
     pub reference: ValueReference,
     /// The variable.
     pub variable: IntegerVariable,
 }
 
 impl Real {
-    /// Its name, with the index of an element counted from 1.
+    /// Name of the variable, with the index of an element counted from 1.
     pub fn name(&self) -> String {
         match self.variable {
             RealVariable::Input(row) => INPUTS[row].name.to_owned(),
@@ -329,7 +329,7 @@ impl Real {
 }
 
 impl Integer {
-    /// Its name.
+    /// Name of the variable.
     pub fn name(&self) -> &'static str {
         match self.variable {
             IntegerVariable::Parameter(row) => INTEGER_PARAMETERS[row].name,
@@ -478,7 +478,7 @@ pub fn time() -> Variable {
     }
 }
 
-/// How the last step converged.
+/// Variables that say how the last step converged.
 fn solver() -> [Variable; 2] {
     [
         Variable {

@@ -27,7 +27,7 @@ pub fn saturation_slope(slip: f64, regularisation: f64) -> f64 {
     FRAC_2_PI * regularisation / (regularisation * regularisation + slip * slip)
 }
 
-/// By the regularised law a node sticks below this value of |φ|: |s| < 6.3 ε. By Coulomb's it sticks below 1.
+/// Limit of |φ| below which a node sticks by the regularised law: |s| < 6.3 ε. By Coulomb's own law the limit is 1.
 pub const STICK_SATURATION: f64 = 0.9;
 
 /// Whether a node that takes this share of Coulomb's bound counts as sticking.
@@ -41,7 +41,8 @@ pub fn power(shear: f64, slip: f64) -> f64 {
     (-shear * slip).max(0.0)
 }
 
-/// The same of vectors, −τ·s along the rail and across it; with none across, [`power`] to the bit.
+/// Friction power of vectors, −τ·s along the rail and across it where it is positive; with none across, [`power`] to
+/// the bit.
 pub fn vector_power(shear: [f64; 2], slip: [f64; 2]) -> f64 {
     (-shear[0] * slip[0] - shear[1] * slip[1]).max(0.0)
 }
@@ -97,7 +98,7 @@ pub struct Sliding {
 }
 
 impl Sliding {
-    /// With slip velocity s `m/s` and φ = −τ/(μ p).
+    /// Sliding at a slip velocity s `m/s` and φ = −τ/(μ p).
     pub fn new(slip: f64, saturation: f64) -> Sliding {
         Sliding {
             speed: slip.abs(),
@@ -105,7 +106,7 @@ impl Sliding {
         }
     }
 
-    /// Its change.
+    /// Change of [`Sliding::new`].
     pub fn tangent((slip, saturation): (f64, f64), (slip_change, saturation_change): (f64, f64)) -> Sliding {
         Sliding {
             speed: slip.signum() * slip_change,
@@ -113,7 +114,7 @@ impl Sliding {
         }
     }
 
-    /// With a slip velocity along the rail and across it, `m/s`, and τ/(μ p).
+    /// Sliding at a slip velocity along the rail and across it, `m/s`, and τ/(μ p).
     pub fn of_vectors(slip: [f64; 2], share: [f64; 2]) -> Sliding {
         Sliding {
             speed: magnitude(slip),
@@ -121,7 +122,7 @@ impl Sliding {
         }
     }
 
-    /// Its change.
+    /// Change of [`Sliding::of_vectors`].
     pub fn vector_tangent(
         (slip, share): ([f64; 2], [f64; 2]),
         (slip_change, share_change): ([f64; 2], [f64; 2]),

@@ -21,11 +21,11 @@ pub struct LayerLaw {
     hardening: f64,
     /// T; in place of t/d_c it has t, `s`.
     pub passage: Passage,
-    /// Its change with |V|.
+    /// Change of `passage` with |V|.
     pub passage_tangent: Passage,
 }
 
-/// What bounds the shear of a node, and its derivatives.
+/// Bound on the shear of a node, and its derivatives.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Yielding {
     /// The bound over the pressure.
@@ -34,21 +34,21 @@ pub struct Yielding {
     pub cap: f64,
     /// Derivative of the coefficient by μ of the surfaces: 1, or 0 where the layer flows only.
     pub by_friction: f64,
-    /// By u_pl, `1/m`: 0 where the surfaces slip.
+    /// Derivative of the coefficient by u_pl, `1/m`: 0 where the surfaces slip.
     pub by_flow: f64,
-    /// By the pressure at an unchanged u_pl.
+    /// Derivative of the coefficient by the pressure at an unchanged u_pl.
     pub by_pressure: f64,
     /// u_pl, `m`.
     pub flow: f64,
-    /// Its derivative by T u_pl.
+    /// Derivative of u_pl by T u_pl.
     pub flow_by_arrived: f64,
-    /// By the magnitude of the slip velocity, `s`.
+    /// Derivative of u_pl by the magnitude of the slip velocity, `s`.
     pub flow_by_speed: f64,
-    /// By t, `m/s`.
+    /// Derivative of u_pl by t, `m/s`.
     pub flow_by_time: f64,
-    /// By μ, `m`.
+    /// Derivative of u_pl by μ, `m`.
     pub flow_by_friction: f64,
-    /// By the pressure, `m`.
+    /// Derivative of u_pl by the pressure, `m`.
     pub flow_by_pressure: f64,
 }
 
@@ -73,7 +73,7 @@ impl Yielding {
 }
 
 impl LayerLaw {
-    /// That of the parameters; none where the layer never yields.
+    /// Law of the parameters; none where the layer never yields.
     pub fn new(parameters: &Parameters, step: &PathStep) -> Option<LayerLaw> {
         if parameters.layer_yield_stress == 0.0 {
             return None;

@@ -4,7 +4,7 @@ use super::PointLaw;
 use crate::parameters::Parameters;
 use serde::{Deserialize, Serialize};
 
-/// What a particle brings along, or a change of it; values of nodes.
+/// History that the particles bring along, values at nodes, or a change of it.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Brought {
     /// μ of the surfaces.
@@ -35,14 +35,14 @@ impl Brought {
     }
 }
 
-/// What the nodes of a window remember.
+/// History of friction at the nodes of a window.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Memory {
     /// Whether the step before has remembered.
     pub remembers: bool,
-    /// At the end of the step.
+    /// History at the end of the step.
     pub now: Brought,
-    /// At its beginning. The derivatives of the step need it.
+    /// History at the beginning of the step, which the derivatives of the step need.
     pub before: Brought,
     /// dμ of the surfaces by μ(θ) at the node's temperature.
     pub share: Vec<f64>,
@@ -51,7 +51,7 @@ pub struct Memory {
 }
 
 impl Memory {
-    /// None, of so many nodes.
+    /// Memory of so many nodes that nothing has happened to yet.
     pub fn new(nodes: usize) -> Memory {
         Memory {
             remembers: false,
@@ -144,7 +144,7 @@ impl Memory {
     }
 }
 
-/// What the particles on one path bring along: of the nodes of a window, or of one of its strips.
+/// History of the particles on one path: the nodes of a window, or of one of its strips.
 #[derive(Debug, Clone, Copy)]
 pub struct Path<'a> {
     /// μ of the surfaces.
@@ -158,7 +158,7 @@ pub struct Path<'a> {
 }
 
 impl Brought {
-    /// Over some of the nodes.
+    /// Path over some of the nodes.
     pub fn path(&self, nodes: std::ops::Range<usize>) -> Path<'_> {
         Path {
             friction: &self.friction[nodes.clone()],

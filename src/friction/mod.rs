@@ -107,7 +107,7 @@ impl FrictionState<'_> {
 /// μ of a point as a function of its temperature at given slip and history: `base` + `share` μ(θ), but no more than the `cap`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PointLaw {
-    /// What does not depend on the temperature.
+    /// Part of μ that does not depend on the temperature.
     pub base: f64,
     /// Share of μ(θ).
     pub share: f64,

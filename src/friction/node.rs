@@ -21,7 +21,7 @@ pub struct PathNode {
     pub(super) flow_carry: f64,
 }
 
-/// What a particle takes from a node in contact to the next one, or a change of it.
+/// Values that a particle takes from a node in contact to the next one, or a change of them.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Passed {
     /// μ of the surfaces.
@@ -39,13 +39,13 @@ pub struct NodeFriction {
     pub coefficient: f64,
     /// μ of the surfaces.
     pub surfaces: f64,
-    /// Its derivative by μ(θ) at the node's temperature.
+    /// Derivative of the coefficient by μ(θ) at the node's temperature.
     pub share: f64,
-    /// By the μ of the node before it.
+    /// Derivative of the coefficient by the μ of the node upstream.
     pub(super) by_before: f64,
-    /// By the magnitude of the slip velocity of the node before it, `s/m`.
+    /// Derivative of the coefficient by the magnitude of the slip velocity at the node upstream, `s/m`.
     pub(super) by_speed_before: f64,
-    /// By that of its own, `s/m`.
+    /// Derivative of the coefficient by the magnitude of the node's own slip velocity, `s/m`.
     pub(super) by_speed: f64,
     /// The layer.
     pub(super) layer: Yielding,
@@ -89,7 +89,7 @@ impl NodeFriction {
         self.layer.by_pressure
     }
 
-    /// What the node passes on.
+    /// Returns the values that a particle takes from this node to the next one.
     pub fn passed(&self, speed: f64) -> Passed {
         Passed {
             friction: self.surfaces,

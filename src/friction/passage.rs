@@ -11,7 +11,7 @@ pub struct PathStep {
     pub speed: f64,
     /// Elastic displacement of a cell under a shear of the size of the largest pressure, `m`.
     pub displacement: f64,
-    /// What pressures are scaled with, `Pa`.
+    /// Scale of pressures, `Pa`.
     pub pressure: f64,
 }
 
@@ -34,8 +34,8 @@ impl Passage {
         exposure: f64::INFINITY,
     };
 
-    /// Through a cell `spacing` `m` long at |V| `speed` `m/s` in a step of `duration` `s`; one that is infinite or 0, a state without a
-    /// step before it, is steady rolling.
+    /// Passage through a cell `spacing` `m` long at |V| `speed` `m/s` in a step of `duration` `s`; one that is infinite
+    /// or 0, a state without a step before it, is steady rolling.
     pub fn new(duration: f64, spacing: f64, speed: f64, distance: f64) -> Passage {
         let steady = !(duration > 0.0 && duration.is_finite());
         if distance == 0.0 || (steady && speed == 0.0) {
@@ -63,7 +63,7 @@ impl Passage {
         }
     }
 
-    /// Its change with |V|, per `m/s`.
+    /// Change of the passage with |V|, per `m/s`.
     pub fn tangent(&self, duration: f64, spacing: f64, speed: f64) -> Passage {
         let none = Passage::default();
         if self.exposure.is_infinite() {

@@ -46,7 +46,7 @@ pub struct SlipLaw {
 }
 
 impl SlipLaw {
-    /// That of the parameters.
+    /// Slip factor of the parameters.
     pub fn new(parameters: &Parameters) -> SlipLaw {
         SlipLaw {
             share: parameters.friction_slip_share,
@@ -74,9 +74,9 @@ pub struct PathLaw {
     /// β.
     own: f64,
     passage: Passage,
-    /// Its change with |V|.
+    /// Change of `passage` with |V|.
     passage_tangent: Passage,
-    /// What is left of the μ that a particle brings where nothing slips.
+    /// Fraction that is left, where nothing slips, of the μ that a particle brings.
     idle_fade: f64,
     /// Whether particles come from high indices.
     forward: bool,
@@ -84,7 +84,7 @@ pub struct PathLaw {
 }
 
 impl PathLaw {
-    /// That of the parameters; none where friction knows nothing but the temperature.
+    /// Law of the parameters; none where friction depends on the temperature only.
     pub fn new(parameters: &Parameters, step: &PathStep) -> Option<PathLaw> {
         let slip = SlipLaw::new(parameters);
         let distance = parameters.friction_memory_distance;

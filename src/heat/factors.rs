@@ -22,18 +22,19 @@ pub struct CellFactors {
     known: Vec<bool>,
     /// r and 1/r of the modes, in blocks, the last one filled up.
     rates: Vec<[[f64; LANES]; 2]>,
-    /// As many blocks for each length, one length after the other.
+    /// Blocks of the factors: as many as `rates` has for each length, one length after the other.
     blocks: Vec<Block>,
     /// The length that `passed_on`, `taken` and `response` are of.
     heated: Option<usize>,
-    /// What feeds a mode, and what the modes take, of a flux upstream and of their column's own, m each, `K m^½ / (W/m²)`.
+    /// Source of a mode per heat flux, and the amplitudes that a flux upstream and the column's own flux cause, m each,
+    /// `K m^½ / (W/m²)`.
     heating: Vec<f64>,
     passed_on: Vec<f64>,
     taken: Vec<f64>,
     response: f64,
 }
 
-/// What the factors depend on beside the length of a cell.
+/// Conditions that the factors depend on beside the length of a cell.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Conditions {
     /// |V|, `m/s`.
@@ -52,7 +53,7 @@ pub struct Factors<'a> {
     blocks: &'a [Block],
 }
 
-/// What a column takes of the heat flux, m each.
+/// Factors on the heat flux of a column and of the one upstream, m each.
 #[derive(Debug, Clone, Copy)]
 pub struct HeatFactors<'a> {
     /// f of a mode per heat flux, φ(0)/(ρ c_p).
@@ -65,14 +66,14 @@ pub struct HeatFactors<'a> {
     pub response: f64,
 }
 
-/// What the modes of a column come from but for its own heat flux, m each.
+/// Sources of the modes of a column but for its own heat flux, m each.
 #[derive(Debug, Clone, Copy)]
 pub struct Sources<'a> {
     /// Amplitudes in the column upstream.
     pub upstream: &'a [f64],
-    /// Those of the step before there.
+    /// Amplitudes of the step before in the column upstream.
     pub old_upstream: &'a [f64],
-    /// Those of the step before in the column itself.
+    /// Amplitudes of the step before in the column itself.
     pub old: &'a [f64],
     /// Heat flux into the column upstream, with what is taken of it.
     pub flux: Option<(f64, &'a [f64])>,
@@ -148,7 +149,7 @@ fn chunks(values: &[f64]) -> impl Iterator<Item = &[f64; LANES]> {
 }
 
 impl CellFactors {
-    /// For columns at `x` `m`.
+    /// Factors, none known yet, for columns at `x` `m`.
     pub fn new(basis: &DepthBasis, x: &[f64]) -> CellFactors {
         let m = basis.len();
         let cells = Cells::new(x);
@@ -263,7 +264,8 @@ impl CellFactors {
 mod tests {
     use super::*;
 
-    /// Whatever was asked before: columns on either side, under other conditions, with heat or without.
+    /// Factors do not depend on what was asked before: columns on either side, under other conditions, with heat or
+    /// without.
     #[test]
     fn what_is_kept_is_the_step_of_the_cell() {
         let x = [-0.1, -0.01, -0.004, -0.002, 0.0, 0.002, 0.004, 0.01, 0.1];

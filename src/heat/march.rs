@@ -29,13 +29,13 @@ pub struct HeatMarch<'a> {
 
 /// Change of the data of one step, and the exchange of the step itself.
 pub struct MarchChange<'a> {
-    /// Of |V|, `m/s`.
+    /// Change of |V|, `m/s`.
     pub speed: f64,
-    /// What all columns have in common.
+    /// Change of what all columns have in common.
     pub common: CommonChange,
     /// The exchange at the contact nodes, not changed.
     pub exchange: &'a [SurfaceExchange],
-    /// Its change.
+    /// Change of the exchange at the contact nodes.
     pub exchange_tangent: &'a [ExchangeTangent],
     /// Modal amplitudes that stood in the inflow column before the step, m.
     pub replaced_inflow: &'a [f64],
@@ -52,8 +52,8 @@ pub struct Heated<'a> {
 }
 
 impl HeatMarch<'_> {
-    /// From the modal amplitudes `before` to the field `after` under the exchange at the contact nodes. The inflow column
-    /// of `after` holds what enters. `cells` are those of the columns.
+    /// Advances the modal amplitudes `before` to the field `after` under the exchange at the contact nodes. The inflow
+    /// column of `after` holds what enters. `cells` are the factors of the cells between the columns.
     ///
     /// # Errors
     /// [`crate::error::Error::SurfaceHeatNotConverged`].

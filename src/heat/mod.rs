@@ -25,7 +25,7 @@ use incoming::Incoming;
 use march::Heated;
 use thermal_map::ThermalMap;
 
-/// What the heat of a rail needs and what does not change after initialisation.
+/// Heat of a rail: all that a step needs and that does not change after initialisation.
 pub struct Heat {
     /// Eigenbasis of the depth operator.
     pub basis: DepthBasis,
@@ -36,7 +36,7 @@ pub struct Heat {
 }
 
 impl Heat {
-    /// For a mesh, with the exact map from temperature to displacement on it.
+    /// Heat on a mesh, with the exact map from temperature to displacement on it.
     ///
     /// # Errors
     /// [`crate::error::Error::DepthBasis`].

@@ -30,15 +30,15 @@ use crate::numerics::dense::Arithmetic;
 /// Factors on what makes a column's amplitude in a step.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ModeStep {
-    /// On the amplitude upstream.
+    /// Factor on the amplitude upstream.
     pub arriving: f64,
-    /// On that of the step before upstream.
+    /// Factor on the amplitude upstream in the step before.
     pub old_upstream: f64,
-    /// On that of the step before.
+    /// Factor on the amplitude in the step before.
     pub old: f64,
-    /// On f upstream, `s`.
+    /// Factor on the source f upstream, `s`.
     pub fed_upstream: f64,
-    /// On f, `s`.
+    /// Factor on the source f in the column itself, `s`: the diagonal of the recurrence.
     pub fed: f64,
 }
 
@@ -67,7 +67,8 @@ pub struct Ends {
 }
 
 impl ModeStep {
-    /// From r `1/s` and Δ/|V| `s`, each with its inverse, and 1/Δt, without branches: several at once vectorise.
+    /// Step of a mode from r `1/s` and Δ/|V| `s`, each with its inverse, and 1/Δt, without branches: several at once
+    /// vectorise.
     #[inline(always)]
     pub fn at(
         arithmetic: Arithmetic,
@@ -214,7 +215,7 @@ mod tests {
             prop_assert!((found - old[1]).abs() < 1e-14 * (1.0 + 1.0 / step.old), "{found} {}", old[1]);
         }
 
-        /// With all Δt the same, that of the exact solution where nothing is fed.
+        /// Steady state: independent of Δt, and that of the exact solution where there are no sources.
         #[test]
         fn what_is_settled_is_the_steady_state(crossing in crossings(), feed in prop::array::uniform2(0.0..1.0)) {
             let steady = step(&Crossing { storage: 0.0, ..crossing });

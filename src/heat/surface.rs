@@ -6,8 +6,8 @@ use crate::friction::{self, FrictionState, PointLaw};
 use crate::parameters::Parameters;
 use crate::settings::HeatSettings;
 
-/// What heats and cools one column's surface, at the rail temperature θ (rise):
-/// q = ᾱ [ μ(θ) P + S − H θ ], the condition (23) with P = p φ s, S = θ_w p / r and H = k ρ c_p |s| p + p / r.
+/// Heating and cooling of one column's surface at the rail temperature θ (rise): q = ᾱ [ μ(θ) P + S − H θ ], the
+/// condition (23) with P = p φ s, S = θ_w p / r and H = k ρ c_p |s| p + p / r.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct SurfaceExchange {
     /// P: friction power per area and friction coefficient, `W/m²`.
@@ -35,7 +35,7 @@ pub struct ExchangeChange {
     pub coefficient: f64,
 }
 
-/// What [`SurfaceExchange`] changes by.
+/// Change of a [`SurfaceExchange`].
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct ExchangeTangent {
     /// dP, `W/m²`.
@@ -113,9 +113,9 @@ pub struct SurfaceCondition<'a> {
 /// Changes that all columns have in common.
 #[derive(Debug, Clone, Copy)]
 pub struct CommonChange {
-    /// Of the ambient temperature, `K`.
+    /// Change of the ambient temperature, `K`.
     pub ambient: f64,
-    /// Of the factor on μ.
+    /// Change of the factor on μ.
     pub friction_scale: f64,
 }
 

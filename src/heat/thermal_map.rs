@@ -40,13 +40,14 @@ pub struct ThermalMap {
 #[derive(Debug, Clone)]
 struct Block {
     columns: Range<usize>,
-    /// Its effects among all.
+    /// Range of the block's far-field combinations among those of all blocks.
     effects: Range<usize>,
     /// Effects per moment of the columns, row by row.
     combinations: Vec<f32>,
     /// Contact nodes next to the block.
     near: Range<usize>,
-    /// Their displacement per moment of the columns, less that of the effects; along x₁, then along x₂, row by row.
+    /// Displacement of the near nodes per moment of the columns, less that by the far-field combinations; along x₁,
+    /// then along x₂, row by row.
     gains: Vec<f32>,
 }
 
@@ -218,7 +219,7 @@ fn dot(arithmetic: Arithmetic, gains: &[f32], x: &[f64]) -> f64 {
     sums.iter().sum()
 }
 
-/// On fields that the heat march makes under random fluxes, speeds and times.
+/// Compressed map on fields that the heat march makes under random fluxes, speeds and times.
 #[cfg(test)]
 mod tests {
     use super::*;

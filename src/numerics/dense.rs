@@ -23,7 +23,7 @@ pub fn vectorised<R>(kernel: impl FnOnce(Arithmetic) -> R) -> R {
     )
 }
 
-/// As [`vectorised`] for kernels that are written with vectors themselves.
+/// Runs a kernel that is written with vectors itself on the widest that the machine has (see [`vectorised`]).
 #[inline(always)]
 pub fn with_vectors<Op: pulp::WithSimd>(kernel: Op) -> Op::Output {
     pulp::Arch::new().dispatch(kernel)
@@ -32,14 +32,14 @@ pub fn with_vectors<Op: pulp::WithSimd>(kernel: Op) -> Op::Output {
 /// Interleaved partial results of a loop, which the compiler keeps in two vector registers of AVX2.
 pub const LANES: usize = 8;
 
-/// How a machine computes a · b + c: in one instruction where it has one. A constant after inlining.
+/// Way in which a machine computes a · b + c: in one instruction where it has one. A constant after inlining.
 #[derive(Debug, Clone, Copy)]
 pub struct Arithmetic {
     fused: bool,
 }
 
 impl Arithmetic {
-    /// In two, for code outside the hot loops.
+    /// Multiplication and addition in two instructions, for code outside the hot loops.
     pub const SEPARATE: Arithmetic = Arithmetic { fused: false };
 
     /// a · b + c.
@@ -180,7 +180,7 @@ pub fn lu(a: &mut [f64], n: usize, pivots: &mut [usize]) -> bool {
     )
 }
 
-/// In panels of [`QUAD`] columns: what is right of a panel is loaded and stored once for it.
+/// Factorises in panels of [`QUAD`] columns: what is right of a panel is loaded and stored once for it.
 #[inline(always)]
 fn lu_kernel(arithmetic: Arithmetic, a: &mut [f64], n: usize, pivots: &mut [usize]) -> bool {
     for first in (0..n).step_by(QUAD) {

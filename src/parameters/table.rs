@@ -46,8 +46,8 @@ pub struct RealParameter {
     pub get_mut: fn(&mut Parameters) -> &mut [f64],
 }
 
-/// What an integer parameter counts or chooses. FMI 2.0 has an Integer for each, with the meaning of the values of a choice in
-/// its description: some of its importers pass over Enumerations. FMI 3.0 has a type for each.
+/// Kind of an integer parameter: a count or a choice. FMI 2.0 has an Integer for each, with the meaning of the values
+/// of a choice in its description: some of its importers pass over Enumerations. FMI 3.0 has a type for each.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum IntegerKind {
     /// A number of things.
@@ -71,7 +71,7 @@ pub struct IntegerParameter {
     pub minimum: i32,
     /// Largest allowed value.
     pub maximum: i32,
-    /// What it counts or chooses.
+    /// Kind of the parameter: a count or a choice.
     pub kind: IntegerKind,
     /// One sentence, with the meaning of each value of a choice.
     pub description: &'static str,
@@ -103,7 +103,7 @@ impl IntegerParameter {
         self.check_any(f64::from(value))
     }
 
-    /// As [`IntegerParameter::check`], of a value that may have more digits.
+    /// Checks, as [`IntegerParameter::check`] does, a value that may have more digits.
     ///
     /// # Errors
     /// [`Error::OutOfRange`].
@@ -305,7 +305,7 @@ impl Parameters {
         Ok(())
     }
 
-    /// These parameters with every tunable one at its start value: what a model is built for.
+    /// Parameters with every tunable one at its start value: what a model is built for.
     pub fn fixed_part(&self) -> Parameters {
         let mut fixed = self.clone();
         for entry in REAL_PARAMETERS.iter().filter(|entry| entry.tunable) {

@@ -33,9 +33,9 @@ pub struct Strips {
 /// One end of the strips: a place in what is kept for both.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Side {
-    /// Towards −x₁.
+    /// End towards −x₁.
     Left = 0,
-    /// Towards +x₁.
+    /// End towards +x₁.
     Right = 1,
 }
 
@@ -85,7 +85,7 @@ impl Strips {
         }
     }
 
-    /// Where rail comes from, and where it goes.
+    /// Sides of the window (inflow, outflow): the one that rail comes from, and the one that it goes to.
     pub fn ends(&self, speed: f64) -> (Side, Side) {
         if speed >= 0.0 {
             (Side::Right, Side::Left)

@@ -65,9 +65,9 @@ pub const ELLIPSES: [Ellipse; 3] = [
 pub struct Point {
     /// The creepage that is not zero.
     pub creepage: f64,
-    /// At n = 40.
+    /// Value at n = 40.
     pub coarse: f64,
-    /// At n = 80.
+    /// Value at n = 80.
     pub fine: f64,
 }
 
@@ -76,8 +76,8 @@ impl Point {
         Point { creepage, coarse, fine }
     }
 
-    /// Where finer elements lead, to some 0.002. CONTACT converges with first order: the limit lies once the last difference
-    /// beyond n = 80, to about half that difference; ¾ was the best on finer grids.
+    /// Limit for ever finer elements, to some 0.002. CONTACT converges with first order: the limit lies once the last
+    /// difference beyond n = 80, to about half that difference; ¾ was the best on finer grids.
     pub fn limit(&self) -> f64 {
         self.fine + 0.75 * (self.fine - self.coarse)
     }
@@ -132,7 +132,8 @@ pub const FLASH_TEMPERATURE: f64 = 50.4;
 /// Elements in contact, and least and largest CPU time of a call on one thread with inputs that vary from call to call, s, at
 /// n = 20, 30 and 40.
 pub const RUN_TIMES: [(usize, f64, f64); 3] = [(316, 0.011, 0.018), (725, 0.048, 0.071), (1276, 0.101, 0.187)];
-/// The same for CONTACT's FASTSIM, s: its forces differ from CONTACT's by 0.007 in the median, by 0.07 at large spin.
+/// Run times of CONTACT's FASTSIM by number of elements, s: its forces differ from CONTACT's by 0.007 in the median, by
+/// 0.07 at large spin.
 pub const FASTSIM_RUN_TIMES: [(usize, f64); 3] = [(316, 0.2e-3), (725, 0.4e-3), (1276, 0.6e-3)];
 
 #[cfg(test)]

@@ -36,18 +36,18 @@ struct Balance {
     friction: f64,
     /// Stored in the rim and given to the ambient; of a wheel that stays cold, what flows into it.
     rim: f64,
-    /// All of the friction power.
+    /// Friction power, all of it.
     power: f64,
 }
 
 impl Balance {
-    /// What the balance of the rail misses, over the friction heat.
+    /// Defect of the rail's balance, over the friction heat.
     fn defect(&self) -> f64 {
         let sum = self.rail() + self.conduction;
         ((sum - self.friction) / self.friction).abs()
     }
 
-    /// What the balance of rail, wheel and debris misses, over the friction power.
+    /// Defect of the balance of rail, wheel and debris, over the friction power.
     fn total_defect(&self) -> f64 {
         let sum = self.rail() + self.rim;
         ((sum - self.power) / self.power).abs()
@@ -57,7 +57,7 @@ impl Balance {
         self.stored + self.carried_out - self.carried_in + self.bottom + self.debris
     }
 
-    /// Of each term the larger share of the friction heat: that so far, or that of another step.
+    /// Larger share of the friction heat, term by term: that so far, or that of another step.
     fn largest(self, other: Balance) -> Balance {
         let share = |term: f64| (term / other.friction).abs();
         Balance {

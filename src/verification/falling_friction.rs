@@ -20,13 +20,13 @@ use crate::wheel_rail::Model;
 use std::sync::Arc;
 
 const MODELS: [(ContactModel, &str); 2] = [(ContactModel::Line, "line"), (ContactModel::Patch, "patch")];
-/// Of full slip: what elasticity adds at the leading edge, on less than a cell.
+/// Tolerance of full slip: what elasticity adds at the leading edge, on less than a cell.
 const SLIDING_TOLERANCE: f64 = 0.003;
-/// Of the coefficient along the contact: the leading edge falls between two nodes.
+/// Tolerance of the coefficient along the contact: the leading edge falls between two nodes.
 const MEMORY_TOLERANCE: f64 = 0.01;
 /// The answers of different starts, steps and iterations: their tolerances.
 const UNIQUE: f64 = 1e-6;
-/// What is called different.
+/// Relative difference above which two values are called different.
 const DIFFERENT: f64 = 1e-4;
 
 /// A = 0.3 and B, with d_c.

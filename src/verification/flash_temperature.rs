@@ -195,8 +195,8 @@ fn ellipse_area(x: f64) -> f64 {
     0.5 * (x * (1.0 - x * x).sqrt() + x.asin())
 }
 
-/// With X = x/a and material entering at X = 1, θ(X) = μ p₀ s √(a/V) / (ρc √(πκ)) F(X), F(X) = ∫ √(1 − Y²)/√(Y − X) dY
-/// from the greater of X and −1 to 1. This is the factor of F.
+/// Factor μ p₀ s √(a/V) / (ρc √(πκ)) on F in θ(X) = factor · F(X), F(X) = ∫ √(1 − Y²)/√(Y − X) dY from the greater of X
+/// and −1 to 1, with X = x/a and material entering at X = 1.
 fn flash_scale(parameters: &Parameters) -> f64 {
     parameters.friction_cold
         * parameters.hertz_peak_pressure(LOAD)

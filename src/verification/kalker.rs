@@ -211,7 +211,7 @@ mod tests {
         }
     }
 
-    /// At the entries the interpolation is the entry.
+    /// Interpolation at the entries of the table: it is the entry.
     #[test]
     fn table_at_its_entries() {
         for (tenths, (short, long)) in (1..).zip(SHORT.iter().zip(&LONG)) {
@@ -230,7 +230,8 @@ mod tests {
         assert_near(values(1.0 / 0.15, 0.5), [10.86, 12.895, 12.945, 0.2845], 1e-12);
     }
 
-    /// Without Poisson's effect the two directions are alike in their tangential compliance; the two halves meet in the circle.
+    /// Symmetry without Poisson's effect: the two directions are alike in their tangential compliance; the two halves
+    /// meet in the circle.
     #[test]
     fn alike_where_theory_says_so() {
         for row in SHORT.iter().chain(&LONG) {

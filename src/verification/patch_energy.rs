@@ -36,9 +36,9 @@ struct Balance {
     debris: f64,
     /// ᾱ of the friction power.
     friction: f64,
-    /// What flows into the wheel or is stored in the rim and given to the ambient.
+    /// Heat that flows into the wheel or is stored in the rim and given to the ambient.
     rim: f64,
-    /// All of the friction power.
+    /// Friction power, all of it.
     power: f64,
     /// Wear that is stored, and that is carried away less what came in.
     worn: [f64; 2],
@@ -181,7 +181,7 @@ fn largest(
     Ok((defects, shares))
 }
 
-/// Where a part of the rail has its values: the window, or a side of it.
+/// Part of the rail: the window, or a side of it.
 #[derive(Clone, Copy)]
 enum Part {
     Window,

@@ -11,7 +11,7 @@
 /// Creepages and forces of one case, with wheelrail's signs.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Limit {
-    /// Which of [`super::contact_points::ELLIPSES`].
+    /// Index into [`super::contact_points::ELLIPSES`].
     pub ellipse: usize,
     /// ξ, η, and φ √(ab).
     pub creepages: [f64; 3],
@@ -27,7 +27,7 @@ const fn limit(ellipse: usize, creepages: [f64; 3], forces: [f64; 3]) -> Limit {
     }
 }
 
-/// All of them: ξ, η and φ alone, then combined.
+/// Limits at all creepages: ξ, η and φ alone, then combined.
 pub const LIMITS: [Limit; 48] = [
     limit(0, [0.0005, 0.0, 0.0], [0.309, 0.0, 0.0]),
     limit(0, [0.001, 0.0, 0.0], [0.5538, 0.0, 0.0]),
@@ -84,7 +84,7 @@ mod tests {
     use super::super::contact_points::{LATERAL, LONGITUDINAL};
     use super::*;
 
-    /// Where both have a value.
+    /// Limits against those of CONTACT, where both have a value.
     #[test]
     fn limits_are_those_of_contact() {
         for (axis, curve) in [LONGITUDINAL, LATERAL].into_iter().enumerate() {

@@ -13,14 +13,14 @@ use serde::{Deserialize, Serialize};
 /// Wear depth of the strips and of the rail ahead and behind, `m`, or a change of it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct StripWear {
-    /// Of the strips, blocks × columns × [`LANES`]: the strips, after them the rail beside the contact.
+    /// Depths of the strips, blocks × columns × [`LANES`]: the strips, after them the rail beside the contact.
     pub window: Vec<f64>,
-    /// Of the rail on either side: at the column next to the window the mean.
+    /// Depths of the rail on either side of the window; at the column next to the window the mean.
     pub outer: [Vec<f64>; 2],
-    /// Of the cells, strip by strip.
+    /// Depths at the cells, strip by strip.
     pub depth: Vec<f64>,
-    /// What stood before the step in the strips' inflow column, blocks × [`LANES`], where rail entered, and as the mean at the
-    /// outflow column. The derivatives of the step need it.
+    /// Depths that the step has overwritten: those in the strips' inflow column, blocks × [`LANES`], where rail
+    /// entered, and the mean at the outflow column. The derivatives of the step need them.
     pub replaced: Vec<f64>,
     /// B of the last step with a contact, `m`.
     pub breadth: f64,
@@ -66,7 +66,7 @@ pub struct StripWearSteps {
 }
 
 impl StripWearSteps {
-    /// Of the given strips.
+    /// Steps for the cells of the given strips.
     pub fn new(strips: &Strips) -> StripWearSteps {
         StripWearSteps {
             outer: [Side::Left, Side::Right].map(|side| WearSteps::new(strips.outer_positions(side))),
@@ -88,8 +88,8 @@ pub struct StripWearMarch<'a> {
 type Block = [f64; LANES];
 
 impl StripWearMarch<'_> {
-    /// From `before`, with rail entering at the depth `incoming` `m`, under the wear rate at the cells, strip by strip, `m/s`: the rail
-    /// ahead and the strips.
+    /// Advances the rail ahead and the strips from `before`, with rail entering at the depth `incoming` `m`, under the
+    /// wear rate at the cells, strip by strip, `m/s`.
     pub fn advance(
         &self,
         rate: &[f64],
@@ -254,13 +254,13 @@ impl StripWearMarch<'_> {
         CellStep::new(1.0 / self.duration, self.strips.spacing(), self.speed.abs())
     }
 
-    /// Where a block has its depths.
+    /// Range of a block's depths.
     fn block(&self, block: usize) -> std::ops::Range<usize> {
         let size = self.strips.columns() * LANES;
         block * size..(block + 1) * size
     }
 
-    /// Where a strip has its depth.
+    /// Index of a strip's depth in a column.
     fn place(&self, strip: usize, column: usize) -> usize {
         (strip / LANES * self.strips.columns() + column) * LANES + strip % LANES
     }
@@ -366,7 +366,8 @@ mod tests {
             }
         }
 
-        /// What is worn lies on the rail or has left it, over a contact of one breadth: to and fro, with a worn rail coming in.
+        /// Worn volume, over a contact of one breadth: it lies on the rail or has left it, to and fro, with a worn rail
+        /// coming in.
         #[test]
         fn worn_volume_is_the_depth_on_the_rail_and_what_left_it(
             rate in prop::collection::vec(0.0..3.0, STRIPS * CELLS),

@@ -26,7 +26,7 @@ pub struct Describe {
     all: bool,
 }
 
-/// Why nothing could be described.
+/// Reason why nothing could be described.
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
     /// The XML serializer.
@@ -77,7 +77,7 @@ impl Describe {
 const HEADINGS: [&str; 5] = ["name", "unit", "start", "range", "description"];
 type Row = [String; 5];
 
-/// Of a profile only the first point.
+/// Returns whether a variable is listed: of a profile only the first point is.
 fn is_listed(variable: &Variable) -> bool {
     variable.causality != Causality::Local || !variable.name.contains('[') || variable.name.ends_with("[1]")
 }

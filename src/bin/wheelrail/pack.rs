@@ -29,12 +29,12 @@ pub struct Pack {
     /// Another WheelRailContact.fmu of the same sources: its platforms are merged in.
     #[arg(long, value_name = "FMU")]
     merge: Vec<PathBuf>,
-    /// Where the archive goes; target/WheelRailContact.fmu, or -fmi3.fmu, if not told.
+    /// File of the archive; target/WheelRailContact.fmu, or -fmi3.fmu, if not told
     #[arg(short, long, value_name = "FMU")]
     output: Option<PathBuf>,
 }
 
-/// Why there is no archive.
+/// Reason why there is no archive.
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
     /// The XML serializer.
@@ -45,7 +45,7 @@ pub enum Error {
     File {
         /// The file.
         path: PathBuf,
-        /// What the system says.
+        /// Error of the system.
         source: io::Error,
     },
     /// An archive that cannot be read or written.
@@ -53,7 +53,7 @@ pub enum Error {
     Archive {
         /// The archive.
         path: PathBuf,
-        /// What is wrong.
+        /// Error of the archive.
         source: zip::result::ZipError,
     },
     /// The checked-in description is not what the variable table says.
@@ -77,7 +77,7 @@ pub enum Error {
     NoLibrary {
         /// The file.
         path: PathBuf,
-        /// What is wrong with it.
+        /// Error of the reader.
         source: object::Error,
     },
     /// A library of another platform than it is given for.
@@ -85,7 +85,7 @@ pub enum Error {
     OtherPlatform {
         /// The library.
         path: PathBuf,
-        /// Its format and processors.
+        /// Format and processors of the library.
         found: String,
         /// The platform that it is given for.
         platform: &'static str,
@@ -117,12 +117,12 @@ pub enum Error {
     TwoLibraries {
         /// The name in the archive.
         name: String,
-        /// Where the second one came from.
+        /// Path of the second one.
         path: PathBuf,
     },
 }
 
-/// Where the archive says what compiled each library.
+/// Entry of the archive that says what compiled each library.
 const BUILD: &str = "documentation/build.txt";
 const NOT_RECORDED: &str = "not recorded";
 
@@ -206,7 +206,7 @@ struct Libraries {
     entries: Entries,
     /// The functions that the first one exports, and every other has to.
     functions: BTreeSet<String>,
-    /// By platform, what compiled its library.
+    /// Compiler of each library, by platform.
     builds: BTreeMap<String, String>,
 }
 
@@ -297,7 +297,7 @@ impl Libraries {
     }
 }
 
-/// What compiled a library, which the build writes beside it.
+/// Returns what compiled a library, which the build writes beside it.
 fn build_of(library: &Path) -> Result<String, Error> {
     let mut path = library.as_os_str().to_owned();
     path.push(".build.txt");
@@ -341,7 +341,8 @@ fn add_folder(entries: &mut Entries, folder: &Path, prefix: &str) -> Result<(), 
     Ok(())
 }
 
-/// The same entries give the same bytes: sorted names, a fixed date, fixed permissions, one compression.
+/// Writes the archive; the same entries give the same bytes: sorted names, a fixed date, fixed permissions, one
+/// compression.
 fn write_archive(output: impl Write + io::Seek, entries: &Entries) -> zip::result::ZipResult<()> {
     let mut archive = ZipWriter::new(output);
     let options = SimpleFileOptions::default()
@@ -386,7 +387,7 @@ fn archive_error(path: &Path, source: zip::result::ZipError) -> Error {
     }
 }
 
-/// Where `cargo build --release --lib --no-default-features --features fmi` leaves the library.
+/// Path where `cargo build --release --lib --no-default-features --features fmi` leaves the library.
 fn default_library() -> PathBuf {
     let name = format!(
         "{}wheelrail{}",

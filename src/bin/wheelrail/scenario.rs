@@ -9,7 +9,7 @@ use wheelrail::signals::InputSignal;
 use wheelrail::simulation::{self, Point, Schedule};
 use wheelrail::{Error as ModelError, INPUTS, Inputs, Parameters};
 
-/// Why a file does not serve as a scenario.
+/// Reason why a file does not serve as a scenario.
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
     /// A file that does not serve as a table.
@@ -38,11 +38,11 @@ pub enum Error {
         path: PathBuf,
         /// The heading.
         column: String,
-        /// What it is instead.
+        /// Kind of the column: what it is instead.
         is: String,
-        /// What a column may be.
+        /// Columns that are allowed.
         allowed: String,
-        /// Which of these may be meant.
+        /// Columns that may be meant.
         meant: String,
     },
     /// A unit that is none of the column's.
@@ -56,7 +56,7 @@ pub enum Error {
         unit: String,
         /// The name in it.
         name: String,
-        /// What the unit may be.
+        /// Units that are allowed.
         allowed: String,
     },
     /// A heading that is there twice.
@@ -134,7 +134,7 @@ pub enum Error {
         line: u64,
         /// The heading.
         column: String,
-        /// Why.
+        /// Reason.
         source: Box<ModelError>,
     },
     /// Values that the model refuses together, or that of an input without a column.
@@ -144,7 +144,7 @@ pub enum Error {
         path: PathBuf,
         /// The line.
         line: u64,
-        /// Which inputs and why.
+        /// Inputs that are refused, and the reason.
         source: Box<ModelError>,
     },
     /// A column without effect.
@@ -158,7 +158,7 @@ pub enum Error {
         line: u64,
         /// The heading.
         column: String,
-        /// Which input, and what uses it.
+        /// Input that has no effect, and what uses it.
         source: Box<ModelError>,
         /// The choice that uses it.
         number: i32,
@@ -168,12 +168,12 @@ pub enum Error {
     TooShort {
         /// The file.
         path: PathBuf,
-        /// Its rows.
+        /// Number of rows in the file.
         rows: usize,
     },
 }
 
-/// What a column holds.
+/// Quantity that a column holds.
 enum Quantity {
     Time,
     Input(&'static InputSignal),
@@ -181,7 +181,7 @@ enum Quantity {
 
 /// A column of the file.
 struct Column {
-    /// As the file has it.
+    /// Heading as the file has it.
     heading: String,
     quantity: Quantity,
     /// The unit of its cells.
@@ -195,9 +195,10 @@ struct Row {
     inputs: Inputs,
 }
 
-/// Where `largest_load` follows the loads of a scenario it is larger than all of them by this factor.
+/// Factor of `largest_load` over the largest load of a scenario, where it follows them.
 const HEADROOM: f64 = 1.05;
-/// It follows them up to the load of a wheel under an axle of 40 t, `N`: a larger one is more likely a slip of the pen.
+/// Largest load that `largest_load` follows, that of a wheel under an axle of 40 t, `N`: a larger one is more likely a
+/// slip of the pen.
 const HEAVIEST_WHEEL: f64 = 200e3;
 
 /// Reads the table and checks each value against the parameters, whose `largest_load` follows the loads if asked for.
@@ -319,7 +320,8 @@ fn columns(path: &Path, headings: &csv::StringRecord) -> Result<Vec<Column>, Err
     }
 }
 
-/// What a column that is no input is instead, and which one may be meant; either is empty where nothing is known.
+/// Returns what a column that is no input is instead, and which one may be meant; either is empty where nothing is
+/// known.
 fn hints(name: &str) -> (String, String) {
     if names::is_output(name) {
         return (" but an output, which is computed".to_owned(), String::new());

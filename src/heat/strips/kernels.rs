@@ -8,12 +8,12 @@ use std::ops::Range;
 /// A value of each strip of a block.
 pub type Block = [f64; LANES];
 
-/// What a mode is made of in a column of the window.
+/// Factors and heat content of a mode in a column of the window.
 #[derive(Debug, Clone, Copy)]
 pub struct Mode {
     /// r, `1/s`.
     pub rate: f64,
-    /// But for the flux.
+    /// Factors of the mode but those on the flux.
     pub step: ModeStep,
     /// f per heat flux, `K m^½/s / (W/m²)`.
     pub heating: f64,
@@ -52,17 +52,17 @@ impl Default for Mode {
 pub struct Order {
     /// Number of columns.
     pub columns: usize,
-    /// Towards −x₁.
+    /// Direction of the rail: true towards −x₁.
     pub forward: bool,
 }
 
 impl Order {
-    /// Where a block has its columns.
+    /// Range of a block's columns.
     pub fn columns(&self, block: usize) -> Range<usize> {
         block * self.columns..(block + 1) * self.columns
     }
 
-    /// Where a block has its amplitudes of m modes.
+    /// Range of a block's amplitudes, m modes a column.
     pub fn amplitudes(&self, block: usize, m: usize) -> Range<usize> {
         let size = self.columns * m * LANES;
         block * size..(block + 1) * size
@@ -79,19 +79,20 @@ impl Order {
     }
 }
 
-/// What a flux does to the columns from its own on, with the number of columns between: R and the same of the heat content.
+/// Thermal response of the columns downstream to a flux, by the number of columns between: R of the surface temperature
+/// and the same of the heat content.
 #[derive(Debug, Clone)]
 pub struct Responses {
     /// R, `K/(W/m²)`.
     pub surface: Vec<f64>,
-    /// Of the heat content, `K m/(W/m²)`.
+    /// Response of the heat content, `K m/(W/m²)`.
     pub content: Vec<f64>,
-    /// Of the modes, at one distance.
+    /// Response of the modal amplitudes at one distance.
     amplitudes: Vec<f64>,
 }
 
 impl Responses {
-    /// Over the given number of cells, of as many modes.
+    /// Responses over the given number of cells, of as many modes; not computed yet.
     pub fn new(cells: usize, modes: usize) -> Responses {
         Responses {
             surface: vec![0.0; cells],
@@ -100,7 +101,7 @@ impl Responses {
         }
     }
 
-    /// Of the given modes.
+    /// Computes the responses of the given modes.
     #[inline(always)]
     pub fn compute(&mut self, arithmetic: Arithmetic, modes: &[Mode]) {
         let places = self.surface.iter_mut().zip(&mut self.content).enumerate();
@@ -225,16 +226,17 @@ pub fn heated(arithmetic: Arithmetic, order: Order, modes: &[Mode], before: &[f6
 pub struct Carried<'a> {
     /// Amplitudes after it.
     pub amplitudes: &'a [f64],
-    /// Those that stood in the inflow column before it.
+    /// Amplitudes that stood in the inflow column before the step.
     pub replaced: &'a [f64],
     /// Heat flux of the columns, `W/m²`.
     pub flux: &'a [Block],
-    /// What the modes cross but for their rate.
+    /// Cell that the modes cross; their rate r is not in it.
     pub crossing: Crossing,
 }
 
 impl Carried<'_> {
-    /// What a change of |V| by `change` `m/s` adds to the amplitudes of each column where it acts; `old` holds m blocks.
+    /// Computes the sources that a change of |V| by `change` `m/s` adds to the amplitudes of each column; `old` holds m
+    /// blocks.
     pub fn speed_sources(&self, order: Order, modes: &[Mode], change: f64, old: &mut [Block], sources: &mut [f64]) {
         let m = modes.len();
         let amplitudes = self.amplitudes.as_chunks::<LANES>().0;
@@ -308,7 +310,7 @@ pub struct Cells<'a> {
     pub surface: &'a mut [f64],
     /// `K m`.
     pub content: &'a mut [f64],
-    /// How many of the block are strips of the patch.
+    /// Number of the block's lanes that are strips of the patch.
     pub strips: usize,
 }
 
@@ -362,7 +364,7 @@ pub fn respond(
     Ok(())
 }
 
-/// What the sources add, the next one upstream first, to surface temperature and heat content.
+/// Adds the thermal responses to the sources, the next one upstream first, to surface temperature and heat content.
 #[inline(always)]
 fn add_responses<'a>(
     arithmetic: Arithmetic,

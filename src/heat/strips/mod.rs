@@ -62,7 +62,7 @@ pub struct StripHeatScratch {
     /// Factors in the window and on either side of it.
     cells: CellFactors,
     outer_cells: [CellFactors; 2],
-    /// What `modes` and `responses` are of.
+    /// Conditions under which `modes` and `responses` were computed.
     conditions: Option<Conditions>,
     modes: Vec<Mode>,
     responses: Responses,
@@ -70,7 +70,8 @@ pub struct StripHeatScratch {
     unheated: Vec<Block>,
     unheated_content: Vec<Block>,
     flux: Vec<Block>,
-    /// What a change of |V| adds to the amplitudes of the strips, and, m blocks, those of a column before the step.
+    /// Sources that a change of |V| adds to the amplitudes of the strips, and, m blocks, the amplitudes of a column
+    /// before the step.
     sources: Vec<f64>,
     old: Vec<Block>,
     /// Surface temperature of the columns on one side and its change, and a copy of their amplitudes.
@@ -79,7 +80,7 @@ pub struct StripHeatScratch {
 }
 
 impl StripHeatScratch {
-    /// For the given strips.
+    /// Scratch for the given strips.
     pub fn new(basis: &DepthBasis, strips: &Strips) -> StripHeatScratch {
         let m = basis.len();
         let cells = |side| CellFactors::new(basis, strips.outer_positions(side));
@@ -104,8 +105,8 @@ impl StripHeatScratch {
 }
 
 impl StripHeatMarch<'_> {
-    /// From `before`, with rail entering at `rise` `K` over the ambient: the rail ahead of the window in `after`, and what the
-    /// strips are without heat flux.
+    /// Starts a step from `before`, with rail entering at `rise` `K` over the ambient: computes the rail ahead of the
+    /// window, in `after`, and the temperature and heat content of the strips without heat flux.
     ///
     /// # Errors
     /// None that a column without heat flux can have.
@@ -235,7 +236,7 @@ impl StripHeatMarch<'_> {
         }
     }
 
-    /// Where a strip has its amplitude.
+    /// Index of a strip's modal amplitude in a column.
     fn place(&self, strip: usize, column: usize, mode: usize) -> usize {
         let row = (strip / LANES * self.strips.columns() + column) * self.basis.len() + mode;
         row * LANES + strip % LANES
@@ -275,7 +276,7 @@ impl StripHeatMarch<'_> {
         );
     }
 
-    /// The same amplitudes in all strips of the inflow column.
+    /// Sets the same amplitudes in all strips of the inflow column.
     fn enter_window(&self, entering: &[f64], window: &mut [f64]) {
         let (m, inflow) = (self.basis.len(), self.strips.window(self.speed).inflow());
         for block in 0..self.strips.blocks() {

@@ -12,22 +12,22 @@ use crate::transport::strips::Side;
 /// The exchange at the cells, not changed, and its change.
 #[derive(Debug, Clone, Copy)]
 pub struct StripHeatChange<'a> {
-    /// What all cells have in common.
+    /// Change of what all cells have in common.
     pub common: CommonChange,
     /// The exchange.
     pub exchange: &'a [SurfaceExchange],
-    /// Its change.
+    /// Change of the exchange.
     pub exchange_tangent: &'a [ExchangeTangent],
 }
 
 /// Change of what carries heat through the strips.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CarriageChange {
-    /// Of |V|, `m/s`.
+    /// Change of |V|, `m/s`.
     pub speed: f64,
-    /// Of the entering temperature rise, `K`.
+    /// Change of the entering temperature rise, `K`.
     pub rise: f64,
-    /// Of the contact's breadth B, `m`; 0 without a contact.
+    /// Change of the contact's breadth B, `m`; 0 without a contact.
     pub breadth: f64,
 }
 
@@ -120,7 +120,7 @@ impl StripHeatMarch<'_> {
         tangent.breadth = change.breadth;
     }
 
-    /// What the change of |V| adds to the amplitudes of the strips, into `scratch`.
+    /// Computes the sources that the change of |V| adds to the amplitudes of the strips, into `scratch`.
     fn speed_sources(&self, solution: &StripTemperature, speed: f64, scratch: &mut StripHeatScratch) {
         let (m, order) = (self.basis.len(), self.order());
         let cells = self.strips.cells;

@@ -84,7 +84,7 @@ fn condition(parameters: &Parameters) -> SurfaceCondition<'_> {
     }
 }
 
-/// In some strips, where `loads` (strips × cells) is positive.
+/// Exchange at the cells: friction in some strips, where `loads` (strips × cells) is positive.
 fn exchange(parameters: &Parameters, loads: &[f64], wheel_rise: f64) -> Vec<SurfaceExchange> {
     loads
         .iter()
