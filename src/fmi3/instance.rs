@@ -112,7 +112,7 @@ impl call::Instance for Instance {
 }
 
 /// Results of fmi3DoStep beside its status.
-pub struct Step {
+pub struct StepResult {
     /// Whether the step ended before its end.
     pub early_return: types::Boolean,
     /// The communication point that was reached, `s`.
@@ -137,10 +137,10 @@ impl Instance {
     }
 
     /// fmi3DoStep: where the step ended, and why it did not end where it should.
-    pub fn do_step(&mut self, current: f64, size: f64) -> (Step, Result<(), Failure>) {
+    pub fn do_step(&mut self, current: f64, size: f64) -> (StepResult, Result<(), Failure>) {
         let result = self.component.do_step(current, size);
         let early = matches!(result, Err(failures::Failure::Interrupted { .. })) && self.early_return_allowed;
-        let answer = Step {
+        let answer = StepResult {
             early_return: types::Boolean::from(early),
             last_successful_time: self.component.time(),
         };

@@ -6,11 +6,11 @@
 
 use super::basis::DepthBasis;
 use super::step::ModeStep;
-use crate::numerics::dense::{Arithmetic, LANES};
+use crate::numerics::dense::{LANES, MultiplyAdd};
 use crate::transport::{Cells, Column};
 
 /// The fields of [`ModeStep`], in their order, of as many modes as are computed at once.
-type Block = [[f64; LANES]; 5];
+type StepLanes = [[f64; LANES]; 5];
 
 /// Factors of all modes in the cells between columns; m modes. What they are depends on nothing that was asked before.
 #[derive(Debug, Clone)]
@@ -23,7 +23,7 @@ pub struct CellFactors {
     /// r and 1/r of the modes, in blocks, the last one filled up.
     rates: Vec<[[f64; LANES]; 2]>,
     /// Blocks of the factors: as many as `rates` has for each length, one length after the other.
-    blocks: Vec<Block>,
+    blocks: Vec<StepLanes>,
     /// The length that `passed_on`, `taken` and `response` are of.
     heated: Option<usize>,
     /// Source of a mode per heat flux, and the amplitudes that a flux upstream and the column's own flux cause, m each,
@@ -50,7 +50,7 @@ pub struct Conditions {
 /// The steps of all modes through a cell.
 #[derive(Debug, Clone, Copy)]
 pub struct Factors<'a> {
-    blocks: &'a [Block],
+    blocks: &'a [StepLanes],
 }
 
 /// Factors on the heat flux of a column and of the one upstream, m each.
@@ -93,11 +93,11 @@ impl Factors<'_> {
         }
     }
 
-    /// The step of the modes but for their own heat flux, and the surface value of what comes of it: as [`Arithmetic::dot`],
+    /// The step of the modes but for their own heat flux, and the surface value of what comes of it: as [`MultiplyAdd::dot`],
     /// in the same pass.
     #[inline(always)]
-    pub fn carry_over(&self, arithmetic: Arithmetic, own: &mut [f64], sources: &Sources, surface: &[f64]) -> f64 {
-        let fma = |a, b, c| arithmetic.multiply_add(a, b, c);
+    pub fn carry_over(&self, fma: MultiplyAdd, own: &mut [f64], sources: &Sources, surface: &[f64]) -> f64 {
+        let fma = |a, b, c| fma.multiply_add(a, b, c);
         let Sources {
             upstream,
             old_upstream,
@@ -164,7 +164,7 @@ impl CellFactors {
             },
             known: vec![false; lengths],
             rates: vec![[[1.0; LANES]; 2]; blocks],
-            blocks: vec![Block::default(); blocks * lengths],
+            blocks: vec![StepLanes::default(); blocks * lengths],
             heated: None,
             heating: vec![0.0; m],
             passed_on: vec![0.0; m],
@@ -196,10 +196,10 @@ impl CellFactors {
 
     /// Factors at a length.
     #[inline(always)]
-    pub fn at(&mut self, arithmetic: Arithmetic, length: usize) -> Factors<'_> {
+    pub fn at(&mut self, fma: MultiplyAdd, length: usize) -> Factors<'_> {
         if !self.known[length] {
             self.known[length] = true;
-            self.compute(arithmetic, length);
+            self.compute(fma, length);
         }
         self.known_at(length)
     }
@@ -214,13 +214,8 @@ impl CellFactors {
 
     /// Factors at a length, and those of the flux.
     #[inline(always)]
-    pub fn heated_at(
-        &mut self,
-        arithmetic: Arithmetic,
-        basis: &DepthBasis,
-        length: usize,
-    ) -> (Factors<'_>, HeatFactors<'_>) {
-        self.at(arithmetic, length);
+    pub fn heated_at(&mut self, fma: MultiplyAdd, basis: &DepthBasis, length: usize) -> (Factors<'_>, HeatFactors<'_>) {
+        self.at(fma, length);
         if self.heated != Some(length) {
             self.heated = Some(length);
             for mode in 0..basis.len() {
@@ -228,7 +223,7 @@ impl CellFactors {
                 self.passed_on[mode] = self.heating[mode] * step.fed_upstream;
                 self.taken[mode] = self.heating[mode] * step.fed;
             }
-            self.response = arithmetic.dot(&basis.surface, &self.taken);
+            self.response = fma.dot(&basis.surface, &self.taken);
         }
         let heat = HeatFactors {
             heating: &self.heating,
@@ -241,15 +236,15 @@ impl CellFactors {
 
     /// [`ModeStep`] of every mode.
     #[inline(always)]
-    fn compute(&mut self, arithmetic: Arithmetic, length: usize) {
+    fn compute(&mut self, fma: MultiplyAdd, length: usize) {
         let (length_of_cell, speed) = (self.cells.lengths[length], self.conditions.speed);
         let passage = (length_of_cell / speed, speed / length_of_cell);
         let storage = 1.0 / self.conditions.duration;
         let count = self.rates.len();
         for (block, [rates, lifetimes]) in self.blocks[count * length..].iter_mut().zip(&self.rates) {
-            let mut factors = Block::default();
+            let mut factors = StepLanes::default();
             for lane in 0..LANES {
-                let step = ModeStep::at(arithmetic, (rates[lane], lifetimes[lane]), storage, passage);
+                let step = ModeStep::at(fma, (rates[lane], lifetimes[lane]), storage, passage);
                 let step = [step.arriving, step.old_upstream, step.old, step.fed_upstream, step.fed];
                 for (factors, factor) in factors.iter_mut().zip(step) {
                     factors[lane] = factor;
@@ -294,12 +289,12 @@ mod tests {
                     spacing,
                 };
                 let length = cells.length_of(&column);
-                let (factors, heat) = cells.heated_at(Arithmetic::SEPARATE, &basis, length);
+                let (factors, heat) = cells.heated_at(MultiplyAdd::SEPARATE, &basis, length);
                 let mut response = 0.0;
                 for mode in 0..basis.len() {
                     let rate = 1.4e-5 * basis.eigenvalues[mode];
                     let passage = (spacing / speed, speed / spacing);
-                    let step = ModeStep::at(Arithmetic::SEPARATE, (rate, 1.0 / rate), 1.0 / duration, passage);
+                    let step = ModeStep::at(MultiplyAdd::SEPARATE, (rate, 1.0 / rate), 1.0 / duration, passage);
                     let kept = factors.step(mode);
                     let heating = basis.surface[mode] / 3.6e6;
                     response += basis.surface[mode] * heating * step.fed;

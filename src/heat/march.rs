@@ -10,7 +10,7 @@ use super::factors::{CellFactors, Conditions, Sources};
 use super::step::{Crossing, Ends};
 use super::surface::{CommonChange, ExchangeTangent, SurfaceCondition, SurfaceExchange};
 use crate::error::Result;
-use crate::numerics::dense::{self, Arithmetic};
+use crate::numerics::dense::{self, MultiplyAdd};
 use crate::transport::Upwind;
 
 /// One implicit time step of the march.
@@ -66,14 +66,14 @@ impl HeatMarch<'_> {
     ) -> Result<()> {
         dense::vectorised(
             #[inline(always)]
-            |arithmetic| self.advance_kernel(arithmetic, before, exchange, after, cells),
+            |fma| self.advance_kernel(fma, before, exchange, after, cells),
         )
     }
 
     #[inline(always)]
     fn advance_kernel(
         &self,
-        arithmetic: Arithmetic,
+        fma: MultiplyAdd,
         before: &[f64],
         exchange: &[SurfaceExchange],
         after: &mut Heated,
@@ -97,21 +97,21 @@ impl HeatMarch<'_> {
                 // Nothing heats this column, and nothing warm is in it or is carried into it.
                 let warm = old[0] != 0.0 || old_upstream[0] != 0.0 || upstream[0] != 0.0;
                 after.surface[column.index] = if warm {
-                    let factors = cells.at(arithmetic, cells.length_of(&column));
+                    let factors = cells.at(fma, cells.length_of(&column));
                     let sources = Sources {
                         upstream,
                         old_upstream,
                         old,
                         flux: None,
                     };
-                    factors.carry_over(arithmetic, own, &sources, surface)
+                    factors.carry_over(fma, own, &sources, surface)
                 } else {
                     own.fill(0.0);
                     0.0
                 };
                 continue;
             }
-            let (factors, heat) = cells.heated_at(arithmetic, self.basis, cells.length_of(&column));
+            let (factors, heat) = cells.heated_at(fma, self.basis, cells.length_of(&column));
             let flux = Some((upstream_flux, heat.passed_on));
             let sources = Sources {
                 upstream,
@@ -119,7 +119,7 @@ impl HeatMarch<'_> {
                 old,
                 flux,
             };
-            let unheated = factors.carry_over(arithmetic, own, &sources, surface);
+            let unheated = factors.carry_over(fma, own, &sources, surface);
             upstream_flux = match heating {
                 Some(exchange) => {
                     let position = self.transport.position(column.index);
@@ -132,7 +132,7 @@ impl HeatMarch<'_> {
                 *flux = upstream_flux;
             }
             after.surface[column.index] = unheated + heat.response * upstream_flux;
-            arithmetic.add_multiple(heat.taken, upstream_flux, own);
+            fma.add_multiple(heat.taken, upstream_flux, own);
         }
         Ok(())
     }
@@ -156,17 +156,17 @@ impl HeatMarch<'_> {
         tangent: &mut Heated,
         cells: &mut CellFactors,
     ) {
-        // With the arithmetic of the step: what is kept in the cells is the same to the last digit.
+        // With the fma of the step: what is kept in the cells is the same to the last digit.
         dense::vectorised(
             #[inline(always)]
-            |arithmetic| self.advance_tangent_kernel(arithmetic, solution, change, tangent, cells),
+            |fma| self.advance_tangent_kernel(fma, solution, change, tangent, cells),
         );
     }
 
     #[inline(always)]
     fn advance_tangent_kernel(
         &self,
-        arithmetic: Arithmetic,
+        fma: MultiplyAdd,
         solution: &Heated,
         change: &MarchChange,
         tangent: &mut Heated,
@@ -180,7 +180,7 @@ impl HeatMarch<'_> {
         let (mut heated_upstream, mut upstream_flux) = (0.0, 0.0);
         for column in self.transport.columns() {
             let length = cells.length_of(&column);
-            let (factors, heat) = cells.heated_at(arithmetic, self.basis, length);
+            let (factors, heat) = cells.heated_at(fma, self.basis, length);
             let node = column.index.wrapping_sub(self.first_contact);
             let heated = solution.flux.get(node).copied().unwrap_or(0.0);
             let mut unheated = 0.0;
@@ -221,7 +221,7 @@ impl HeatMarch<'_> {
             }
             tangent.flux[node] = upstream_flux;
             tangent.surface[column.index] += heat.response * upstream_flux;
-            arithmetic.add_multiple(
+            fma.add_multiple(
                 heat.taken,
                 upstream_flux,
                 &mut tangent.temperature[column.index * m..][..m],

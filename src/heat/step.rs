@@ -25,7 +25,7 @@
 //! and over cells of one length the weights of a column add up to 1, whatever V, Δt and λ.
 
 use crate::numerics::decay::{Decay, decay};
-use crate::numerics::dense::Arithmetic;
+use crate::numerics::dense::MultiplyAdd;
 
 /// Factors on what makes a column's amplitude in a step.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -71,15 +71,15 @@ impl ModeStep {
     /// vectorise.
     #[inline(always)]
     pub fn at(
-        arithmetic: Arithmetic,
+        fma: MultiplyAdd,
         (rate, lifetime): (f64, f64),
         storage: f64,
         (passage, passages): (f64, f64),
     ) -> ModeStep {
-        let Decay { keep, upstream, own } = decay(arithmetic, rate * passage, lifetime * passages);
+        let Decay { keep, upstream, own } = decay(fma, rate * passage, lifetime * passages);
         let (fed_upstream, fed) = (upstream * lifetime, own * lifetime);
         let stored_upstream = (fed_upstream * storage).min(keep);
-        let stored = arithmetic.multiply_add(fed_upstream + fed, storage, -stored_upstream);
+        let stored = fma.multiply_add(fed_upstream + fed, storage, -stored_upstream);
         let share = 1.0 / (1.0 + stored);
         ModeStep {
             arriving: (keep - stored_upstream) * share,
@@ -159,7 +159,7 @@ mod tests {
             speed,
         } = *crossing;
         let passage = (spacing / speed, speed / spacing);
-        ModeStep::at(Arithmetic::SEPARATE, (rate, 1.0 / rate), storage, passage)
+        ModeStep::at(MultiplyAdd::SEPARATE, (rate, 1.0 / rate), storage, passage)
     }
 
     /// The amplitude at the column, from all else in `ends`.

@@ -115,7 +115,7 @@ impl IntegerParameter {
 
 /// A row of either kind, as the list below has them.
 #[derive(Clone, Copy)]
-enum Row {
+enum ParameterRow {
     Real(RealParameter),
     Integer(IntegerParameter),
 }
@@ -254,7 +254,7 @@ macro_rules! rows_of {
         const NUMBER: usize = {
             let (mut row, mut number) = (0, 0);
             while row < ROWS.len() {
-                number += matches!(ROWS[row], Row::$kind(_)) as usize;
+                number += matches!(ROWS[row], ParameterRow::$kind(_)) as usize;
                 row += 1;
             }
             number
@@ -262,7 +262,7 @@ macro_rules! rows_of {
         const TABLE: Option<[$type; NUMBER]> = {
             let (mut row, mut filled, mut table) = (0, 0, None);
             while row < ROWS.len() {
-                if let Row::$kind(entry) = ROWS[row] {
+                if let ParameterRow::$kind(entry) = ROWS[row] {
                     // An array begins as copies of its first entry.
                     let mut entries = match table {
                         Some(entries) => entries,

@@ -62,7 +62,7 @@ pub const ELLIPSES: [Ellipse; 3] = [
 
 /// One force at one creepage on the circle, a/b = 1.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Point {
+pub struct CreepForce {
     /// The creepage that is not zero.
     pub creepage: f64,
     /// Value at n = 40.
@@ -71,9 +71,9 @@ pub struct Point {
     pub fine: f64,
 }
 
-impl Point {
-    const fn new(creepage: f64, coarse: f64, fine: f64) -> Point {
-        Point { creepage, coarse, fine }
+impl CreepForce {
+    const fn new(creepage: f64, coarse: f64, fine: f64) -> CreepForce {
+        CreepForce { creepage, coarse, fine }
     }
 
     /// Limit for ever finer elements, to some 0.002. CONTACT converges with first order: the limit lies once the last
@@ -84,27 +84,27 @@ impl Point {
 }
 
 /// F_x by longitudinal creepage ξ alone. In full slip it is a little under 1, as the elastic slip has a lateral part.
-pub const LONGITUDINAL: [Point; 8] = [
-    Point::new(0.0002, 0.110_32, 0.109_20),
-    Point::new(0.0005, 0.261_93, 0.259_12),
-    Point::new(0.001, 0.478_32, 0.473_29),
-    Point::new(0.0015, 0.650_90, 0.645_51),
-    Point::new(0.002, 0.783_63, 0.778_65),
-    Point::new(0.003, 0.945_19, 0.941_68),
-    Point::new(0.005, 0.999_25, 0.999_24),
-    Point::new(0.01, 0.999_82, 0.999_82),
+pub const LONGITUDINAL: [CreepForce; 8] = [
+    CreepForce::new(0.0002, 0.110_32, 0.109_20),
+    CreepForce::new(0.0005, 0.261_93, 0.259_12),
+    CreepForce::new(0.001, 0.478_32, 0.473_29),
+    CreepForce::new(0.0015, 0.650_90, 0.645_51),
+    CreepForce::new(0.002, 0.783_63, 0.778_65),
+    CreepForce::new(0.003, 0.945_19, 0.941_68),
+    CreepForce::new(0.005, 0.999_25, 0.999_24),
+    CreepForce::new(0.01, 0.999_82, 0.999_82),
 ];
 
 /// F_y by lateral creepage η alone.
-pub const LATERAL: [Point; 8] = [
-    Point::new(0.0002, 0.096_65, 0.095_55),
-    Point::new(0.0005, 0.230_62, 0.228_05),
-    Point::new(0.001, 0.425_71, 0.420_90),
-    Point::new(0.0015, 0.586_55, 0.581_05),
-    Point::new(0.002, 0.716_06, 0.710_53),
-    Point::new(0.003, 0.892_20, 0.887_88),
-    Point::new(0.005, 0.999_08, 0.998_84),
-    Point::new(0.01, 0.999_82, 0.999_82),
+pub const LATERAL: [CreepForce; 8] = [
+    CreepForce::new(0.0002, 0.096_65, 0.095_55),
+    CreepForce::new(0.0005, 0.230_62, 0.228_05),
+    CreepForce::new(0.001, 0.425_71, 0.420_90),
+    CreepForce::new(0.0015, 0.586_55, 0.581_05),
+    CreepForce::new(0.002, 0.716_06, 0.710_53),
+    CreepForce::new(0.003, 0.892_20, 0.887_88),
+    CreepForce::new(0.005, 0.999_08, 0.998_84),
+    CreepForce::new(0.01, 0.999_82, 0.999_82),
 ];
 
 /// M_z by lateral creepage η alone, at n = 80 only: creepage and share. It changes by 0.002 from n = 40 at the most.
@@ -177,7 +177,8 @@ mod tests {
     #[test]
     fn curves_are_smooth() {
         for curve in [LONGITUDINAL, LATERAL] {
-            let slope = |pair: &[Point]| (pair[1].limit() - pair[0].limit()) / (pair[1].creepage - pair[0].creepage);
+            let slope =
+                |pair: &[CreepForce]| (pair[1].limit() - pair[0].limit()) / (pair[1].creepage - pair[0].creepage);
             let slopes: Vec<f64> = curve.windows(2).map(slope).collect();
             assert!(slopes.windows(2).all(|pair| pair[1] < pair[0]), "{slopes:?}");
             assert!(

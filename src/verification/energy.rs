@@ -12,7 +12,7 @@ use crate::contact::line::fields::Fields;
 use crate::contact::rim;
 use crate::error::Result;
 use crate::heat::step::ModeStep;
-use crate::numerics::dense::Arithmetic;
+use crate::numerics::dense::MultiplyAdd;
 use crate::parameters::{FrictionLaw, Parameters, SlipSource, Wheel, WheelHeating};
 use crate::signals::Inputs;
 use crate::simulation::Simulation;
@@ -76,7 +76,7 @@ impl Balance {
 
 /// Speed `m/s`, wheel's circumferential speed `m/s` and load `N` of one step; changes below a fifth, so that the step
 /// is not divided.
-type Step = (f64, f64, f64);
+type DrivenStep = (f64, f64, f64);
 
 /// The largest defect of any step of a transient at speed, and of one where the strip is shallow, slow, and the heat
 /// reaches its bottom.
@@ -92,7 +92,7 @@ pub fn rows() -> Result<Vec<Row>> {
         wear_coefficient: 5e-12,
         ..Parameters::default()
     };
-    let fast: Vec<Step> = (0..40)
+    let fast: Vec<DrivenStep> = (0..40)
         .map(|i| {
             let wave = (0.7 * f64::from(i)).sin();
             (10.0 + wave, (10.0 + wave) * 1.05, 60e3 * (1.0 + 0.08 * wave))
@@ -108,7 +108,7 @@ pub fn rows() -> Result<Vec<Row>> {
         wear_coefficient: 0.0,
         ..shallow.clone()
     };
-    let slow: Vec<Step> = (0..12)
+    let slow: Vec<DrivenStep> = (0..12)
         .map(|i| {
             let wave = (0.7 * f64::from(i)).sin();
             let speed = -0.02 * (1.0 + 0.08 * wave);
@@ -125,7 +125,7 @@ pub fn rows() -> Result<Vec<Row>> {
         rim_width: 1e-3,
         ..base.clone()
     };
-    let on_the_spot: Vec<Step> = vec![(0.0, 1e-3, 30e3); 12];
+    let on_the_spot: Vec<DrivenStep> = vec![(0.0, 1e-3, 30e3); 12];
 
     let mut rows = Vec::new();
     for (name, parameters, steps, duration) in [
@@ -190,11 +190,11 @@ pub fn rows() -> Result<Vec<Row>> {
 /// The largest defect over the steps, of the rail and of rail, wheel and debris, and the largest share of each term.
 fn largest_defect(
     parameters: &Parameters,
-    steps: &[Step],
+    steps: &[DrivenStep],
     duration: f64,
     incoming_temperature: f64,
 ) -> Result<(f64, f64, Balance)> {
-    let inputs = |&(vehicle_speed, circumferential, normal_load): &Step| Inputs {
+    let inputs = |&(vehicle_speed, circumferential, normal_load): &DrivenStep| Inputs {
         wheel_speed: circumferential / parameters.wheel_radius,
         vehicle_speed,
         normal_load,
@@ -235,7 +235,7 @@ fn balance(run: &Simulation, before: &Fields, speed: f64, duration: f64) -> Resu
         for mode in 0..basis.len() {
             let rate = kappa * basis.eigenvalues[mode];
             let passage = (column.spacing / speed, speed / column.spacing);
-            let step = ModeStep::at(Arithmetic::SEPARATE, (rate, 1.0 / rate), 1.0 / duration, passage);
+            let step = ModeStep::at(MultiplyAdd::SEPARATE, (rate, 1.0 / rate), 1.0 / duration, passage);
             let mean = |share: f64, upstream: f64, own: f64| own + share * (upstream - own);
             let growth = mean(
                 step.stored_share(),

@@ -14,7 +14,7 @@ use crate::contact::patch::operators::PatchOperators;
 use crate::contact::rim;
 use crate::error::Result;
 use crate::heat::step::ModeStep;
-use crate::numerics::dense::Arithmetic;
+use crate::numerics::dense::MultiplyAdd;
 use crate::parameters::{ContactModel, FrictionLaw, Parameters, SlipSource, WheelHeating};
 use crate::signals::Inputs;
 use crate::simulation::Simulation;
@@ -238,7 +238,7 @@ fn balance(run: &Simulation, before: &PatchFields, duration: f64) -> Result<Bala
                 let at = |fields, index| part.heat(rail, fields, breadth, index, mode);
                 let (upstream, own) = (at(after, column.upstream), at(after, column.index));
                 let rate = kappa * basis.eigenvalues[mode];
-                let step = ModeStep::at(Arithmetic::SEPARATE, (rate, 1.0 / rate), 1.0 / duration, passage);
+                let step = ModeStep::at(MultiplyAdd::SEPARATE, (rate, 1.0 / rate), 1.0 / duration, passage);
                 let mean = |share: f64, upstream: f64, own: f64| own + share * (upstream - own);
                 let growth = mean(
                     step.stored_share(),

@@ -3,10 +3,10 @@
 //!
 //! Piecewise constant tractions on n × n elements over the ellipse's box, the strain by the difference over one element, Coulomb's
 //! law exactly, the pressure by the same influence functions: the discrete problem of CONTACT, whose 32 forces and 8 moments in
-//! [`super::contact_points`] it gives to 1e-5. The limits are extrapolated from n = 40 and 80 as [`Point::limit`]
+//! [`super::contact_points`] it gives to 1e-5. The limits are extrapolated from n = 40 and 80 as [`CreepForce::limit`]
 //! does; the steps from n = 20 to 40 to 80 let expect them to be known to some 0.002.
 //!
-//! [`Point::limit`]: super::contact_points::Point::limit
+//! [`CreepForce::limit`]: super::contact_points::CreepForce::limit
 
 /// Creepages and forces of one case, with wheelrail's signs.
 #[derive(Debug, Clone, Copy, PartialEq)]

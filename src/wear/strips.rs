@@ -85,7 +85,7 @@ pub struct StripWearMarch<'a> {
 }
 
 /// A value of each strip of a block.
-type Block = [f64; LANES];
+type Lanes = [f64; LANES];
 
 impl StripWearMarch<'_> {
     /// Advances the rail ahead and the strips from `before`, with rail entering at the depth `incoming` `m`, under the
@@ -177,7 +177,7 @@ impl StripWearMarch<'_> {
             let mut change = [entering; LANES];
             tangent[window.inflow()] = change;
             // The sources that the step was made from follow from its result.
-            let mut source: Block = std::array::from_fn(|lane| storage * after.replaced[block * LANES + lane]);
+            let mut source: Lanes = std::array::from_fn(|lane| storage * after.replaced[block * LANES + lane]);
             let mut source_change = [0.0; LANES];
             for column in window.columns() {
                 let own_change = self.at(rate_change, block, column.index);
@@ -266,7 +266,7 @@ impl StripWearMarch<'_> {
     }
 
     /// The wear rate of a block's strips in a column.
-    fn at(&self, rate: &[f64], block: usize, column: usize) -> Block {
+    fn at(&self, rate: &[f64], block: usize, column: usize) -> Lanes {
         let (cells, mut found) = (self.strips.cells, [0.0; LANES]);
         let cell = column.wrapping_sub(1);
         if cell < cells {

@@ -189,7 +189,7 @@ struct Column {
 }
 
 /// A row of the file.
-struct Row {
+struct ScenarioRow {
     line: u64,
     time: f64,
     inputs: Inputs,
@@ -217,7 +217,7 @@ pub fn read(path: &Path, parameters: &mut Parameters, load_follows: bool) -> Res
     let headings = reader.headers().map_err(&csv_error)?.clone();
     let columns = columns(path, &headings)?;
 
-    let mut rows: Vec<Row> = Vec::new();
+    let mut rows: Vec<ScenarioRow> = Vec::new();
     for record in reader.records() {
         let record = record.map_err(&csv_error)?;
         let row = row(path, &columns, &record)?;
@@ -343,7 +343,7 @@ fn hints(name: &str) -> (String, String) {
 }
 
 /// A row, each value in the unit of its variable.
-fn row(path: &Path, columns: &[Column], record: &csv::StringRecord) -> Result<Row, Error> {
+fn row(path: &Path, columns: &[Column], record: &csv::StringRecord) -> Result<ScenarioRow, Error> {
     let path = || path.to_owned();
     let line = record.position().map_or(0, csv::Position::line);
     if record.len() != columns.len() {
@@ -378,11 +378,11 @@ fn row(path: &Path, columns: &[Column], record: &csv::StringRecord) -> Result<Ro
             Quantity::Input(signal) => (signal.set)(&mut inputs, value),
         }
     }
-    Ok(Row { line, time, inputs })
+    Ok(ScenarioRow { line, time, inputs })
 }
 
 /// Refuses inputs that the model does not take under the parameters.
-fn check(path: &Path, columns: &[Column], row: &Row, parameters: &Parameters) -> Result<(), Error> {
+fn check(path: &Path, columns: &[Column], row: &ScenarioRow, parameters: &Parameters) -> Result<(), Error> {
     for column in columns {
         if let Quantity::Input(signal) = column.quantity {
             let checked = signal.check((signal.get)(&row.inputs), parameters);
@@ -403,7 +403,7 @@ fn check(path: &Path, columns: &[Column], row: &Row, parameters: &Parameters) ->
 
 /// Refuses a column without effect: a column that is given is meant. One that is everywhere at the input's start value says
 /// nothing, and passes: tables that have a column for each input, as `wheelrail simulate` writes them, can be read.
-fn check_used(path: &Path, columns: &[Column], rows: &[Row], parameters: &Parameters) -> Result<(), Error> {
+fn check_used(path: &Path, columns: &[Column], rows: &[ScenarioRow], parameters: &Parameters) -> Result<(), Error> {
     for column in columns {
         let Quantity::Input(signal) = column.quantity else {
             continue;

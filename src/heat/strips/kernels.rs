@@ -2,11 +2,11 @@
 
 use crate::error::Result;
 use crate::heat::step::{Crossing, Ends, ModeStep};
-use crate::numerics::dense::{Arithmetic, LANES};
+use crate::numerics::dense::{LANES, MultiplyAdd};
 use std::ops::Range;
 
 /// A value of each strip of a block.
-pub type Block = [f64; LANES];
+pub type Lanes = [f64; LANES];
 
 /// Factors and heat content of a mode in a column of the window.
 #[derive(Debug, Clone, Copy)]
@@ -103,18 +103,18 @@ impl Responses {
 
     /// Computes the responses of the given modes.
     #[inline(always)]
-    pub fn compute(&mut self, arithmetic: Arithmetic, modes: &[Mode]) {
+    pub fn compute(&mut self, fma: MultiplyAdd, modes: &[Mode]) {
         let places = self.surface.iter_mut().zip(&mut self.content).enumerate();
         for (distance, (surface, content)) in places {
             let mut sums = [0.0; 2];
             for (amplitude, mode) in self.amplitudes.iter_mut().zip(modes) {
                 *amplitude = match distance {
                     0 => mode.taken,
-                    1 => arithmetic.multiply_add(mode.step.arriving, *amplitude, mode.passed_on),
+                    1 => fma.multiply_add(mode.step.arriving, *amplitude, mode.passed_on),
                     _ => mode.step.arriving * *amplitude,
                 };
-                sums[0] = arithmetic.multiply_add(mode.surface, *amplitude, sums[0]);
-                sums[1] = arithmetic.multiply_add(mode.content, *amplitude, sums[1]);
+                sums[0] = fma.multiply_add(mode.surface, *amplitude, sums[0]);
+                sums[1] = fma.multiply_add(mode.content, *amplitude, sums[1]);
             }
             [*surface, *content] = sums;
         }
@@ -123,10 +123,10 @@ impl Responses {
 
 /// The amplitudes of a column, of that upstream, and of both before the step.
 struct Columns<'a> {
-    own: &'a mut [Block],
-    upstream: &'a [Block],
-    old: &'a [Block],
-    old_upstream: &'a [Block],
+    own: &'a mut [Lanes],
+    upstream: &'a [Lanes],
+    old: &'a [Lanes],
+    old_upstream: &'a [Lanes],
 }
 
 impl<'a> Columns<'a> {
@@ -159,21 +159,21 @@ impl<'a> Columns<'a> {
 }
 
 #[inline(always)]
-fn is_zero(block: &Block) -> bool {
+fn is_zero(block: &Lanes) -> bool {
     block.iter().all(|&value| value == 0.0)
 }
 
 /// The march without heat flux, with the surface temperature and the heat content of the columns.
 #[inline(always)]
 pub fn unheated(
-    arithmetic: Arithmetic,
+    fma: MultiplyAdd,
     order: Order,
     modes: &[Mode],
     before: &[f64],
     after: &mut [f64],
-    (surface, content): (&mut [Block], &mut [Block]),
+    (surface, content): (&mut [Lanes], &mut [Lanes]),
 ) {
-    let fma = |a, b, c| arithmetic.multiply_add(a, b, c);
+    let fma = |a, b, c| fma.multiply_add(a, b, c);
     for (own, upstream) in order.pairs() {
         let columns = Columns::of((before, after), (own, upstream), modes.len());
         let mut sums = [[0.0; LANES]; 2];
@@ -200,8 +200,8 @@ pub fn unheated(
 
 /// The march under the heat flux of the columns.
 #[inline(always)]
-pub fn heated(arithmetic: Arithmetic, order: Order, modes: &[Mode], before: &[f64], after: &mut [f64], flux: &[Block]) {
-    let fma = |a, b, c| arithmetic.multiply_add(a, b, c);
+pub fn heated(fma: MultiplyAdd, order: Order, modes: &[Mode], before: &[f64], after: &mut [f64], flux: &[Lanes]) {
+    let fma = |a, b, c| fma.multiply_add(a, b, c);
     for (own, upstream) in order.pairs() {
         let columns = Columns::of((before, after), (own, upstream), modes.len());
         let (passed_on, taken) = (flux[upstream], flux[own]);
@@ -229,7 +229,7 @@ pub struct Carried<'a> {
     /// Amplitudes that stood in the inflow column before the step.
     pub replaced: &'a [f64],
     /// Heat flux of the columns, `W/m²`.
-    pub flux: &'a [Block],
+    pub flux: &'a [Lanes],
     /// Cell that the modes cross; their rate r is not in it.
     pub crossing: Crossing,
 }
@@ -237,7 +237,7 @@ pub struct Carried<'a> {
 impl Carried<'_> {
     /// Computes the sources that a change of |V| by `change` `m/s` adds to the amplitudes of each column; `old` holds m
     /// blocks.
-    pub fn speed_sources(&self, order: Order, modes: &[Mode], change: f64, old: &mut [Block], sources: &mut [f64]) {
+    pub fn speed_sources(&self, order: Order, modes: &[Mode], change: f64, old: &mut [Lanes], sources: &mut [f64]) {
         let m = modes.len();
         let amplitudes = self.amplitudes.as_chunks::<LANES>().0;
         let sources = sources.as_chunks_mut::<LANES>().0;
@@ -269,15 +269,15 @@ impl Carried<'_> {
 /// `sources`; and with it the changes of surface temperature and heat content, if asked for.
 #[inline(always)]
 pub fn tangent(
-    arithmetic: Arithmetic,
+    fma: MultiplyAdd,
     order: Order,
     modes: &[Mode],
-    (sources, flux): (Option<&[f64]>, &[Block]),
+    (sources, flux): (Option<&[f64]>, &[Lanes]),
     tangent: &mut [f64],
-    mut sums_of: Option<(&mut [Block], &mut [Block])>,
+    mut sums_of: Option<(&mut [Lanes], &mut [Lanes])>,
 ) {
     let m = modes.len();
-    let fma = |a, b, c| arithmetic.multiply_add(a, b, c);
+    let fma = |a, b, c| fma.multiply_add(a, b, c);
     let tangent = tangent.as_chunks_mut::<LANES>().0;
     for (own, upstream) in order.pairs() {
         let mut sums = [[0.0; LANES]; 2];
@@ -303,7 +303,7 @@ pub fn tangent(
 }
 
 /// Fields of the cells of a block's strips, strip by strip.
-pub struct Cells<'a> {
+pub struct CellFields<'a> {
     /// `W/m²`.
     pub flux: &'a mut [f64],
     /// `K`.
@@ -318,12 +318,12 @@ pub struct Cells<'a> {
 /// it, at a place among `cells` and a cell, and a guess of that with it; and surface temperature and heat content.
 #[inline(always)]
 pub fn respond(
-    arithmetic: Arithmetic,
+    fma: MultiplyAdd,
     order: Order,
     responses: &Responses,
-    (unheated, unheated_content): (&[Block], &[Block]),
-    flux: &mut [Block],
-    cells: &mut Cells,
+    (unheated, unheated_content): (&[Lanes], &[Lanes]),
+    flux: &mut [Lanes],
+    cells: &mut CellFields,
     mut flux_at: impl FnMut(usize, usize, f64, f64) -> Result<f64>,
 ) -> Result<()> {
     let count = order.columns - 2;
@@ -340,9 +340,9 @@ pub fn respond(
         let later = (&responses.surface[1..], &responses.content[1..]);
         let start = [unheated[column], unheated_content[column]];
         let rise = if order.forward {
-            add_responses(arithmetic, sources.iter(), later, start)
+            add_responses(fma, sources.iter(), later, start)
         } else {
-            add_responses(arithmetic, sources.iter().rev(), later, start)
+            add_responses(fma, sources.iter().rev(), later, start)
         };
         let mut taken = [0.0; LANES];
         for strip in 0..cells.strips {
@@ -367,16 +367,16 @@ pub fn respond(
 /// Adds the thermal responses to the sources, the next one upstream first, to surface temperature and heat content.
 #[inline(always)]
 fn add_responses<'a>(
-    arithmetic: Arithmetic,
-    sources: impl Iterator<Item = &'a Block>,
+    fma: MultiplyAdd,
+    sources: impl Iterator<Item = &'a Lanes>,
     (surface, content): (&[f64], &[f64]),
-    start: [Block; 2],
-) -> [Block; 2] {
+    start: [Lanes; 2],
+) -> [Lanes; 2] {
     let [mut rise, mut heat] = start;
     for ((flux, surface), content) in sources.zip(surface).zip(content) {
         for lane in 0..LANES {
-            rise[lane] = arithmetic.multiply_add(*surface, flux[lane], rise[lane]);
-            heat[lane] = arithmetic.multiply_add(*content, flux[lane], heat[lane]);
+            rise[lane] = fma.multiply_add(*surface, flux[lane], rise[lane]);
+            heat[lane] = fma.multiply_add(*content, flux[lane], heat[lane]);
         }
     }
     [rise, heat]

@@ -35,7 +35,7 @@ use super::surface::{SurfaceCondition, SurfaceExchange};
 use crate::error::Result;
 use crate::numerics::dense::{self, LANES};
 use crate::transport::strips::{Side, Strips};
-use kernels::{Block, Mode, Order, Responses};
+use kernels::{Lanes, Mode, Order, Responses};
 
 pub use tangent::{CarriageChange, StripHeatChange};
 pub use temperature::StripTemperature;
@@ -67,13 +67,13 @@ pub struct StripHeatScratch {
     modes: Vec<Mode>,
     responses: Responses,
     /// θ⁰, Θ⁰ and q, or their changes, blocks × columns.
-    unheated: Vec<Block>,
-    unheated_content: Vec<Block>,
-    flux: Vec<Block>,
+    unheated: Vec<Lanes>,
+    unheated_content: Vec<Lanes>,
+    flux: Vec<Lanes>,
     /// Sources that a change of |V| adds to the amplitudes of the strips, and, m blocks, the amplitudes of a column
     /// before the step.
     sources: Vec<f64>,
-    old: Vec<Block>,
+    old: Vec<Lanes>,
     /// Surface temperature of the columns on one side and its change, and a copy of their amplitudes.
     outer_surface: Vec<f64>,
     outer: Vec<f64>,
@@ -131,12 +131,12 @@ impl StripHeatMarch<'_> {
         let (order, scratch) = (self.order(), &mut *scratch);
         dense::vectorised(
             #[inline(always)]
-            |arithmetic| {
+            |fma| {
                 let modes = &scratch.modes[..];
                 for block in 0..self.strips.blocks() {
                     let (own, columns) = (order.amplitudes(block, m), order.columns(block));
                     kernels::unheated(
-                        arithmetic,
+                        fma,
                         order,
                         modes,
                         &before.window[own.clone()],
@@ -191,12 +191,12 @@ impl StripHeatMarch<'_> {
         let order = self.order();
         dense::vectorised(
             #[inline(always)]
-            |arithmetic| {
+            |fma| {
                 let modes = &scratch.modes[..];
                 for block in 0..self.strips.blocks() {
                     let own = order.amplitudes(block, m);
                     kernels::heated(
-                        arithmetic,
+                        fma,
                         order,
                         modes,
                         &before.window[own.clone()],
@@ -258,8 +258,8 @@ impl StripHeatMarch<'_> {
         scratch.cells.adapt(self.basis, conditions);
         dense::vectorised(
             #[inline(always)]
-            |arithmetic| {
-                let (factors, heat) = scratch.cells.heated_at(arithmetic, self.basis, 0);
+            |fma| {
+                let (factors, heat) = scratch.cells.heated_at(fma, self.basis, 0);
                 for (mode, kept) in scratch.modes.iter_mut().enumerate() {
                     *kept = Mode {
                         rate: conditions.diffusivity * self.basis.eigenvalues[mode],
@@ -271,7 +271,7 @@ impl StripHeatMarch<'_> {
                         content: self.basis.integral[mode],
                     };
                 }
-                scratch.responses.compute(arithmetic, &scratch.modes);
+                scratch.responses.compute(fma, &scratch.modes);
             },
         );
     }
@@ -334,19 +334,19 @@ impl StripHeatMarch<'_> {
         let (order, cells) = (self.order(), self.strips.cells);
         dense::vectorised(
             #[inline(always)]
-            |arithmetic| {
+            |fma| {
                 for block in 0..self.strips.blocks() {
                     let columns = order.columns(block);
                     let first = block * LANES;
                     let strips = LANES.min(self.strips.strips.saturating_sub(first));
-                    let mut cells_of_block = kernels::Cells {
+                    let mut cells_of_block = kernels::CellFields {
                         flux: &mut after.flux[first * cells..][..strips * cells],
                         surface: &mut after.surface[first * cells..][..strips * cells],
                         content: &mut after.content[first * cells..][..strips * cells],
                         strips,
                     };
                     kernels::respond(
-                        arithmetic,
+                        fma,
                         order,
                         &scratch.responses,
                         (

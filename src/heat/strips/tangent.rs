@@ -170,7 +170,7 @@ impl StripHeatMarch<'_> {
         }
         dense::vectorised(
             #[inline(always)]
-            |arithmetic| {
+            |fma| {
                 for block in 0..self.strips.blocks() {
                     let (own, columns) = (order.amplitudes(block, m), order.columns(block));
                     let sources = (speed != 0.0).then_some(&scratch.sources[own.clone()]);
@@ -179,7 +179,7 @@ impl StripHeatMarch<'_> {
                         &mut scratch.unheated_content[columns.clone()],
                     );
                     kernels::tangent(
-                        arithmetic,
+                        fma,
                         order,
                         &scratch.modes,
                         (sources, &scratch.flux[columns]),

@@ -308,7 +308,7 @@ proptest! {
                     let rate = parameters.thermal_diffusivity * rail.basis.eigenvalues[mode];
                     let passage = (column.spacing / speed.abs(), speed.abs() / column.spacing);
                     let cell = crate::heat::step::ModeStep::at(
-                        crate::numerics::dense::Arithmetic::SEPARATE, (rate, 1.0 / rate), 1.0 / duration, passage);
+                        crate::numerics::dense::MultiplyAdd::SEPARATE, (rate, 1.0 / rate), 1.0 / duration, passage);
                     let fed_share = cell.fed_upstream / (cell.fed_upstream + cell.fed);
                     let stored_share = cell.old_upstream / (cell.old_upstream + cell.old);
                     let mean = |share: f64, up: f64, own: f64| share * up + (1.0 - share) * own;
