@@ -138,6 +138,15 @@ pub struct CellStep {
     pub own: f64,
 }
 
+/// Values, or sources, at the two ends of a cell.
+#[derive(Debug, Clone, Copy)]
+pub struct CellEnds {
+    /// Value at the column upstream.
+    pub upstream: f64,
+    /// Value at the column itself.
+    pub column: f64,
+}
+
 impl CellStep {
     /// Step through no cell at all: the value upstream arrives unchanged.
     pub const NONE: CellStep = CellStep {
@@ -149,16 +158,16 @@ impl CellStep {
     /// Step with 1/Δt `storage` `1/s`, through a cell of length Δ `spacing` `m` at |V| `speed` `m/s`.
     pub fn new(storage: f64, spacing: f64, speed: f64) -> CellStep {
         let passages = speed / spacing;
-        let share = if CellStep::is_short(storage, passages) {
+        let nu = if CellStep::is_short(storage, passages) {
             passages / storage
         } else {
             0.5
         };
-        let inverse = 1.0 / (passages + (1.0 - share) * storage);
+        let inverse = 1.0 / (passages + (1.0 - nu) * storage);
         CellStep {
-            keep: (passages - share * storage).max(0.0) * inverse,
-            upstream: share * inverse,
-            own: (1.0 - share) * inverse,
+            keep: (passages - nu * storage).max(0.0) * inverse,
+            upstream: nu * inverse,
+            own: (1.0 - nu) * inverse,
         }
     }
 
@@ -167,24 +176,25 @@ impl CellStep {
         2.0 * passages < storage
     }
 
-    /// ν a_U + (1 − ν) a_O: what the cell holds per length.
+    /// Mean ν a_U + (1 − ν) a_O over the cell: what it holds per length.
     #[cfg(any(test, feature = "verification"))]
     pub fn mean(&self, upstream: f64, own: f64) -> f64 {
         own + self.upstream / (self.upstream + self.own) * (upstream - own)
     }
 
-    /// The source at a column, from the values (upstream, own) and the source upstream: what the step was made from.
-    pub fn own_source(&self, (upstream, own): (f64, f64), upstream_source: f64) -> f64 {
-        (own - self.keep * upstream - self.upstream * upstream_source) / self.own
+    /// Source at a column, from the values at both ends of the cell and the source upstream: the step solved backwards.
+    pub fn source(&self, values: CellEnds, upstream_source: f64) -> f64 {
+        (values.column - self.keep * values.upstream - self.upstream * upstream_source) / self.own
     }
 
-    /// Change of the value at a column with |V|, from the values and the sources (upstream, own).
-    pub fn speed_tangent(storage: f64, (spacing, speed): (f64, f64), values: (f64, f64), sources: (f64, f64)) -> f64 {
+    /// Change of the value at a column with |V| `speed`, from the values and the sources at both ends of the cell of length Δ
+    /// `spacing`.
+    pub fn speed_tangent(storage: f64, spacing: f64, speed: f64, values: CellEnds, sources: CellEnds) -> f64 {
         let passages = speed / spacing;
         if CellStep::is_short(storage, passages) {
-            (sources.0 - sources.1) / (spacing * storage * storage)
+            (sources.upstream - sources.column) / (spacing * storage * storage)
         } else {
-            (values.0 - values.1) / (spacing * (passages + 0.5 * storage))
+            (values.upstream - values.column) / (spacing * (passages + 0.5 * storage))
         }
     }
 }

@@ -5,7 +5,7 @@
 //! and computed for the cells that something warm crosses.
 
 use super::basis::DepthBasis;
-use super::step::ModeStep;
+use super::step::{DecayRate, ModeStep, Transit};
 use crate::numerics::dense::{LANES, MultiplyAdd};
 use crate::transport::{Cells, Column};
 
@@ -16,7 +16,7 @@ type StepLanes = [[f64; LANES]; 5];
 #[derive(Debug, Clone)]
 pub struct CellFactors {
     cells: Cells,
-    /// The conditions of what is known.
+    /// Conditions under which the known factors were computed.
     conditions: Conditions,
     /// Whether the factors of a length are known.
     known: Vec<bool>,
@@ -24,13 +24,13 @@ pub struct CellFactors {
     rates: Vec<[[f64; LANES]; 2]>,
     /// Blocks of the factors: as many as `rates` has for each length, one length after the other.
     blocks: Vec<StepLanes>,
-    /// The length that `passed_on`, `taken` and `response` are of.
+    /// Length that the responses to a flux are of.
     heated: Option<usize>,
     /// Source of a mode per heat flux, and the amplitudes that a flux upstream and the column's own flux cause, m each,
     /// `K m^½ / (W/m²)`.
-    heating: Vec<f64>,
-    passed_on: Vec<f64>,
-    taken: Vec<f64>,
+    source_per_flux: Vec<f64>,
+    upstream_response: Vec<f64>,
+    diagonal_response: Vec<f64>,
     response: f64,
 }
 
@@ -56,13 +56,13 @@ pub struct Factors<'a> {
 /// Factors on the heat flux of a column and of the one upstream, m each.
 #[derive(Debug, Clone, Copy)]
 pub struct HeatFactors<'a> {
-    /// f of a mode per heat flux, φ(0)/(ρ c_p).
-    pub heating: &'a [f64],
+    /// Source f of a mode per heat flux, φ(0)/(ρ c_p).
+    pub source_per_flux: &'a [f64],
     /// Amplitude per flux upstream.
-    pub passed_on: &'a [f64],
-    /// Amplitude per own flux.
-    pub taken: &'a [f64],
-    /// Surface temperature per own flux, `K/(W/m²)`.
+    pub upstream_response: &'a [f64],
+    /// Amplitude per flux of the column itself.
+    pub diagonal_response: &'a [f64],
+    /// Surface temperature per flux of the column itself, `K/(W/m²)`.
     pub response: f64,
 }
 
@@ -75,7 +75,7 @@ pub struct Sources<'a> {
     pub old_upstream: &'a [f64],
     /// Amplitudes of the step before in the column itself.
     pub old: &'a [f64],
-    /// Heat flux into the column upstream, with what is taken of it.
+    /// Heat flux into the column upstream, with the amplitudes per flux there.
     pub flux: Option<(f64, &'a [f64])>,
 }
 
@@ -83,20 +83,21 @@ impl Factors<'_> {
     /// The step of one mode.
     pub fn step(&self, mode: usize) -> ModeStep {
         let block = &self.blocks[mode / LANES];
-        let [arriving, old_upstream, old, fed_upstream, fed] = std::array::from_fn(|which| block[which][mode % LANES]);
+        let [advected, old_upstream, old, source_upstream, source] =
+            std::array::from_fn(|which| block[which][mode % LANES]);
         ModeStep {
-            arriving,
+            advected,
             old_upstream,
             old,
-            fed_upstream,
-            fed,
+            source_upstream,
+            source,
         }
     }
 
-    /// The step of the modes but for their own heat flux, and the surface value of what comes of it: as [`MultiplyAdd::dot`],
-    /// in the same pass.
+    /// Advances the modes but for their own heat flux, and returns the surface value of the result: as
+    /// [`MultiplyAdd::dot`], in the same pass.
     #[inline(always)]
-    pub fn carry_over(&self, fma: MultiplyAdd, own: &mut [f64], sources: &Sources, surface: &[f64]) -> f64 {
+    pub fn advance(&self, fma: MultiplyAdd, own: &mut [f64], sources: &Sources, surface: &[f64]) -> f64 {
         let fma = |a, b, c| fma.multiply_add(a, b, c);
         let Sources {
             upstream,
@@ -104,26 +105,32 @@ impl Factors<'_> {
             old,
             flux,
         } = *sources;
-        let (heat, passed_on) = flux.unwrap_or((0.0, surface));
+        let (heat, upstream_response) = flux.unwrap_or((0.0, surface));
         let mut sums = [0.0; LANES];
         let (blocks, rest) = own.as_chunks_mut::<LANES>();
         let whole = LANES * blocks.len();
         let sources = chunks(upstream)
             .zip(chunks(old_upstream))
             .zip(chunks(old))
-            .zip(chunks(passed_on));
+            .zip(chunks(upstream_response));
         let inputs = self.blocks.iter().zip(sources).zip(chunks(surface));
-        for (own, ((factors, (((upstream, old_upstream), old), passed_on)), surface)) in blocks.iter_mut().zip(inputs) {
-            let [arriving, handed_on, kept, ..] = factors;
+        for (own, ((factors, (((upstream, old_upstream), old), upstream_response)), surface)) in
+            blocks.iter_mut().zip(inputs)
+        {
+            let [advected, old_upstream_factor, old_factor, ..] = factors;
             // All values are loaded before one is stored: otherwise the compiler must assume that the slices overlap, and does
             // not vectorise.
             let mut values = [0.0; LANES];
             for lane in 0..LANES {
                 // What waits for the column upstream comes last.
-                let stored = fma(kept[lane], old[lane], handed_on[lane] * old_upstream[lane]);
-                values[lane] = fma(arriving[lane], upstream[lane], stored);
+                let stored = fma(
+                    old_factor[lane],
+                    old[lane],
+                    old_upstream_factor[lane] * old_upstream[lane],
+                );
+                values[lane] = fma(advected[lane], upstream[lane], stored);
                 if flux.is_some() {
-                    values[lane] = fma(heat, passed_on[lane], values[lane]);
+                    values[lane] = fma(heat, upstream_response[lane], values[lane]);
                 }
             }
             *own = values;
@@ -134,9 +141,9 @@ impl Factors<'_> {
         let mut tail = 0.0;
         for (own, mode) in rest.iter_mut().zip(whole..) {
             let step = self.step(mode);
-            *own = step.arriving * upstream[mode] + step.old_upstream * old_upstream[mode] + step.old * old[mode];
+            *own = step.advected * upstream[mode] + step.old_upstream * old_upstream[mode] + step.old * old[mode];
             if flux.is_some() {
-                *own += heat * passed_on[mode];
+                *own += heat * upstream_response[mode];
             }
             tail += *own * surface[mode];
         }
@@ -166,9 +173,9 @@ impl CellFactors {
             rates: vec![[[1.0; LANES]; 2]; blocks],
             blocks: vec![StepLanes::default(); blocks * lengths],
             heated: None,
-            heating: vec![0.0; m],
-            passed_on: vec![0.0; m],
-            taken: vec![0.0; m],
+            source_per_flux: vec![0.0; m],
+            upstream_response: vec![0.0; m],
+            diagonal_response: vec![0.0; m],
             response: 0.0,
         }
     }
@@ -185,7 +192,7 @@ impl CellFactors {
             let rate = conditions.diffusivity * eigenvalue;
             let [rates, lifetimes] = &mut self.rates[mode / LANES];
             (rates[mode % LANES], lifetimes[mode % LANES]) = (rate, 1.0 / rate);
-            self.heating[mode] = basis.surface[mode] / conditions.capacity;
+            self.source_per_flux[mode] = basis.surface[mode] / conditions.capacity;
         }
     }
 
@@ -220,15 +227,15 @@ impl CellFactors {
             self.heated = Some(length);
             for mode in 0..basis.len() {
                 let step = self.known_at(length).step(mode);
-                self.passed_on[mode] = self.heating[mode] * step.fed_upstream;
-                self.taken[mode] = self.heating[mode] * step.fed;
+                self.upstream_response[mode] = self.source_per_flux[mode] * step.source_upstream;
+                self.diagonal_response[mode] = self.source_per_flux[mode] * step.source;
             }
-            self.response = fma.dot(&basis.surface, &self.taken);
+            self.response = fma.dot(&basis.surface, &self.diagonal_response);
         }
         let heat = HeatFactors {
-            heating: &self.heating,
-            passed_on: &self.passed_on,
-            taken: &self.taken,
+            source_per_flux: &self.source_per_flux,
+            upstream_response: &self.upstream_response,
+            diagonal_response: &self.diagonal_response,
             response: self.response,
         };
         (self.known_at(length), heat)
@@ -238,14 +245,24 @@ impl CellFactors {
     #[inline(always)]
     fn compute(&mut self, fma: MultiplyAdd, length: usize) {
         let (length_of_cell, speed) = (self.cells.lengths[length], self.conditions.speed);
-        let passage = (length_of_cell / speed, speed / length_of_cell);
+        let transit = Transit::new(length_of_cell, speed);
         let storage = 1.0 / self.conditions.duration;
         let count = self.rates.len();
         for (block, [rates, lifetimes]) in self.blocks[count * length..].iter_mut().zip(&self.rates) {
             let mut factors = StepLanes::default();
             for lane in 0..LANES {
-                let step = ModeStep::at(fma, (rates[lane], lifetimes[lane]), storage, passage);
-                let step = [step.arriving, step.old_upstream, step.old, step.fed_upstream, step.fed];
+                let rate = DecayRate {
+                    rate: rates[lane],
+                    lifetime: lifetimes[lane],
+                };
+                let step = ModeStep::at(fma, rate, storage, transit);
+                let step = [
+                    step.advected,
+                    step.old_upstream,
+                    step.old,
+                    step.source_upstream,
+                    step.source,
+                ];
                 for (factors, factor) in factors.iter_mut().zip(step) {
                     factors[lane] = factor;
                 }
@@ -293,17 +310,17 @@ mod tests {
                 let mut response = 0.0;
                 for mode in 0..basis.len() {
                     let rate = 1.4e-5 * basis.eigenvalues[mode];
-                    let passage = (spacing / speed, speed / spacing);
-                    let step = ModeStep::at(MultiplyAdd::SEPARATE, (rate, 1.0 / rate), 1.0 / duration, passage);
+                    let (rate, transit) = (DecayRate::new(rate), Transit::new(spacing, speed));
+                    let step = ModeStep::at(MultiplyAdd::SEPARATE, rate, 1.0 / duration, transit);
                     let kept = factors.step(mode);
-                    let heating = basis.surface[mode] / 3.6e6;
-                    response += basis.surface[mode] * heating * step.fed;
+                    let source_per_flux = basis.surface[mode] / 3.6e6;
+                    response += basis.surface[mode] * source_per_flux * step.source;
                     for (kept, exact) in [
-                        (kept.arriving, step.arriving),
+                        (kept.advected, step.advected),
                         (kept.old_upstream, step.old_upstream),
                         (kept.old, step.old),
-                        (heat.passed_on[mode], heating * step.fed_upstream),
-                        (heat.taken[mode], heating * step.fed),
+                        (heat.upstream_response[mode], source_per_flux * step.source_upstream),
+                        (heat.diagonal_response[mode], source_per_flux * step.source),
                     ] {
                         // The lengths differ by round-off.
                         assert!(

@@ -7,8 +7,8 @@
 
 use super::basis::DepthBasis;
 use super::factors::{CellFactors, Conditions, Sources};
-use super::step::{Crossing, Ends};
-use super::surface::{CommonChange, ExchangeTangent, SurfaceCondition, SurfaceExchange};
+use super::step::{Crossing, ModeEnds};
+use super::surface::{CommonChange, ExchangeTangent, SurfaceCondition, SurfaceExchange, SurfaceRise};
 use crate::error::Result;
 use crate::numerics::dense::{self, MultiplyAdd};
 use crate::transport::Upwind;
@@ -82,15 +82,15 @@ impl HeatMarch<'_> {
         let m = self.basis.len();
         let surface = &self.basis.surface[..m];
         cells.adapt(self.basis, self.conditions());
-        // Of the column upstream, which is no contact node at the inflow.
+        // Flux of the column upstream: 0 at the inflow, which is no contact node.
         let mut upstream_flux = 0.0;
         for column in self.transport.columns() {
             let (own, upstream) = split_columns(after.temperature, column.index, column.upstream, m);
             let old = &before[column.index * m..][..m];
             let old_upstream = &before[column.upstream * m..][..m];
             let contact = column.index.wrapping_sub(self.first_contact);
-            let heating = exchange.get(contact).filter(|exchange| !exchange.is_open());
-            if heating.is_none() && upstream_flux == 0.0 {
+            let heated = exchange.get(contact).filter(|exchange| !exchange.is_open());
+            if heated.is_none() && upstream_flux == 0.0 {
                 if let Some(flux) = after.flux.get_mut(contact) {
                     *flux = 0.0;
                 }
@@ -104,7 +104,7 @@ impl HeatMarch<'_> {
                         old,
                         flux: None,
                     };
-                    factors.carry_over(fma, own, &sources, surface)
+                    factors.advance(fma, own, &sources, surface)
                 } else {
                     own.fill(0.0);
                     0.0
@@ -112,19 +112,22 @@ impl HeatMarch<'_> {
                 continue;
             }
             let (factors, heat) = cells.heated_at(fma, self.basis, cells.length_of(&column));
-            let flux = Some((upstream_flux, heat.passed_on));
+            let flux = Some((upstream_flux, heat.upstream_response));
             let sources = Sources {
                 upstream,
                 old_upstream,
                 old,
                 flux,
             };
-            let unheated = factors.carry_over(fma, own, &sources, surface);
-            upstream_flux = match heating {
+            let unheated = factors.advance(fma, own, &sources, surface);
+            upstream_flux = match heated {
                 Some(exchange) => {
                     let position = self.transport.position(column.index);
-                    self.surface
-                        .flux(exchange, (unheated, heat.response), f64::INFINITY, position)?
+                    let rise = SurfaceRise {
+                        unheated,
+                        response: heat.response,
+                    };
+                    self.surface.flux(exchange, rise, f64::INFINITY, position)?
                 }
                 None => 0.0,
             };
@@ -132,7 +135,7 @@ impl HeatMarch<'_> {
                 *flux = upstream_flux;
             }
             after.surface[column.index] = unheated + heat.response * upstream_flux;
-            fma.add_multiple(heat.taken, upstream_flux, own);
+            fma.add_multiple(heat.diagonal_response, upstream_flux, own);
         }
         Ok(())
     }
@@ -186,13 +189,16 @@ impl HeatMarch<'_> {
             let mut unheated = 0.0;
             for mode in 0..m {
                 let (own, upstream) = (column.index * m + mode, column.upstream * m + mode);
-                let mut ends = Ends {
+                let mut ends = ModeEnds {
                     value: [solution.temperature[upstream], solution.temperature[own]],
                     old: [old[mode], 0.0],
-                    feed: [heat.heating[mode] * heated_upstream, heat.heating[mode] * heated],
+                    source: [
+                        heat.source_per_flux[mode] * heated_upstream,
+                        heat.source_per_flux[mode] * heated,
+                    ],
                 };
                 let step = factors.step(mode);
-                ends.old[1] = step.own_old(&ends);
+                ends.old[1] = step.previous(&ends);
                 old[mode] = ends.old[1];
                 let crossing = Crossing {
                     rate: diffusivity * self.basis.eigenvalues[mode],
@@ -200,8 +206,8 @@ impl HeatMarch<'_> {
                     spacing: column.spacing,
                     speed: self.transport.speed(),
                 };
-                tangent.temperature[own] = step.arriving * tangent.temperature[upstream]
-                    + heat.passed_on[mode] * upstream_flux
+                tangent.temperature[own] = step.advected * tangent.temperature[upstream]
+                    + heat.upstream_response[mode] * upstream_flux
                     + change.speed * step.speed_tangent(&crossing, &ends);
                 unheated += surface[mode] * tangent.temperature[own];
             }
@@ -216,13 +222,17 @@ impl HeatMarch<'_> {
                     exchange,
                     &change.exchange_tangent[node],
                     &change.common,
-                    (solution.surface[column.index], unheated, heat.response),
+                    solution.surface[column.index],
+                    SurfaceRise {
+                        unheated,
+                        response: heat.response,
+                    },
                 );
             }
             tangent.flux[node] = upstream_flux;
             tangent.surface[column.index] += heat.response * upstream_flux;
             fma.add_multiple(
-                heat.taken,
+                heat.diagonal_response,
                 upstream_flux,
                 &mut tangent.temperature[column.index * m..][..m],
             );

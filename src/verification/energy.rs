@@ -11,7 +11,7 @@ use super::row::{Row, larger};
 use crate::contact::line::fields::Fields;
 use crate::contact::rim;
 use crate::error::Result;
-use crate::heat::step::ModeStep;
+use crate::heat::step::{DecayRate, ModeStep, Transit};
 use crate::numerics::dense::MultiplyAdd;
 use crate::parameters::{FrictionLaw, Parameters, SlipSource, Wheel, WheelHeating};
 use crate::signals::Inputs;
@@ -234,11 +234,11 @@ fn balance(run: &Simulation, before: &Fields, speed: f64, duration: f64) -> Resu
         let [old_upstream, old_own] = [column.upstream, column.index].map(|index| amplitudes(before, index));
         for mode in 0..basis.len() {
             let rate = kappa * basis.eigenvalues[mode];
-            let passage = (column.spacing / speed, speed / column.spacing);
-            let step = ModeStep::at(MultiplyAdd::SEPARATE, (rate, 1.0 / rate), 1.0 / duration, passage);
+            let transit = Transit::new(column.spacing, speed);
+            let step = ModeStep::at(MultiplyAdd::SEPARATE, DecayRate::new(rate), 1.0 / duration, transit);
             let mean = |share: f64, upstream: f64, own: f64| own + share * (upstream - own);
             let growth = mean(
-                step.stored_share(),
+                step.storage_weight(),
                 upstream[mode] - old_upstream[mode],
                 own[mode] - old_own[mode],
             );
@@ -247,7 +247,7 @@ fn balance(run: &Simulation, before: &Fields, speed: f64, duration: f64) -> Resu
             // Reaction of the bottom: conduction out of the last cell less what its share of the mass takes up.
             let lowest = basis.modes[(rail.mesh.rows() - 2, mode)];
             let taken_up = held + speed * (own[mode] - upstream[mode]);
-            let lost = mean(step.fed_share(), upstream[mode], own[mode]);
+            let lost = mean(step.source_weight(), upstream[mode], own[mode]);
             let conducted = kappa * basis.bottom_flux[mode] * column.spacing * lost;
             balance.bottom += capacity * (conducted - bottom_cell / 6.0 * lowest * taken_up);
         }

@@ -13,7 +13,7 @@ use crate::contact::patch::fields::PatchFields;
 use crate::contact::patch::operators::PatchOperators;
 use crate::contact::rim;
 use crate::error::Result;
-use crate::heat::step::ModeStep;
+use crate::heat::step::{DecayRate, ModeStep, Transit};
 use crate::numerics::dense::MultiplyAdd;
 use crate::parameters::{ContactModel, FrictionLaw, Parameters, SlipSource, WheelHeating};
 use crate::signals::Inputs;
@@ -233,15 +233,15 @@ fn balance(run: &Simulation, before: &PatchFields, duration: f64) -> Result<Bala
     let (ahead, behind) = rail.strips.ends(speed);
     for part in [Part::Outer(ahead), Part::Window, Part::Outer(behind)] {
         for column in part.march(rail, speed).columns() {
-            let passage = (column.spacing / speed.abs(), speed.abs() / column.spacing);
+            let transit = Transit::new(column.spacing, speed.abs());
             for mode in 0..basis.len() {
                 let at = |fields, index| part.heat(rail, fields, breadth, index, mode);
                 let (upstream, own) = (at(after, column.upstream), at(after, column.index));
                 let rate = kappa * basis.eigenvalues[mode];
-                let step = ModeStep::at(MultiplyAdd::SEPARATE, (rate, 1.0 / rate), 1.0 / duration, passage);
+                let step = ModeStep::at(MultiplyAdd::SEPARATE, DecayRate::new(rate), 1.0 / duration, transit);
                 let mean = |share: f64, upstream: f64, own: f64| own + share * (upstream - own);
                 let growth = mean(
-                    step.stored_share(),
+                    step.storage_weight(),
                     upstream - at(before, column.upstream),
                     own - at(before, column.index),
                 );
@@ -250,7 +250,7 @@ fn balance(run: &Simulation, before: &PatchFields, duration: f64) -> Result<Bala
                 // Reaction of the bottom: conduction out of the last cell less what its share of the mass takes up.
                 let lowest = basis.modes[(rows - 2, mode)];
                 let taken_up = held + speed.abs() * (own - upstream);
-                let lost = mean(step.fed_share(), upstream, own);
+                let lost = mean(step.source_weight(), upstream, own);
                 let conducted = kappa * basis.bottom_flux[mode] * column.spacing * lost;
                 balance.bottom += capacity * (conducted - bottom_cell / 6.0 * lowest * taken_up);
             }

@@ -4,10 +4,10 @@
 //! as the wear rate changes; [`StripWearMarch::finish`] is the rail behind, which does not act back. What strips have in
 //! common with the rail ahead and behind is in [`crate::transport::strips`].
 
-use super::{WearMarch, WearSteps};
+use super::{WearChange, WearMarch, WearSteps};
 use crate::numerics::dense::LANES;
-use crate::transport::CellStep;
 use crate::transport::strips::{Side, Strips};
+use crate::transport::{CellEnds, CellStep};
 use serde::{Deserialize, Serialize};
 
 /// Wear depth of the strips and of the rail ahead and behind, `m`, or a change of it.
@@ -153,46 +153,47 @@ impl StripWearMarch<'_> {
         field.outer[behind as usize][self.strips.outer(behind, self.speed).outflow()]
     }
 
-    /// The change of [`StripWearMarch::advance`]'s part of the result `after` with that of the wear rate, of |V| by `speed_change`
-    /// `m/s` and of the depth that enters.
-    pub fn advance_tangent(
-        &self,
-        (rate_change, speed_change): (&[f64], f64),
-        incoming: f64,
-        after: &StripWear,
-        tangent: &mut StripWear,
-    ) {
+    /// Computes the change of [`StripWearMarch::advance`]'s part of the result `after` with `change` and with the change
+    /// `incoming` `m` of the depth that enters.
+    pub fn advance_tangent(&self, change: WearChange, incoming: f64, after: &StripWear, tangent: &mut StripWear) {
         let lanes = self.strips.blocks() * LANES;
+        let outer_change = WearChange { rate: &[], ..change };
         let entering = self.enter(incoming, tangent, |march, side, outer| {
-            march.advance_tangent((&[], speed_change), after.replaced[lanes], &after.outer[side], outer);
+            march.advance_tangent(outer_change, after.replaced[lanes], &after.outer[side], outer);
         });
         let step = self.step();
         let storage = 1.0 / self.duration;
-        let cell = (self.strips.spacing(), self.speed.abs());
+        let (spacing, speed) = (self.strips.spacing(), self.speed.abs());
         let window = self.strips.window(self.speed);
         for block in 0..self.strips.blocks() {
             let own = self.block(block);
             let after_block = after.window[own.clone()].as_chunks::<LANES>().0;
             let tangent = tangent.window[own].as_chunks_mut::<LANES>().0;
-            let mut change = [entering; LANES];
-            tangent[window.inflow()] = change;
+            let mut depth_change = [entering; LANES];
+            tangent[window.inflow()] = depth_change;
             // The sources that the step was made from follow from its result.
             let mut source: Lanes = std::array::from_fn(|lane| storage * after.replaced[block * LANES + lane]);
             let mut source_change = [0.0; LANES];
             for column in window.columns() {
-                let own_change = self.at(rate_change, block, column.index);
+                let own_change = self.at(change.rate, block, column.index);
                 for lane in 0..LANES {
-                    let values = (after_block[column.upstream][lane], after_block[column.index][lane]);
-                    let own_source = step.own_source(values, source[lane]);
-                    let carried = CellStep::speed_tangent(storage, cell, values, (source[lane], own_source));
-                    change[lane] = step.keep * change[lane]
+                    let values = CellEnds {
+                        upstream: after_block[column.upstream][lane],
+                        column: after_block[column.index][lane],
+                    };
+                    let sources = CellEnds {
+                        upstream: source[lane],
+                        column: step.source(values, source[lane]),
+                    };
+                    let by_speed = CellStep::speed_tangent(storage, spacing, speed, values, sources);
+                    depth_change[lane] = step.keep * depth_change[lane]
                         + step.upstream * source_change[lane]
                         + step.own * own_change[lane]
-                        + speed_change * carried;
-                    source[lane] = own_source;
+                        + change.speed * by_speed;
+                    source[lane] = sources.column;
                 }
                 source_change = own_change;
-                tangent[column.index] = change;
+                tangent[column.index] = depth_change;
             }
         }
         self.read_cells(tangent);
@@ -200,12 +201,7 @@ impl StripWearMarch<'_> {
 
     /// The change of [`StripWearMarch::finish`], with those of |V|, by `speed_change` `m/s`, and of B, by `breadth_change` `m`, 0
     /// without a contact.
-    pub fn finish_tangent(
-        &self,
-        (speed_change, breadth_change): (f64, f64),
-        after: &StripWear,
-        tangent: &mut StripWear,
-    ) {
+    pub fn finish_tangent(&self, speed_change: f64, breadth_change: f64, after: &StripWear, tangent: &mut StripWear) {
         let (_, behind) = self.strips.ends(self.speed);
         let outflow = self.strips.window(self.speed).outflow();
         let at = |field: &StripWear, strip: usize| field.window[self.place(strip, outflow)];
@@ -217,7 +213,10 @@ impl StripWearMarch<'_> {
         let replaced = after.replaced[self.strips.blocks() * LANES + 1];
         tangent.outer[side][march.transport.inflow()] = leaving;
         march.advance_tangent(
-            (&[], speed_change),
+            WearChange {
+                rate: &[],
+                speed: speed_change,
+            },
             replaced,
             &after.outer[side],
             &mut tangent.outer[side],
@@ -301,7 +300,7 @@ mod tests {
     const BREADTH: f64 = 0.4;
 
     fn strips() -> Strips {
-        Strips::new(&X, (FIRST, CELLS), STRIPS, BREADTH)
+        Strips::new(&X, FIRST..FIRST + CELLS, STRIPS, BREADTH)
     }
 
     fn march(strips: &Strips, speed: f64, duration: f64) -> StripWearMarch<'_> {
@@ -431,8 +430,9 @@ mod tests {
             let (here, ahead, behind) = (at(0.0), at(h), at(-h));
             let march = march(&strips, sign * speed, duration);
             let mut tangent = StripWear::new(&strips);
-            march.advance_tangent((&rate_change, speed_change), incoming_change, &here, &mut tangent);
-            march.finish_tangent((speed_change, breadth_change), &here, &mut tangent);
+            let change = WearChange { rate: &rate_change, speed: speed_change };
+            march.advance_tangent(change, incoming_change, &here, &mut tangent);
+            march.finish_tangent(speed_change, breadth_change, &here, &mut tangent);
             let vectors = tangent.vectors().into_iter().zip(ahead.vectors()).zip(behind.vectors());
             for (number, ((exact, ahead), behind)) in vectors.enumerate().take(4) {
                 for (k, exact) in exact.iter().enumerate() {

@@ -23,6 +23,7 @@ use crate::numerics::anderson::Anderson;
 use crate::numerics::dense::{largest, largest_change, relative};
 use crate::parameters::WheelHeating;
 use crate::signals::{INPUTS, Inputs, Motion, OUTPUTS, OutputKind, Outputs};
+use crate::wear::WearChange;
 
 /// The linearised step.
 pub struct Linearisation<'a> {
@@ -217,7 +218,11 @@ impl<'a> Linearisation<'a> {
         let march = problem.wear_march();
         tangent.wear[march.transport.inflow()] = direction.inputs.incoming_wear_depth;
         let replaced = fields.replaced_inflow[problem.operators.heat.basis.len()];
-        march.advance_tangent((&rate, direction.speed), replaced, &fields.wear, &mut tangent.wear);
+        let change = WearChange {
+            rate: &rate,
+            speed: direction.speed,
+        };
+        march.advance_tangent(change, replaced, &fields.wear, &mut tangent.wear);
     }
 
     /// (19), (23), at the given change of the wheel's temperature, `K`.

@@ -173,7 +173,7 @@ impl PatchOperators {
                 [1.0 + edge, pair.direct / pair.normal() + edge]
             },
             gap,
-            strips: Strips::new(&mesh.x, (mesh.first_contact, grid.cells), grid.strips, grid.breadth),
+            strips: Strips::new(&mesh.x, mesh.window(), grid.strips, grid.breadth),
             incoming: Incoming::new(&mesh.depth, &basis, parameters.skin_depth),
             depth: mesh.depth,
             basis,

@@ -24,6 +24,7 @@ use crate::numerics::dense::{largest, largest_change, relative};
 use crate::parameters::WheelHeating;
 use crate::settings::Settings;
 use crate::signals::{INPUTS, Inputs, OUTPUTS, OutputKind, Outputs};
+use crate::wear::WearChange;
 
 /// Change of the wheel's temperature, relative to the largest of the rail's, that counts as none.
 const LEAST_WHEEL_SHARE: f64 = 1e-4;
@@ -253,7 +254,7 @@ impl<'a> Linearisation<'a> {
             .finish_tangent(&fields.heat, &carriage, &mut tangent.heat, heat);
         problem
             .wear_march()
-            .finish_tangent((direction.speed, breadth), &fields.wear, &mut tangent.wear);
+            .finish_tangent(direction.speed, breadth, &fields.wear, &mut tangent.wear);
     }
 
     /// (24).
@@ -271,7 +272,10 @@ impl<'a> Linearisation<'a> {
             }
         }
         problem.wear_march().advance_tangent(
-            (wear_rate, direction.speed),
+            WearChange {
+                rate: wear_rate,
+                speed: direction.speed,
+            },
             direction.inputs.incoming_wear_depth,
             &fields.wear,
             &mut tangent.wear,

@@ -1,7 +1,7 @@
 //! The loops over the columns of a block of strips.
 
 use crate::error::Result;
-use crate::heat::step::{Crossing, Ends, ModeStep};
+use crate::heat::step::{Crossing, ModeEnds, ModeStep};
 use crate::numerics::dense::{LANES, MultiplyAdd};
 use std::ops::Range;
 
@@ -11,19 +11,19 @@ pub type Lanes = [f64; LANES];
 /// Factors and heat content of a mode in a column of the window.
 #[derive(Debug, Clone, Copy)]
 pub struct Mode {
-    /// r, `1/s`.
+    /// Rate of decay r, `1/s`.
     pub rate: f64,
     /// Factors of the mode but those on the flux.
     pub step: ModeStep,
-    /// f per heat flux, `K m^½/s / (W/m²)`.
-    pub heating: f64,
+    /// Source f per heat flux, `K m^½/s / (W/m²)`.
+    pub source_per_flux: f64,
     /// Amplitude per flux upstream.
-    pub passed_on: f64,
-    /// Amplitude per own flux.
-    pub taken: f64,
-    /// φ(0), `m^-½`.
+    pub upstream_response: f64,
+    /// Amplitude per flux of the column itself.
+    pub diagonal_response: f64,
+    /// Value φ(0) at the surface, `m^-½`.
     pub surface: f64,
-    /// ∫φ, `m^½`.
+    /// Integral ∫φ over the depth, `m^½`.
     pub content: f64,
 }
 
@@ -32,19 +32,27 @@ impl Default for Mode {
         Mode {
             rate: 0.0,
             step: ModeStep {
-                arriving: 0.0,
+                advected: 0.0,
                 old_upstream: 0.0,
                 old: 0.0,
-                fed_upstream: 0.0,
-                fed: 0.0,
+                source_upstream: 0.0,
+                source: 0.0,
             },
-            heating: 0.0,
-            passed_on: 0.0,
-            taken: 0.0,
+            source_per_flux: 0.0,
+            upstream_response: 0.0,
+            diagonal_response: 0.0,
             surface: 0.0,
             content: 0.0,
         }
     }
+}
+
+/// Surface temperature and heat content of the columns of a block.
+pub struct ColumnSums<'a> {
+    /// Temperature rise at the surface, `K`.
+    pub surface: &'a mut [Lanes],
+    /// Heat content, `K m`.
+    pub content: &'a mut [Lanes],
 }
 
 /// The order in which rail crosses the columns of a block.
@@ -83,7 +91,7 @@ impl Order {
 /// and the same of the heat content.
 #[derive(Debug, Clone)]
 pub struct Responses {
-    /// R, `K/(W/m²)`.
+    /// Response R of the surface temperature, `K/(W/m²)`.
     pub surface: Vec<f64>,
     /// Response of the heat content, `K m/(W/m²)`.
     pub content: Vec<f64>,
@@ -109,9 +117,9 @@ impl Responses {
             let mut sums = [0.0; 2];
             for (amplitude, mode) in self.amplitudes.iter_mut().zip(modes) {
                 *amplitude = match distance {
-                    0 => mode.taken,
-                    1 => fma.multiply_add(mode.step.arriving, *amplitude, mode.passed_on),
-                    _ => mode.step.arriving * *amplitude,
+                    0 => mode.diagonal_response,
+                    1 => fma.multiply_add(mode.step.advected, *amplitude, mode.upstream_response),
+                    _ => mode.step.advected * *amplitude,
                 };
                 sums[0] = fma.multiply_add(mode.surface, *amplitude, sums[0]);
                 sums[1] = fma.multiply_add(mode.content, *amplitude, sums[1]);
@@ -131,7 +139,7 @@ struct Columns<'a> {
 
 impl<'a> Columns<'a> {
     #[inline(always)]
-    fn of((before, after): (&'a [f64], &'a mut [f64]), (own, upstream): (usize, usize), modes: usize) -> Columns<'a> {
+    fn of(before: &'a [f64], after: &'a mut [f64], own: usize, upstream: usize, modes: usize) -> Columns<'a> {
         let before = before.as_chunks().0;
         let after = after.as_chunks_mut().0;
         let (own_after, upstream_after) = if own < upstream {
@@ -171,11 +179,11 @@ pub fn unheated(
     modes: &[Mode],
     before: &[f64],
     after: &mut [f64],
-    (surface, content): (&mut [Lanes], &mut [Lanes]),
+    sums_of: ColumnSums,
 ) {
     let fma = |a, b, c| fma.multiply_add(a, b, c);
     for (own, upstream) in order.pairs() {
-        let columns = Columns::of((before, after), (own, upstream), modes.len());
+        let columns = Columns::of(before, after, own, upstream, modes.len());
         let mut sums = [[0.0; LANES]; 2];
         if columns.is_cold() {
             columns.own.fill([0.0; LANES]);
@@ -185,7 +193,7 @@ pub fn unheated(
                 let mut values = [0.0; LANES];
                 for lane in 0..LANES {
                     let stored = fma(mode.step.old, old[lane], mode.step.old_upstream * old_upstream[lane]);
-                    values[lane] = fma(mode.step.arriving, upstream[lane], stored);
+                    values[lane] = fma(mode.step.advected, upstream[lane], stored);
                 }
                 *own = values;
                 for lane in 0..LANES {
@@ -194,7 +202,7 @@ pub fn unheated(
                 }
             }
         }
-        [surface[own], content[own]] = sums;
+        [sums_of.surface[own], sums_of.content[own]] = sums;
     }
 }
 
@@ -203,9 +211,9 @@ pub fn unheated(
 pub fn heated(fma: MultiplyAdd, order: Order, modes: &[Mode], before: &[f64], after: &mut [f64], flux: &[Lanes]) {
     let fma = |a, b, c| fma.multiply_add(a, b, c);
     for (own, upstream) in order.pairs() {
-        let columns = Columns::of((before, after), (own, upstream), modes.len());
-        let (passed_on, taken) = (flux[upstream], flux[own]);
-        if is_zero(&passed_on) && is_zero(&taken) && columns.is_cold() {
+        let columns = Columns::of(before, after, own, upstream, modes.len());
+        let (flux_upstream, flux_own) = (flux[upstream], flux[own]);
+        if is_zero(&flux_upstream) && is_zero(&flux_own) && columns.is_cold() {
             columns.own.fill([0.0; LANES]);
             continue;
         }
@@ -214,8 +222,12 @@ pub fn heated(fma: MultiplyAdd, order: Order, modes: &[Mode], before: &[f64], af
             let mut values = [0.0; LANES];
             for lane in 0..LANES {
                 let stored = fma(mode.step.old, old[lane], mode.step.old_upstream * old_upstream[lane]);
-                let carried = fma(mode.step.arriving, upstream[lane], stored);
-                values[lane] = fma(mode.taken, taken[lane], fma(mode.passed_on, passed_on[lane], carried));
+                let advected = fma(mode.step.advected, upstream[lane], stored);
+                values[lane] = fma(
+                    mode.diagonal_response,
+                    flux_own[lane],
+                    fma(mode.upstream_response, flux_upstream[lane], advected),
+                );
             }
             *own = values;
         }
@@ -223,7 +235,7 @@ pub fn heated(fma: MultiplyAdd, order: Order, modes: &[Mode], before: &[f64], af
 }
 
 /// A step of a block's strips, whose change with |V| is asked for.
-pub struct Carried<'a> {
+pub struct SolvedStrips<'a> {
     /// Amplitudes after it.
     pub amplitudes: &'a [f64],
     /// Amplitudes that stood in the inflow column before the step.
@@ -234,7 +246,7 @@ pub struct Carried<'a> {
     pub crossing: Crossing,
 }
 
-impl Carried<'_> {
+impl SolvedStrips<'_> {
     /// Computes the sources that a change of |V| by `change` `m/s` adds to the amplitudes of each column; `old` holds m
     /// blocks.
     pub fn speed_sources(&self, order: Order, modes: &[Mode], change: f64, old: &mut [Lanes], sources: &mut [f64]) {
@@ -251,12 +263,12 @@ impl Carried<'_> {
                 };
                 let values = [&amplitudes[upstream * m + index], &amplitudes[own * m + index]];
                 for lane in 0..LANES {
-                    let mut ends = Ends {
+                    let mut ends = ModeEnds {
                         value: values.map(|block| block[lane]),
                         old: [old[index][lane], 0.0],
-                        feed: [upstream, own].map(|column| mode.heating * self.flux[column][lane]),
+                        source: [upstream, own].map(|column| mode.source_per_flux * self.flux[column][lane]),
                     };
-                    ends.old[1] = mode.step.own_old(&ends);
+                    ends.old[1] = mode.step.previous(&ends);
                     old[index][lane] = ends.old[1];
                     sources[own * m + index][lane] = change * mode.step.speed_tangent(&crossing, &ends);
                 }
@@ -265,16 +277,17 @@ impl Carried<'_> {
     }
 }
 
-/// The change of the amplitudes with the inflow column of `tangent`, with the heat flux, by `flux`, and with what else there is,
-/// `sources`; and with it the changes of surface temperature and heat content, if asked for.
+/// Computes the change of the amplitudes with that of the inflow column of `tangent`, of the heat flux, `flux`, and of the
+/// other sources, `sources`; with it, in `sums_of`, the changes of surface temperature and heat content, if asked for.
 #[inline(always)]
 pub fn tangent(
     fma: MultiplyAdd,
     order: Order,
     modes: &[Mode],
-    (sources, flux): (Option<&[f64]>, &[Lanes]),
+    sources: Option<&[f64]>,
+    flux: &[Lanes],
     tangent: &mut [f64],
-    mut sums_of: Option<(&mut [Lanes], &mut [Lanes])>,
+    mut sums_of: Option<ColumnSums>,
 ) {
     let m = modes.len();
     let fma = |a, b, c| fma.multiply_add(a, b, c);
@@ -282,46 +295,50 @@ pub fn tangent(
     for (own, upstream) in order.pairs() {
         let mut sums = [[0.0; LANES]; 2];
         for (index, mode) in modes.iter().enumerate() {
-            let arrived = tangent[upstream * m + index];
+            let before = tangent[upstream * m + index];
             let source = match sources {
                 Some(sources) => sources.as_chunks::<LANES>().0[own * m + index],
                 None => [0.0; LANES],
             };
             let mut values = [0.0; LANES];
             for lane in 0..LANES {
-                let fed = fma(mode.passed_on, flux[upstream][lane], mode.taken * flux[own][lane]);
-                values[lane] = fma(mode.step.arriving, arrived[lane], fed + source[lane]);
+                let heated = fma(
+                    mode.upstream_response,
+                    flux[upstream][lane],
+                    mode.diagonal_response * flux[own][lane],
+                );
+                values[lane] = fma(mode.step.advected, before[lane], heated + source[lane]);
                 sums[0][lane] = fma(mode.surface, values[lane], sums[0][lane]);
                 sums[1][lane] = fma(mode.content, values[lane], sums[1][lane]);
             }
             tangent[own * m + index] = values;
         }
-        if let Some((surface, content)) = &mut sums_of {
-            [surface[own], content[own]] = sums;
+        if let Some(sums_of) = &mut sums_of {
+            [sums_of.surface[own], sums_of.content[own]] = sums;
         }
     }
 }
 
 /// Fields of the cells of a block's strips, strip by strip.
 pub struct CellFields<'a> {
-    /// `W/m²`.
+    /// Heat flux, `W/m²`.
     pub flux: &'a mut [f64],
-    /// `K`.
+    /// Temperature rise at the surface, `K`.
     pub surface: &'a mut [f64],
-    /// `K m`.
+    /// Heat content, `K m`.
     pub content: &'a mut [f64],
     /// Number of the block's lanes that are strips of the patch.
     pub strips: usize,
 }
 
-/// The flux of the cells, one after the other along the way of the rail, from the temperature that their surface has without
-/// it, at a place among `cells` and a cell, and a guess of that with it; and surface temperature and heat content.
+/// Computes flux, surface temperature and heat content of the cells, one after the other along the way of the rail. `flux_at`
+/// gives the flux at a place among `cells` and a cell, from the surface temperature without it and a guess of that with it.
 #[inline(always)]
 pub fn respond(
     fma: MultiplyAdd,
     order: Order,
     responses: &Responses,
-    (unheated, unheated_content): (&[Lanes], &[Lanes]),
+    unheated: &ColumnSums,
     flux: &mut [Lanes],
     cells: &mut CellFields,
     mut flux_at: impl FnMut(usize, usize, f64, f64) -> Result<f64>,
@@ -337,42 +354,44 @@ pub fn respond(
             (Some(first), false) => first..column,
         };
         let sources = &flux[heated];
-        let later = (&responses.surface[1..], &responses.content[1..]);
-        let start = [unheated[column], unheated_content[column]];
+        let start = [unheated.surface[column], unheated.content[column]];
         let rise = if order.forward {
-            add_responses(fma, sources.iter(), later, start)
+            add_responses(fma, sources.iter(), responses, start)
         } else {
-            add_responses(fma, sources.iter().rev(), later, start)
+            add_responses(fma, sources.iter().rev(), responses, start)
         };
-        let mut taken = [0.0; LANES];
+        let mut heat_flux = [0.0; LANES];
         for strip in 0..cells.strips {
             let place = strip * count + cell;
-            taken[strip] = flux_at(place, cell, rise[0][strip], cells.surface[place])?;
-            cells.flux[place] = taken[strip];
+            heat_flux[strip] = flux_at(place, cell, rise[0][strip], cells.surface[place])?;
+            cells.flux[place] = heat_flux[strip];
         }
-        if !is_zero(&taken) && first.is_none() {
+        if !is_zero(&heat_flux) && first.is_none() {
             first = Some(column);
         }
-        flux[column] = taken;
+        flux[column] = heat_flux;
         let (surface, content) = (responses.surface[0], responses.content[0]);
         for strip in 0..cells.strips {
             let place = strip * count + cell;
-            cells.surface[place] = rise[0][strip] + surface * taken[strip];
-            cells.content[place] = rise[1][strip] + content * taken[strip];
+            cells.surface[place] = rise[0][strip] + surface * heat_flux[strip];
+            cells.content[place] = rise[1][strip] + content * heat_flux[strip];
         }
     }
     Ok(())
 }
 
-/// Adds the thermal responses to the sources, the next one upstream first, to surface temperature and heat content.
+/// Adds the thermal responses to the fluxes upstream, `sources`, the next one upstream first, to surface temperature and
+/// heat content.
 #[inline(always)]
 fn add_responses<'a>(
     fma: MultiplyAdd,
     sources: impl Iterator<Item = &'a Lanes>,
-    (surface, content): (&[f64], &[f64]),
+    responses: &Responses,
     start: [Lanes; 2],
 ) -> [Lanes; 2] {
     let [mut rise, mut heat] = start;
+    // The response at distance 0 is that to the column's own flux.
+    let (surface, content) = (&responses.surface[1..], &responses.content[1..]);
     for ((flux, surface), content) in sources.zip(surface).zip(content) {
         for lane in 0..LANES {
             rise[lane] = fma.multiply_add(*surface, flux[lane], rise[lane]);

@@ -8,8 +8,8 @@
 //!
 //! θ_c = θ⁰_c + Σ_j R_j q_{c−j},  R_0 = φ·h,  R_j = Σ φ E^{j−1} (E h + g),
 //!
-//! θ⁰ without flux, E what arrives of a mode, h what it takes of its column's own flux and g of that upstream, φ its value at the
-//! surface; and with ∫φ for φ the heat content Θ = ∫ θ dz. So the modes are marched twice a step only, whatever the
+//! θ⁰ without flux, E the fraction of a mode that is left at the next column, h its amplitude per flux of the column itself and g that per flux
+//! upstream, φ its value at the surface; and with ∫φ for φ the heat content Θ = ∫ θ dz. So the modes are marched twice a step only, whatever the
 //! number of iterations:
 //!
 //! 1. [`StripHeatMarch::start`]: the rail ahead; θ⁰ and Θ⁰ of the cells.
@@ -31,11 +31,11 @@ use super::basis::DepthBasis;
 use super::factors::{CellFactors, Conditions};
 use super::incoming::Incoming;
 use super::march::{HeatMarch, Heated};
-use super::surface::{SurfaceCondition, SurfaceExchange};
+use super::surface::{SurfaceCondition, SurfaceExchange, SurfaceRise};
 use crate::error::Result;
 use crate::numerics::dense::{self, LANES};
 use crate::transport::strips::{Side, Strips};
-use kernels::{Lanes, Mode, Order, Responses};
+use kernels::{ColumnSums, Lanes, Mode, Order, Responses};
 
 pub use tangent::{CarriageChange, StripHeatChange};
 pub use temperature::StripTemperature;
@@ -56,7 +56,7 @@ pub struct StripHeatMarch<'a> {
     pub surface: SurfaceCondition<'a>,
 }
 
-/// Buffers of a march. What a march makes does not depend on what was in them before its start.
+/// Buffers of a march. Its results do not depend on their contents before its start.
 #[derive(Debug, Clone)]
 pub struct StripHeatScratch {
     /// Factors in the window and on either side of it.
@@ -109,7 +109,7 @@ impl StripHeatMarch<'_> {
     /// window, in `after`, and the temperature and heat content of the strips without heat flux.
     ///
     /// # Errors
-    /// None that a column without heat flux can have.
+    /// Never: a column without heat flux has no equation to iterate on.
     pub fn start(
         &self,
         before: &StripTemperature,
@@ -141,10 +141,10 @@ impl StripHeatMarch<'_> {
                         modes,
                         &before.window[own.clone()],
                         &mut after.window[own],
-                        (
-                            &mut scratch.unheated[columns.clone()],
-                            &mut scratch.unheated_content[columns],
-                        ),
+                        ColumnSums {
+                            surface: &mut scratch.unheated[columns.clone()],
+                            content: &mut scratch.unheated_content[columns],
+                        },
                     );
                 }
             },
@@ -169,8 +169,12 @@ impl StripHeatMarch<'_> {
             if exchange.is_open() {
                 return Ok(0.0);
             }
-            self.surface
-                .flux(exchange, (unheated, response), guess, window.position(cell + 1))
+            self.surface.flux(
+                exchange,
+                SurfaceRise { unheated, response },
+                guess,
+                window.position(cell + 1),
+            )
         })
     }
 
@@ -178,7 +182,7 @@ impl StripHeatMarch<'_> {
     /// contact, at 0, it is that of the last step with one.
     ///
     /// # Errors
-    /// None that a column without heat flux can have.
+    /// Never: a column without heat flux has no equation to iterate on.
     pub fn finish(
         &self,
         before: &StripTemperature,
@@ -264,9 +268,9 @@ impl StripHeatMarch<'_> {
                     *kept = Mode {
                         rate: conditions.diffusivity * self.basis.eigenvalues[mode],
                         step: factors.step(mode),
-                        heating: heat.heating[mode],
-                        passed_on: heat.passed_on[mode],
-                        taken: heat.taken[mode],
+                        source_per_flux: heat.source_per_flux[mode],
+                        upstream_response: heat.upstream_response[mode],
+                        diagonal_response: heat.diagonal_response[mode],
                         surface: self.basis.surface[mode],
                         content: self.basis.integral[mode],
                     };
@@ -349,10 +353,10 @@ impl StripHeatMarch<'_> {
                         fma,
                         order,
                         &scratch.responses,
-                        (
-                            &scratch.unheated[columns.clone()],
-                            &scratch.unheated_content[columns.clone()],
-                        ),
+                        &ColumnSums {
+                            surface: &mut scratch.unheated[columns.clone()],
+                            content: &mut scratch.unheated_content[columns.clone()],
+                        },
                         &mut scratch.flux[columns],
                         &mut cells_of_block,
                         |place, cell, unheated, guess| flux(first * cells + place, cell, unheated, guess),

@@ -1,11 +1,11 @@
 //! The change of a step's result with its data, in the three parts of the step.
 
-use super::kernels::{self, Carried};
+use super::kernels::{self, ColumnSums, SolvedStrips};
 use super::{StripHeatMarch, StripHeatScratch, StripTemperature};
 use crate::error::Result;
 use crate::heat::march::{Heated, MarchChange};
 use crate::heat::step::Crossing;
-use crate::heat::surface::{CommonChange, ExchangeTangent, SurfaceExchange};
+use crate::heat::surface::{CommonChange, ExchangeTangent, SurfaceExchange, SurfaceRise};
 use crate::numerics::dense::{self, LANES};
 use crate::transport::strips::Side;
 
@@ -84,7 +84,8 @@ impl StripHeatMarch<'_> {
                 exchange,
                 &change.exchange_tangent[place],
                 &change.common,
-                (solution.surface[place], unheated, response),
+                solution.surface[place],
+                SurfaceRise { unheated, response },
             ))
         })
     }
@@ -139,13 +140,13 @@ impl StripHeatMarch<'_> {
                     flux[lane] = *solved;
                 }
             }
-            let carried = Carried {
+            let solved = SolvedStrips {
                 amplitudes: &solution.window[own.clone()],
                 replaced: &solution.replaced[block * m * LANES..][..m * LANES],
                 flux,
                 crossing,
             };
-            carried.speed_sources(
+            solved.speed_sources(
                 order,
                 &scratch.modes,
                 speed,
@@ -174,15 +175,16 @@ impl StripHeatMarch<'_> {
                 for block in 0..self.strips.blocks() {
                     let (own, columns) = (order.amplitudes(block, m), order.columns(block));
                     let sources = (speed != 0.0).then_some(&scratch.sources[own.clone()]);
-                    let unheated = (
-                        &mut scratch.unheated[columns.clone()],
-                        &mut scratch.unheated_content[columns.clone()],
-                    );
+                    let unheated = ColumnSums {
+                        surface: &mut scratch.unheated[columns.clone()],
+                        content: &mut scratch.unheated_content[columns.clone()],
+                    };
                     kernels::tangent(
                         fma,
                         order,
                         &scratch.modes,
-                        (sources, &scratch.flux[columns]),
+                        sources,
+                        &scratch.flux[columns],
                         &mut tangent.window[own],
                         (!with_flux).then_some(unheated),
                     );

@@ -4,7 +4,9 @@ use super::*;
 use crate::body::mesh::Mesh;
 use crate::friction::FrictionState;
 use crate::friction::coulomb::Sliding;
+use crate::heat::step::{DecayRate, ModeStep, Transit};
 use crate::heat::surface::{CommonChange, ExchangeChange, ExchangeTangent};
+use crate::numerics::dense::MultiplyAdd;
 use crate::parameters::{FrictionLaw, Parameters};
 use crate::settings::HeatSettings;
 use crate::transport::Upwind;
@@ -26,7 +28,7 @@ fn rail_of(cells: usize, strips: usize, outer: usize, depth: usize) -> Rail {
     let basis = DepthBasis::new(&mesh.depth).unwrap();
     Rail {
         incoming: Incoming::new(&mesh.depth, &basis, 5e-3),
-        strips: Strips::new(&mesh.x, (mesh.first_contact, cells), strips, BREADTH),
+        strips: Strips::new(&mesh.x, mesh.first_contact..mesh.first_contact + cells, strips, BREADTH),
         basis,
         mesh,
     }
@@ -259,7 +261,7 @@ proptest! {
         }
     }
 
-    /// Every mode: what all cells store, lose and hand on is what the flux feeds, over several steps of a contact of one breadth,
+    /// Balance of every mode: all cells store, lose and hand on what the flux supplies, over several steps of a contact of one breadth,
     /// with rail that comes in warm.
     #[test]
     fn the_heat_of_each_mode_is_balanced(
@@ -291,7 +293,7 @@ proptest! {
                     c => outer(Side::Right, c - first - strips.columns() + 1),
                 }
             };
-            let fed = |column: usize| -> f64 {
+            let source = |column: usize| -> f64 {
                 let cell = column.wrapping_sub(rail.mesh.first_contact);
                 if cell >= CELLS {
                     return 0.0;
@@ -306,18 +308,17 @@ proptest! {
                 let [own, upstream] = [column.index, column.upstream].map(|c| (columns(&after, c), columns(&before, c)));
                 for mode in 0..m {
                     let rate = parameters.thermal_diffusivity * rail.basis.eigenvalues[mode];
-                    let passage = (column.spacing / speed.abs(), speed.abs() / column.spacing);
-                    let cell = crate::heat::step::ModeStep::at(
-                        crate::numerics::dense::MultiplyAdd::SEPARATE, (rate, 1.0 / rate), 1.0 / duration, passage);
-                    let fed_share = cell.fed_upstream / (cell.fed_upstream + cell.fed);
-                    let stored_share = cell.old_upstream / (cell.old_upstream + cell.old);
+                    let transit = Transit::new(column.spacing, speed.abs());
+                    let cell = ModeStep::at(MultiplyAdd::SEPARATE, DecayRate::new(rate), 1.0 / duration, transit);
+                    let source_weight = cell.source_upstream / (cell.source_upstream + cell.source);
+                    let storage_weight = cell.old_upstream / (cell.old_upstream + cell.old);
                     let mean = |share: f64, up: f64, own: f64| share * up + (1.0 - share) * own;
                     let phi = rail.basis.surface[mode];
                     let terms = [
-                        column.spacing / duration * mean(stored_share, upstream.0[mode] - upstream.1[mode], own.0[mode] - own.1[mode]),
+                        column.spacing / duration * mean(storage_weight, upstream.0[mode] - upstream.1[mode], own.0[mode] - own.1[mode]),
                         speed.abs() * (own.0[mode] - upstream.0[mode]),
-                        column.spacing * rate * mean(fed_share, upstream.0[mode], own.0[mode]),
-                        -column.spacing * phi * mean(fed_share, fed(column.upstream), fed(column.index)),
+                        column.spacing * rate * mean(source_weight, upstream.0[mode], own.0[mode]),
+                        -column.spacing * phi * mean(source_weight, source(column.upstream), source(column.index)),
                     ];
                     balance[mode] += terms.iter().sum::<f64>();
                     scales[mode] = terms.iter().fold(scales[mode], |s, t| s.max(t.abs()));
