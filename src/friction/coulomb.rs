@@ -48,10 +48,7 @@ pub fn vector_power(shear: [f64; 2], slip: [f64; 2]) -> f64 {
 }
 
 /// Change of [`vector_power`].
-pub fn vector_power_tangent(
-    (shear, slip): ([f64; 2], [f64; 2]),
-    (shear_change, slip_change): ([f64; 2], [f64; 2]),
-) -> f64 {
+pub fn vector_power_tangent(shear: [f64; 2], slip: [f64; 2], shear_change: [f64; 2], slip_change: [f64; 2]) -> f64 {
     if shear[0] * slip[0] + shear[1] * slip[1] < 0.0 {
         -(shear_change[0] * slip[0] + shear[0] * slip_change[0])
             - (shear_change[1] * slip[1] + shear[1] * slip_change[1])
@@ -80,7 +77,7 @@ pub fn magnitude_tangent(vector: [f64; 2], change: [f64; 2]) -> f64 {
 }
 
 /// Change of [`power`].
-pub fn power_tangent((shear, slip): (f64, f64), (shear_change, slip_change): (f64, f64)) -> f64 {
+pub fn power_tangent(shear: f64, slip: f64, shear_change: f64, slip_change: f64) -> f64 {
     if shear * slip < 0.0 {
         -(shear_change * slip + shear * slip_change)
     } else {
@@ -107,10 +104,10 @@ impl Sliding {
     }
 
     /// Change of [`Sliding::new`].
-    pub fn tangent((slip, saturation): (f64, f64), (slip_change, saturation_change): (f64, f64)) -> Sliding {
+    pub fn tangent(slip: f64, saturation: f64, slip_change: f64, saturation_change: f64) -> Sliding {
         Sliding {
             speed: slip.signum() * slip_change,
-            power: power_tangent((-saturation, slip), (-saturation_change, slip_change)),
+            power: power_tangent(-saturation, slip, -saturation_change, slip_change),
         }
     }
 
@@ -123,13 +120,10 @@ impl Sliding {
     }
 
     /// Change of [`Sliding::of_vectors`].
-    pub fn vector_tangent(
-        (slip, share): ([f64; 2], [f64; 2]),
-        (slip_change, share_change): ([f64; 2], [f64; 2]),
-    ) -> Sliding {
+    pub fn vector_tangent(slip: [f64; 2], share: [f64; 2], slip_change: [f64; 2], share_change: [f64; 2]) -> Sliding {
         Sliding {
             speed: magnitude_tangent(slip, slip_change),
-            power: vector_power_tangent((share, slip), (share_change, slip_change)),
+            power: vector_power_tangent(share, slip, share_change, slip_change),
         }
     }
 }
@@ -154,12 +148,12 @@ mod tests {
             ([0.2, 0.0], [-0.9, 0.1]),
             ([0.1, 0.2], [0.5, 0.1]),
         ] {
-            let change = ([0.3, -0.7], [0.2, 0.5]);
+            let (slip_change, share_change) = ([0.3, -0.7], [0.2, 0.5]);
             let at = |h: f64| {
                 let moved = |value: [f64; 2], change: [f64; 2]| [0, 1].map(|i| value[i] + h * change[i]);
-                Sliding::of_vectors(moved(slip, change.0), moved(share, change.1))
+                Sliding::of_vectors(moved(slip, slip_change), moved(share, share_change))
             };
-            let (h, exact) = (1e-6, Sliding::vector_tangent((slip, share), change));
+            let (h, exact) = (1e-6, Sliding::vector_tangent(slip, share, slip_change, share_change));
             let (ahead, behind) = (at(h), at(-h));
             // Truncation h².
             assert!((exact.speed - (ahead.speed - behind.speed) / (2.0 * h)).abs() < 1e-9);

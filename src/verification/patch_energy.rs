@@ -113,7 +113,7 @@ pub fn rows() -> Result<Vec<Row>> {
         ),
         ("-0.02 m/s, shallow rail", &shallow, -0.02, 5.0, (340.0, 1e-7), true),
     ] {
-        let (defects, shares) = largest(parameters, speed, duration, incoming)?;
+        let (defects, shares) = largest(parameters, speed, duration, incoming.0, incoming.1)?;
         for (what, defect) in ["heat of the rail", "heat of rail, wheel and debris", "wear"]
             .into_iter()
             .zip(defects)
@@ -146,7 +146,8 @@ fn largest(
     parameters: &Parameters,
     speed: f64,
     duration: f64,
-    (incoming_temperature, incoming_wear_depth): (f64, f64),
+    incoming_temperature: f64,
+    incoming_wear_depth: f64,
 ) -> Result<([f64; 3], [f64; 9])> {
     let inputs = |step: u32| {
         let wave = (0.7 * f64::from(step)).sin();

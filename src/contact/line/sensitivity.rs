@@ -242,7 +242,7 @@ impl<'a> Linearisation<'a> {
                 let (slip, saturation) = (fields.slip[node], fields.saturation[node]);
                 let change = ExchangeChange {
                     pressure: tangent.pressure[node] * scale,
-                    sliding: Sliding::tangent((slip, saturation), (tangent.slip[node], tangent.saturation[node])),
+                    sliding: Sliding::tangent(slip, saturation, tangent.slip[node], tangent.saturation[node]),
                     wheel_rise: wheel_rise_tangent,
                     coefficient: if of_slip && fields.pressure[node] > 0.0 {
                         tangent.friction[node] - fields.memory.share_at(node) * tangent.memory.now.resting[node]

@@ -30,7 +30,7 @@ pub struct Scratch {
     pub displacement: [Vec<f64>; 2],
     content: Vec<f64>,
     nothing: Vec<f64>,
-    products: influence::Scratch<f64>,
+    products: influence::ProductScratch<f64>,
 }
 
 impl Scratch {

@@ -27,7 +27,7 @@ pub struct Scratch {
     pub(super) weights: Option<(SlipWeights, bool, usize)>,
     /// Strips that its transform serves.
     pub(super) strips: usize,
-    pub(super) products: influence::Scratch<f64>,
+    pub(super) products: influence::ProductScratch<f64>,
     pub(super) iterate: Coupling,
     pub(super) image: Coupling,
     pub(super) anderson: Anderson,

@@ -22,6 +22,7 @@
 //! Fields of cells are strip by strip: `strip * cells + cell`, cells towards +x₁.
 
 mod kernels;
+mod response;
 mod tangent;
 mod temperature;
 #[cfg(test)]
@@ -35,7 +36,8 @@ use super::surface::{SurfaceCondition, SurfaceExchange, SurfaceRise};
 use crate::error::Result;
 use crate::numerics::dense::{self, LANES};
 use crate::transport::strips::{Side, Strips};
-use kernels::{ColumnSums, Lanes, Mode, Order, Responses};
+use kernels::{ColumnSums, Lanes, Mode, Order};
+use response::{CellFields, Responses};
 
 pub use tangent::{CarriageChange, StripHeatChange};
 pub use temperature::StripTemperature;
@@ -343,13 +345,13 @@ impl StripHeatMarch<'_> {
                     let columns = order.columns(block);
                     let first = block * LANES;
                     let strips = LANES.min(self.strips.strips.saturating_sub(first));
-                    let mut cells_of_block = kernels::CellFields {
+                    let mut cells_of_block = CellFields {
                         flux: &mut after.flux[first * cells..][..strips * cells],
                         surface: &mut after.surface[first * cells..][..strips * cells],
                         content: &mut after.content[first * cells..][..strips * cells],
                         strips,
                     };
-                    kernels::respond(
+                    response::respond(
                         fma,
                         order,
                         &scratch.responses,

@@ -102,7 +102,7 @@ pub struct Normal {
     direction_image: Vec<f64>,
     nothing: Vec<f64>,
     ignored: Vec<f64>,
-    scratch: influence::Scratch<f64>,
+    scratch: influence::ProductScratch<f64>,
     /// Values of the cells.
     residual: Vec<f64>,
     direction: Vec<f64>,
