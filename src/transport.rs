@@ -130,12 +130,12 @@ impl Cells {
 /// The step through one cell: factors on the value and on the sources S/Δt = aⁿ/Δt + f at its two ends.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CellStep {
-    /// Share of the value upstream that arrives.
-    pub keep: f64,
+    /// Weight (C − ν)/(C + 1 − ν) of the value upstream, C the Courant number.
+    pub courant_weight: f64,
     /// Weight of the source upstream, `s`.
     pub upstream: f64,
     /// Weight of the column's own source, `s`: the diagonal of the recurrence.
-    pub own: f64,
+    pub diagonal: f64,
 }
 
 /// Values, or sources, at the two ends of a cell.
@@ -150,9 +150,9 @@ pub struct CellEnds {
 impl CellStep {
     /// Step through no cell at all: the value upstream arrives unchanged.
     pub const NONE: CellStep = CellStep {
-        keep: 1.0,
+        courant_weight: 1.0,
         upstream: 0.0,
-        own: 0.0,
+        diagonal: 0.0,
     };
 
     /// Step with 1/Δt `storage` `1/s`, through a cell of length Δ `spacing` `m` at |V| `speed` `m/s`.
@@ -165,9 +165,9 @@ impl CellStep {
         };
         let inverse = 1.0 / (passages + (1.0 - nu) * storage);
         CellStep {
-            keep: (passages - nu * storage).max(0.0) * inverse,
+            courant_weight: (passages - nu * storage).max(0.0) * inverse,
             upstream: nu * inverse,
-            own: (1.0 - nu) * inverse,
+            diagonal: (1.0 - nu) * inverse,
         }
     }
 
@@ -179,12 +179,12 @@ impl CellStep {
     /// Mean ν a_U + (1 − ν) a_O over the cell: what it holds per length.
     #[cfg(any(test, feature = "verification"))]
     pub fn mean(&self, upstream: f64, own: f64) -> f64 {
-        own + self.upstream / (self.upstream + self.own) * (upstream - own)
+        own + self.upstream / (self.upstream + self.diagonal) * (upstream - own)
     }
 
     /// Source at a column, from the values at both ends of the cell and the source upstream: the step solved backwards.
     pub fn source(&self, values: CellEnds, upstream_source: f64) -> f64 {
-        (values.column - self.keep * values.upstream - self.upstream * upstream_source) / self.own
+        (values.column - self.courant_weight * values.upstream - self.upstream * upstream_source) / self.diagonal
     }
 
     /// Change of the value at a column with |V| `speed`, from the values and the sources at both ends of the cell of length Δ

@@ -69,9 +69,9 @@ impl WearMarch<'_> {
         for column in self.transport.columns() {
             let step = steps.steps[steps.cells.length_of(&column)];
             let own_source = storage * before[column.index] + self.at(rate, column.index);
-            // The depth upstream enters last: columns wait for each other there, and all the rest can be computed meanwhile.
-            let fed = step.upstream * upstream_source + step.own * own_source;
-            upstream = fed + step.keep * upstream;
+            // The depth upstream is added last: only this waits for the column upstream, all the rest can be computed meanwhile.
+            let fed = step.upstream * upstream_source + step.diagonal * own_source;
+            upstream = fed + step.courant_weight * upstream;
             upstream_source = own_source;
             after[column.index] = upstream;
         }
@@ -82,7 +82,7 @@ impl WearMarch<'_> {
     /// enters.
     pub fn advance_tangent(&self, change: WearChange, replaced: f64, after: &[f64], tangent: &mut [f64]) {
         let (storage, speed) = (1.0 / self.duration, self.transport.speed());
-        // The sources that the step was made from follow from its result.
+        // The sources of the step follow from its result.
         let mut upstream_source = storage * replaced;
         let mut upstream_change = 0.0;
         for column in self.transport.columns() {
@@ -97,9 +97,9 @@ impl WearMarch<'_> {
             };
             let own_change = self.at(change.rate, column.index);
             let by_speed = CellStep::speed_tangent(storage, column.spacing, speed, values, sources);
-            tangent[column.index] = step.keep * tangent[column.upstream]
+            tangent[column.index] = step.courant_weight * tangent[column.upstream]
                 + step.upstream * upstream_change
-                + step.own * own_change
+                + step.diagonal * own_change
                 + change.speed * by_speed;
             (upstream_source, upstream_change) = (sources.column, own_change);
         }

@@ -105,9 +105,9 @@ impl Moments {
     }
 }
 
-/// Takes from the `rows` (each of `inputs` values) their parts along a few orthonormal combinations, until what is left of
-/// those in question is below the tolerance: Gram and Schmidt's method on the row that is largest. Returns the
-/// combinations and, one after the other, the parts of all rows along them.
+/// Splits off from the `rows` (each of `inputs` values) their components along a few orthonormal combinations, until the
+/// remainder of the rows that are `far` is below the tolerance: Gram and Schmidt's method, pivoting on the largest row.
+/// Returns the combinations and, one after the other, the components of all rows along them.
 fn split_off(rows: &mut [f64], inputs: usize, far: impl Fn(usize) -> bool, tolerance: f64) -> (Vec<f64>, Vec<f64>) {
     let (mut combinations, mut parts) = (Vec::new(), Vec::new());
     for _ in 0..inputs {

@@ -122,7 +122,7 @@ impl Factors<'_> {
             // not vectorise.
             let mut values = [0.0; LANES];
             for lane in 0..LANES {
-                // What waits for the column upstream comes last.
+                // The term with the column upstream comes last: only this waits for that column.
                 let stored = fma(
                     old_factor[lane],
                     old[lane],

@@ -115,8 +115,8 @@ impl StripWearMarch<'_> {
                 let mut own_source = self.at(rate, block, column.index);
                 for lane in 0..LANES {
                     own_source[lane] += storage * before[column.index][lane];
-                    let fed = step.upstream * source[lane] + step.own * own_source[lane];
-                    depth[lane] = fed + step.keep * depth[lane];
+                    let fed = step.upstream * source[lane] + step.diagonal * own_source[lane];
+                    depth[lane] = fed + step.courant_weight * depth[lane];
                 }
                 source = own_source;
                 after[column.index] = depth;
@@ -171,7 +171,7 @@ impl StripWearMarch<'_> {
             let tangent = tangent.window[own].as_chunks_mut::<LANES>().0;
             let mut depth_change = [entering; LANES];
             tangent[window.inflow()] = depth_change;
-            // The sources that the step was made from follow from its result.
+            // The sources of the step follow from its result.
             let mut source: Lanes = std::array::from_fn(|lane| storage * after.replaced[block * LANES + lane]);
             let mut source_change = [0.0; LANES];
             for column in window.columns() {
@@ -186,9 +186,9 @@ impl StripWearMarch<'_> {
                         column: step.source(values, source[lane]),
                     };
                     let by_speed = CellStep::speed_tangent(storage, spacing, speed, values, sources);
-                    depth_change[lane] = step.keep * depth_change[lane]
+                    depth_change[lane] = step.courant_weight * depth_change[lane]
                         + step.upstream * source_change[lane]
-                        + step.own * own_change[lane]
+                        + step.diagonal * own_change[lane]
                         + change.speed * by_speed;
                     source[lane] = sources.column;
                 }

@@ -161,7 +161,8 @@ fn march_wear(problem: &Problem, before: &PatchFields, fields: &mut PatchFields,
     let grid = &operators.grid;
     let per_slip = problem.parameters.wear_coefficient * operators.scales.pressure;
     let speed = problem.conditions.motion.rolling_speed.abs();
-    let own = CellStep::new(1.0 / problem.conditions.duration, grid.length, speed).own / operators.scales.displacement;
+    let own =
+        CellStep::new(1.0 / problem.conditions.duration, grid.length, speed).diagonal / operators.scales.displacement;
     let mut fastest = 0.0_f64;
     for strip in 0..grid.strips {
         for cell in 0..grid.cells {

@@ -192,7 +192,7 @@ impl Tangent {
             return;
         }
         let (operators, speed) = (problem.operators, problem.conditions.motion.rolling_speed.abs());
-        let own = CellStep::new(1.0 / problem.conditions.duration, operators.grid.length, speed).own;
+        let own = CellStep::new(1.0 / problem.conditions.duration, operators.grid.length, speed).diagonal;
         let per_slip = problem.wear_per_slip() * own / operators.scales.displacement;
         for place in self.contact.places(&operators.grid) {
             self.softness[place] = per_slip * fields.slip[0][place].hypot(fields.slip[1][place]);
