@@ -44,7 +44,7 @@ pub struct MarchChange<'a> {
 /// A temperature field, or a change of one, and the flux that goes with it.
 pub struct Heated<'a> {
     /// Modal amplitudes, columns × modes, column by column.
-    pub temperature: &'a mut [f64],
+    pub amplitudes: &'a mut [f64],
     /// Temperature rise at the surface of the columns, `K`.
     pub surface: &'a mut [f64],
     /// Heat flux into the rail at the contact nodes, `W/m²`.
@@ -85,7 +85,7 @@ impl HeatMarch<'_> {
         // Flux of the column upstream: 0 at the inflow, which is no contact node.
         let mut upstream_flux = 0.0;
         for column in self.transport.columns() {
-            let (own, upstream) = split_columns(after.temperature, column.index, column.upstream, m);
+            let (own, upstream) = split_columns(after.amplitudes, column.index, column.upstream, m);
             let old = &before[column.index * m..][..m];
             let old_upstream = &before[column.upstream * m..][..m];
             let contact = column.index.wrapping_sub(self.first_contact);
@@ -190,7 +190,7 @@ impl HeatMarch<'_> {
             for mode in 0..m {
                 let (own, upstream) = (column.index * m + mode, column.upstream * m + mode);
                 let mut ends = ModeEnds {
-                    value: [solution.temperature[upstream], solution.temperature[own]],
+                    value: [solution.amplitudes[upstream], solution.amplitudes[own]],
                     old: [old[mode], 0.0],
                     source: [
                         heat.source_per_flux[mode] * heated_upstream,
@@ -206,10 +206,10 @@ impl HeatMarch<'_> {
                     spacing: column.spacing,
                     speed: self.transport.speed(),
                 };
-                tangent.temperature[own] = step.advected * tangent.temperature[upstream]
+                tangent.amplitudes[own] = step.advected * tangent.amplitudes[upstream]
                     + heat.upstream_response[mode] * upstream_flux
                     + change.speed * step.speed_tangent(&crossing, &ends);
-                unheated += surface[mode] * tangent.temperature[own];
+                unheated += surface[mode] * tangent.amplitudes[own];
             }
             heated_upstream = heated;
             tangent.surface[column.index] = unheated;
@@ -234,7 +234,7 @@ impl HeatMarch<'_> {
             fma.add_multiple(
                 heat.diagonal_response,
                 upstream_flux,
-                &mut tangent.temperature[column.index * m..][..m],
+                &mut tangent.amplitudes[column.index * m..][..m],
             );
         }
     }

@@ -325,7 +325,7 @@ mod tests {
                     &before,
                     &exchange,
                     &mut Heated {
-                        temperature: &mut after,
+                        amplitudes: &mut after,
                         surface: &mut vec![0.0; rail.mesh.columns()],
                         flux: &mut vec![0.0; 61],
                     },

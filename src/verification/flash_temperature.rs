@@ -174,7 +174,7 @@ fn march(parameters: &Parameters, centre: f64) -> Result<Vec<SurfaceNode>> {
         &cold,
         &exchange,
         &mut Heated {
-            temperature: &mut heated,
+            amplitudes: &mut heated,
             surface: &mut surface,
             flux: &mut flux,
         },

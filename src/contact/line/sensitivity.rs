@@ -261,12 +261,12 @@ impl<'a> Linearisation<'a> {
             })
             .collect();
         let solution = Heated {
-            temperature: &mut fields.temperature,
+            amplitudes: &mut fields.temperature,
             surface: &mut fields.surface_temperature,
             flux: &mut fields.heat_flux,
         };
         let mut change = Heated {
-            temperature: &mut tangent.temperature,
+            amplitudes: &mut tangent.temperature,
             surface: &mut tangent.surface_temperature,
             flux: &mut tangent.heat_flux,
         };

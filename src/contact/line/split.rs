@@ -319,7 +319,7 @@ fn march_rail(
     let inputs = &problem.conditions.inputs;
     let march = problem.heat_march();
     let mut after = Heated {
-        temperature: &mut fields.temperature,
+        amplitudes: &mut fields.temperature,
         surface: &mut fields.surface_temperature,
         flux: &mut fields.heat_flux,
     };

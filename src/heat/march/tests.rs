@@ -13,7 +13,7 @@ const FIRST: usize = 2;
 const NODES: usize = 5;
 
 struct Field {
-    temperature: Vec<f64>,
+    amplitudes: Vec<f64>,
     surface: Vec<f64>,
     flux: Vec<f64>,
 }
@@ -21,7 +21,7 @@ struct Field {
 impl Field {
     fn new(modes: usize) -> Field {
         Field {
-            temperature: vec![0.0; X.len() * modes],
+            amplitudes: vec![0.0; X.len() * modes],
             surface: vec![0.0; X.len()],
             flux: vec![0.0; NODES],
         }
@@ -29,7 +29,7 @@ impl Field {
 
     fn heated(&mut self) -> Heated<'_> {
         Heated {
-            temperature: &mut self.temperature,
+            amplitudes: &mut self.amplitudes,
             surface: &mut self.surface,
             flux: &mut self.flux,
         }
@@ -93,7 +93,7 @@ fn the_tangent_is_the_derivative() {
                 .collect()
         };
         let enter = |field: &mut Field, rise: f64, inflow: usize| {
-            field.temperature[inflow * m..(inflow + 1) * m].fill(rise);
+            field.amplitudes[inflow * m..(inflow + 1) * m].fill(rise);
         };
         let solve = |h: f64| {
             let march = march(h);
@@ -146,9 +146,9 @@ fn the_tangent_is_the_derivative() {
         for (name, exact, ahead, behind) in [
             (
                 "temperature",
-                &tangent.temperature,
-                &ahead.temperature,
-                &behind.temperature,
+                &tangent.amplitudes,
+                &ahead.amplitudes,
+                &behind.amplitudes,
             ),
             ("surface", &tangent.surface, &ahead.surface, &behind.surface),
             ("flux", &tangent.flux, &ahead.flux, &behind.flux),

@@ -321,7 +321,7 @@ impl StripHeatMarch<'_> {
 
     fn march_outer(&self, side: Side, before: &[f64], after: &mut [f64], scratch: &mut StripHeatScratch) -> Result<()> {
         let mut field = Heated {
-            temperature: after,
+            amplitudes: after,
             surface: &mut scratch.outer_surface,
             flux: &mut [],
         };

@@ -210,7 +210,7 @@ impl StripHeatMarch<'_> {
         // The surface temperature acts where there is an exchange.
         let (surface, surface_change) = scratch.outer_surface.split_at_mut(outer.len() / m);
         let solved = Heated {
-            temperature: held,
+            amplitudes: held,
             surface,
             flux: &mut [],
         };
@@ -226,7 +226,7 @@ impl StripHeatMarch<'_> {
             replaced_inflow: &replaced[if side == ahead { 0 } else { m }..][..m],
         };
         let mut changed = Heated {
-            temperature: tangent,
+            amplitudes: tangent,
             surface: surface_change,
             flux: &mut [],
         };

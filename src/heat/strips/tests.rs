@@ -120,7 +120,7 @@ fn step(
 
 /// A strip as the march of the line contact sees it: all its columns, those outside the window as they are for all strips.
 struct Single {
-    temperature: Vec<f64>,
+    amplitudes: Vec<f64>,
     surface: Vec<f64>,
     flux: Vec<f64>,
 }
@@ -184,19 +184,19 @@ proptest! {
                     surface: condition(&parameters),
                 };
                 let mut single = Single {
-                    temperature: vec![0.0; line.len()],
+                    amplitudes: vec![0.0; line.len()],
                     surface: vec![0.0; rail.mesh.columns()],
                     flux: vec![0.0; CELLS],
                 };
                 let inflow = heat_march.transport.inflow();
-                rail.incoming.enter(rise, &mut single.temperature[inflow * m..][..m], &mut 0.0);
+                rail.incoming.enter(rise, &mut single.amplitudes[inflow * m..][..m], &mut 0.0);
                 // After a turn a strip's own heat stands where rail enters, and the mean ahead of it: what enters is that of the
                 // patch then.
                 let turned = number == 1 && directions[0] != directions[1];
                 let none = vec![SurfaceExchange::default(); CELLS];
                 let own = exchange.chunks_exact(CELLS).nth(strip).unwrap_or(&none);
                 let mut field = Heated {
-                    temperature: &mut single.temperature,
+                    amplitudes: &mut single.amplitudes,
                     surface: &mut single.surface,
                     flux: &mut single.flux,
                 };
@@ -209,12 +209,12 @@ proptest! {
                     let offset = (rail.mesh.first_contact - 1) * m;
                     let columns = offset..offset + strips.columns() * m;
                     for mode in 0..m {
-                        field.temperature[offset + entering.start + mode] =
+                        field.amplitudes[offset + entering.start + mode] =
                             after.window[march.place(strip, window.inflow(), mode)];
                     }
                     let march = HeatMarch { transport: window, first_contact: 1, ..heat_march };
                     let mut field = Heated {
-                        temperature: &mut field.temperature[columns.clone()],
+                        amplitudes: &mut field.amplitudes[columns.clone()],
                         surface: &mut field.surface[rail.mesh.first_contact - 1..],
                         flux: field.flux,
                     };
@@ -226,12 +226,12 @@ proptest! {
                 // The flux is what conduction leaves of the heat, with the round-off of the whole.
                 let loss = own.iter().map(|exchange| exchange.debris + exchange.conduction).fold(0.0, f64::max);
                 let tolerance = 1e-13 * (1.0 + 0.5 * scratch.responses.surface[0] * loss);
-                let size = dense::largest(&single.temperature);
+                let size = dense::largest(&single.amplitudes);
                 for column in 0..strips.columns() {
                     for mode in 0..m {
                         let (found, expected) = (
                             after.window[march.place(strip, column, mode)],
-                            single.temperature[(rail.mesh.first_contact - 1 + column) * m + mode],
+                            single.amplitudes[(rail.mesh.first_contact - 1 + column) * m + mode],
                         );
                         prop_assert!((found - expected).abs() <= tolerance * size, "{strip} {column} {mode}: {found:e} {expected:e}");
                     }
@@ -241,7 +241,7 @@ proptest! {
                 }
                 // Round-off of the sums over the modes.
                 let sum = |weights: &[f64]| {
-                    let columns = single.temperature.chunks_exact(m);
+                    let columns = single.amplitudes.chunks_exact(m);
                     let sums = columns.map(|column| column.iter().zip(weights).map(|(a, w)| (a * w).abs()).sum());
                     sums.fold(0.0, |most: f64, sum: f64| most.max(sum))
                 };
@@ -253,7 +253,7 @@ proptest! {
                     for (found, expected, size) in [
                         (after.surface[place], single.surface[column], surface),
                         (after.flux[place], single.flux[cell], flux),
-                        (after.content[place], rail.basis.content(&single.temperature[column * m..][..m]), content),
+                        (after.content[place], rail.basis.content(&single.amplitudes[column * m..][..m]), content),
                     ] {
                         prop_assert!((found - expected).abs() <= tolerance * size, "{strip} {cell}: {found:e} {expected:e}");
                     }
