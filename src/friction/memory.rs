@@ -1,4 +1,4 @@
-//! What the rail remembers of the friction that it has felt: the state of [`super::path`].
+//! History of friction that the rail carries along: the state of [`super::path`].
 
 use super::PointLaw;
 use crate::parameters::Parameters;
@@ -9,11 +9,11 @@ use serde::{Deserialize, Serialize};
 pub struct Brought {
     /// μ of the surfaces.
     pub friction: Vec<f64>,
-    /// s, the magnitude of the law's slip velocity, `m/s`, 0 outside the contact.
+    /// Slip velocity s, the magnitude of the law's slip velocity, `m/s`, 0 outside the contact.
     pub speed: Vec<f64>,
-    /// μ(θ), the coefficient at this temperature and no slip.
+    /// Static coefficient μ(θ), that at this temperature and no slip.
     pub resting: Vec<f64>,
-    /// u_pl, the way that the layer has flowed, `m`, 0 outside the contact.
+    /// Way u_pl that the layer has flowed, `m`, 0 outside the contact.
     pub flow: Vec<f64>,
 }
 
@@ -44,7 +44,7 @@ pub struct Memory {
     pub now: Brought,
     /// History at the beginning of the step, which the derivatives of the step need.
     pub before: Brought,
-    /// dμ of the surfaces by μ(θ) at the node's temperature.
+    /// Derivative of μ of the surfaces by μ(θ) at the node's temperature.
     pub share: Vec<f64>,
     /// Bound of a layer that may flow, over the pressure; 0 without one.
     pub cap: Vec<f64>,
@@ -146,21 +146,21 @@ impl Memory {
 
 /// History of the particles on one path: the nodes of a window, or of one of its strips.
 #[derive(Debug, Clone, Copy)]
-pub struct Path<'a> {
+pub struct ParticlePath<'a> {
     /// μ of the surfaces.
     pub friction: &'a [f64],
-    /// s, `m/s`.
+    /// Slip velocity s, `m/s`.
     pub speed: &'a [f64],
-    /// μ(θ).
+    /// Static μ(θ).
     pub resting: &'a [f64],
-    /// u_pl, `m`.
+    /// Way of flow u_pl, `m`.
     pub flow: &'a [f64],
 }
 
 impl Brought {
     /// Path over some of the nodes.
-    pub fn path(&self, nodes: std::ops::Range<usize>) -> Path<'_> {
-        Path {
+    pub fn path(&self, nodes: std::ops::Range<usize>) -> ParticlePath<'_> {
+        ParticlePath {
             friction: &self.friction[nodes.clone()],
             speed: &self.speed[nodes.clone()],
             resting: &self.resting[nodes.clone()],
