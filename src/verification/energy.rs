@@ -74,9 +74,16 @@ impl Balance {
     }
 }
 
-/// Speed `m/s`, wheel's circumferential speed `m/s` and load `N` of one step; changes below a fifth, so that the step
-/// is not divided.
-type DrivenStep = (f64, f64, f64);
+/// Inputs of one step; their changes stay below a fifth, so that the step is not divided.
+#[derive(Clone, Copy)]
+struct DrivenStep {
+    /// Speed, `m/s`.
+    speed: f64,
+    /// Circumferential speed of the wheel, `m/s`.
+    circumferential: f64,
+    /// Normal load, `N`.
+    load: f64,
+}
 
 /// The largest defect of any step of a transient at speed, and of one where the strip is shallow, slow, and the heat
 /// reaches its bottom.
@@ -95,7 +102,11 @@ pub fn rows() -> Result<Vec<Row>> {
     let fast: Vec<DrivenStep> = (0..40)
         .map(|i| {
             let wave = (0.7 * f64::from(i)).sin();
-            (10.0 + wave, (10.0 + wave) * 1.05, 60e3 * (1.0 + 0.08 * wave))
+            DrivenStep {
+                speed: 10.0 + wave,
+                circumferential: (10.0 + wave) * 1.05,
+                load: 60e3 * (1.0 + 0.08 * wave),
+            }
         })
         .collect();
     let shallow = Parameters {
@@ -112,7 +123,11 @@ pub fn rows() -> Result<Vec<Row>> {
         .map(|i| {
             let wave = (0.7 * f64::from(i)).sin();
             let speed = -0.02 * (1.0 + 0.08 * wave);
-            (speed, 1.05 * speed, 30e3)
+            DrivenStep {
+                speed,
+                circumferential: 1.05 * speed,
+                load: 30e3,
+            }
         })
         .collect();
     let warm = Parameters {
@@ -125,7 +140,14 @@ pub fn rows() -> Result<Vec<Row>> {
         rim_width: 1e-3,
         ..base.clone()
     };
-    let on_the_spot: Vec<DrivenStep> = vec![(0.0, 1e-3, 30e3); 12];
+    let on_the_spot: Vec<DrivenStep> = vec![
+        DrivenStep {
+            speed: 0.0,
+            circumferential: 1e-3,
+            load: 30e3,
+        };
+        12
+    ];
 
     let mut rows = Vec::new();
     for (name, parameters, steps, duration) in [
@@ -139,52 +161,59 @@ pub fn rows() -> Result<Vec<Row>> {
             5.0,
         ),
     ] {
-        let warm = parameters.wheel_heating == WheelHeating::On;
-        let incoming = if warm {
-            340.0
-        } else {
-            Inputs::default().incoming_temperature
-        };
-        let (defect, total_defect, shares) = largest_defect(parameters, steps, duration, incoming)?;
-        rows.push(Row::absolute(
+        rows.extend(case_rows(name, parameters, steps, duration)?);
+    }
+    Ok(rows)
+}
+
+/// Rows of one case: the defects of both balances, and the smallest share of a term.
+fn case_rows(name: &str, parameters: &Parameters, steps: &[DrivenStep], duration: f64) -> Result<Vec<Row>> {
+    let warm = parameters.wheel_heating == WheelHeating::On;
+    let incoming = if warm {
+        340.0
+    } else {
+        Inputs::default().incoming_temperature
+    };
+    let (defect, total_defect, shares) = largest_defect(parameters, steps, duration, incoming)?;
+    // A balance that closes says nothing about a term that is 0 all the time.
+    let shallow = parameters.strip_height < 0.1;
+    let smallest = [
+        (shares.stored, true),
+        (shares.carried_out, steps[0].speed != 0.0),
+        (shares.carried_in, warm),
+        (shares.rim, true),
+        (shares.bottom, shallow),
+        (shares.conduction, true),
+        (shares.debris, parameters.wear_coefficient > 0.0),
+    ]
+    .iter()
+    .filter(|(_, expected)| *expected)
+    .fold(f64::INFINITY, |m, (share, _)| share.min(m));
+    Ok(vec![
+        Row::absolute(
             format!("heat balance defect of rail, wheel and debris over friction power, {name}"),
             "1",
             0.0,
             total_defect,
             TOLERANCE,
             SOURCE,
-        ));
-        rows.push(Row::absolute(
+        ),
+        Row::absolute(
             format!("heat balance defect over friction heat, {name}"),
             "1",
             0.0,
             defect,
             TOLERANCE,
             SOURCE,
-        ));
-        // A balance that closes says nothing about a term that is 0 all the time.
-        let shallow = parameters.strip_height < 0.1;
-        let smallest = [
-            (shares.stored, true),
-            (shares.carried_out, steps[0].0 != 0.0),
-            (shares.carried_in, warm),
-            (shares.rim, true),
-            (shares.bottom, shallow),
-            (shares.conduction, true),
-            (shares.debris, parameters.wear_coefficient > 0.0),
-        ]
-        .iter()
-        .filter(|(_, expected)| *expected)
-        .fold(f64::INFINITY, |m, (share, _)| share.min(m));
-        rows.push(Row::at_least(
+        ),
+        Row::at_least(
             format!("smallest share of a term at its largest, {name}"),
             "1",
             1e-5,
             smallest,
             "each term takes part",
-        ));
-    }
-    Ok(rows)
+        ),
+    ])
 }
 
 /// The largest defect over the steps, of the rail and of rail, wheel and debris, and the largest share of each term.
@@ -194,10 +223,10 @@ fn largest_defect(
     duration: f64,
     incoming_temperature: f64,
 ) -> Result<(f64, f64, Balance)> {
-    let inputs = |&(vehicle_speed, circumferential, normal_load): &DrivenStep| Inputs {
-        wheel_speed: circumferential / parameters.wheel_radius,
-        vehicle_speed,
-        normal_load,
+    let inputs = |step: &DrivenStep| Inputs {
+        wheel_speed: step.circumferential / parameters.wheel_radius,
+        vehicle_speed: step.speed,
+        normal_load: step.load,
         incoming_temperature,
         ..Inputs::default()
     };
@@ -208,7 +237,7 @@ fn largest_defect(
         let before = run.state.fields()?.clone();
         let inputs = inputs(step);
         run.step(&inputs, duration)?;
-        let balance = balance(&run, &before, step.0, duration)?;
+        let balance = balance(&run, &before, step.speed, duration)?;
         let divided = run.state.duration != duration;
         let worse = |worst: f64, own: f64| larger(worst, if divided { f64::NAN } else { own });
         defect = worse(defect, balance.defect());
