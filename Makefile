@@ -196,6 +196,7 @@ lint: $(VENV)/ready
 	$(call say,Formatting - lints - documentation)
 	cargo fmt --check
 	$(PY) tools/layers.py
+	$(PY) tools/doc_comments.py
 	$(CARGO) clippy --quiet --all-targets -- -D warnings
 	RUSTDOCFLAGS='-D warnings' $(CARGO) doc --quiet --no-deps
 	$(VENV)/bin/ruff check .

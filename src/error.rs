@@ -22,7 +22,7 @@ pub enum Error {
         maximum: f64,
         /// Unit of all three; empty, or `1`, of a number without one.
         unit: &'static str,
-        /// Which parameters set the limits, and how; empty where none does.
+        /// Parameters that set the limits, and how; empty where none does.
         because: &'static str,
     },
     /// Two values, each allowed by itself, that cannot stand together.
@@ -30,13 +30,13 @@ pub enum Error {
     Combination {
         /// First variable.
         first: &'static str,
-        /// Its value.
+        /// Value of the first parameter.
         first_value: f64,
         /// Second variable.
         second: &'static str,
-        /// Its value.
+        /// Value of the second parameter.
         second_value: f64,
-        /// What must hold between them.
+        /// Condition that must hold between the two.
         requirement: &'static str,
     },
     /// Lateral or spin motion, of which a line contact knows nothing.
@@ -56,15 +56,15 @@ pub enum Error {
     NotUsed {
         /// The input.
         name: &'static str,
-        /// Its value.
+        /// Value of the parameter.
         value: f64,
         /// The number of the `slip_source` that is chosen.
         number: i32,
-        /// Its name.
+        /// Name of the choice.
         choice: &'static str,
         /// The number of the one that uses the input.
         other_number: i32,
-        /// Its name.
+        /// Name of the other parameter.
         other: &'static str,
     },
     /// State or workspace come from a model with another `contact_model`.
@@ -81,7 +81,7 @@ pub enum Error {
     NotANumber {
         /// Parameter.
         name: &'static str,
-        /// What was given.
+        /// Text that was given.
         text: String,
         /// "a real number" or "an integer".
         expected: &'static str,
@@ -95,7 +95,7 @@ pub enum Error {
     /// A matrix between the nodes in contact has no inverse.
     #[error("the {matrix} matrix of the contact ({unknowns} nodes) is singular")]
     SingularContactMatrix {
-        /// Which matrix.
+        /// Name of the matrix.
         matrix: &'static str,
         /// Number of nodes in contact.
         unknowns: usize,

@@ -4,7 +4,7 @@
 //! Every iteration has a limit. A limit of 0 makes its method fail at once, which is how the tests see what a failed
 //! step leaves behind.
 
-/// All of them. A [`crate::wheel_rail::Model`] has one set, the default unless told otherwise.
+/// Settings of all solvers. A [`crate::wheel_rail::Model`] has one set, the default unless told otherwise.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Settings {
     /// Division of a step.
@@ -29,7 +29,7 @@ pub struct Settings {
     pub interface: InterfaceSettings,
 }
 
-/// How a step is divided into sub-steps.
+/// Division of a step into sub-steps.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct StepSettings {
     /// A change of the inputs by more than this share of their scale is a jump: what follows it is a transient of the
@@ -42,8 +42,8 @@ pub struct StepSettings {
     /// Shortest time that a step takes, `s`: a rate of change over less would overflow, and no output tells the
     /// difference.
     pub shortest: f64,
-    /// How often in one step a sub-step that fails is tried again with a quarter of its length; those after it stay below half of
-    /// it. 8: a 65 000th of the step.
+    /// Number of times in one step that a sub-step that fails is tried again with a quarter of its length; those after
+    /// it stay below half of it. 8: a 65 000th of the step.
     pub retries: usize,
 }
 
@@ -79,7 +79,8 @@ pub struct SplitSettings {
     pub sharpening: f64,
     /// Factor on the tolerances where a node has come under pressure or left it in the last iteration.
     pub set_margin: f64,
-    /// Nor is a ratio below this one believed: the first change contains what one iteration settles for good.
+    /// Smallest ratio of two changes that is believed as a contraction: the first change contains what one iteration
+    /// settles for good.
     pub least_contraction: f64,
 }
 
@@ -112,7 +113,7 @@ pub struct NormalSettings {
     pub descents_per_node: usize,
     /// Limit of the iterations of the paper's linearisation method.
     pub linearisations: usize,
-    /// Its largest step, relative to the largest pressure, at which it rests.
+    /// Largest step of the linearisation at which it has converged, relative to the largest pressure.
     pub linearisation_tolerance: f64,
 }
 
@@ -184,8 +185,9 @@ pub struct SensitivitySettings {
     /// Relative step of the central difference of the outputs along the tangent of the fields. The outputs are sums,
     /// products and ratios of the fields: truncation is 1e-14, round-off 1e-9.
     pub output_step: f64,
-    /// The same for fields of which the outputs are linear functions or the largest value: temperature, displacement, wear
-    /// and flux. It is larger, so that a change of the rail that hardly moves the tractions is not lost in round-off.
+    /// Step of the differences for fields of which the outputs are linear functions or the largest value: temperature,
+    /// displacement, wear and flux. It is larger, so that a change of the rail that hardly moves the tractions is not
+    /// lost in round-off.
     pub linear_output_step: f64,
     /// Least step, relative to the nominal value of the input. Like bodies at creepage 0 have fields that are nothing but
     /// round-off, and a share of those is lost in the outputs that the others make; no contact changes within this step.

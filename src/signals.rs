@@ -39,7 +39,7 @@ pub struct InputSignal {
     pub maximum: f64,
     /// The range that the parameters leave; [`InputSignal::range`] reads it.
     limits: fn(&Parameters) -> (f64, f64),
-    /// Which parameters narrow the range, and how, in words for a refusal; empty where none does.
+    /// Parameters that narrow the range, and how, in words for a refusal; empty where none does.
     pub narrowed_by: &'static str,
     /// The only `slip_source` that uses it; `None` where each does.
     pub slip_source: Option<SlipSource>,
@@ -55,12 +55,12 @@ pub struct InputSignal {
     pub set: fn(&mut Inputs, f64),
 }
 
-/// How an output follows from the steps.
+/// Kind of an output: the way in which it follows from the steps.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum OutputKind {
-    /// From the fields and the inputs at the instant.
+    /// Output of the fields and the inputs at the instant.
     Instantaneous,
-    /// As [`OutputKind::Instantaneous`], but counted in nodes: constant between jumps, its derivative is 0.
+    /// Output of the instant that is counted in nodes: constant between jumps, its derivative is 0.
     Counted,
     /// A sum over the steps: it starts at 0, and at a communication point it depends on no input.
     Total,
@@ -74,7 +74,7 @@ pub struct OutputSignal {
     pub unit: &'static str,
     /// Unit in which a person would read the value.
     pub display_unit: Option<&'static str>,
-    /// How it follows from the steps.
+    /// Kind of the output.
     pub kind: OutputKind,
     /// Smallest possible value, where there is one.
     pub minimum: Option<f64>,
@@ -122,7 +122,7 @@ macro_rules! slip_source {
     };
 }
 
-/// What the columns say at the end of an input's description.
+/// Writes what the columns `by` and `only` say at the end of an input's description.
 macro_rules! used_where {
     () => {
         ""

@@ -29,7 +29,7 @@ pub struct Upwind<'a> {
 /// One column of a march.
 #[derive(Debug, Clone, Copy)]
 pub struct Column {
-    /// Its index.
+    /// Index of the column.
     pub index: usize,
     /// The column upstream of it.
     pub upstream: usize,
@@ -96,14 +96,14 @@ impl<'a> Upwind<'a> {
 /// mirror images.
 #[derive(Debug, Clone)]
 pub struct Cells {
-    /// Of the cell between a column and the next one, the place of its length in `lengths`.
+    /// Index into `lengths` for the cell between each column and the next one.
     length_of: Vec<usize>,
     /// The different lengths, `m`.
     pub lengths: Vec<f64>,
 }
 
 impl Cells {
-    /// Between columns at `x` `m`.
+    /// Cells between columns at `x` `m`.
     pub fn new(x: &[f64]) -> Cells {
         let mut lengths: Vec<f64> = Vec::new();
         let length_of = x
@@ -130,35 +130,44 @@ impl Cells {
 /// The step through one cell: factors on the value and on the sources S/Δt = aⁿ/Δt + f at its two ends.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CellStep {
-    /// Share of the value upstream that arrives.
-    pub keep: f64,
-    /// Of the source upstream, `s`.
+    /// Weight (C − ν)/(C + 1 − ν) of the value upstream, C the Courant number.
+    pub courant_weight: f64,
+    /// Weight of the source upstream, `s`.
     pub upstream: f64,
-    /// Of the column's own source, `s`.
-    pub own: f64,
+    /// Weight of the column's own source, `s`: the diagonal of the recurrence.
+    pub diagonal: f64,
+}
+
+/// Values, or sources, at the two ends of a cell.
+#[derive(Debug, Clone, Copy)]
+pub struct CellEnds {
+    /// Value at the column upstream.
+    pub upstream: f64,
+    /// Value at the column itself.
+    pub column: f64,
 }
 
 impl CellStep {
-    /// Through no cell at all.
+    /// Step through no cell at all: the value upstream arrives unchanged.
     pub const NONE: CellStep = CellStep {
-        keep: 1.0,
+        courant_weight: 1.0,
         upstream: 0.0,
-        own: 0.0,
+        diagonal: 0.0,
     };
 
-    /// In a step with 1/Δt `storage` `1/s`, through a cell of length Δ `spacing` `m` at |V| `speed` `m/s`.
+    /// Step with 1/Δt `storage` `1/s`, through a cell of length Δ `spacing` `m` at |V| `speed` `m/s`.
     pub fn new(storage: f64, spacing: f64, speed: f64) -> CellStep {
         let passages = speed / spacing;
-        let share = if CellStep::is_short(storage, passages) {
+        let nu = if CellStep::is_short(storage, passages) {
             passages / storage
         } else {
             0.5
         };
-        let inverse = 1.0 / (passages + (1.0 - share) * storage);
+        let inverse = 1.0 / (passages + (1.0 - nu) * storage);
         CellStep {
-            keep: (passages - share * storage).max(0.0) * inverse,
-            upstream: share * inverse,
-            own: (1.0 - share) * inverse,
+            courant_weight: (passages - nu * storage).max(0.0) * inverse,
+            upstream: nu * inverse,
+            diagonal: (1.0 - nu) * inverse,
         }
     }
 
@@ -167,24 +176,25 @@ impl CellStep {
         2.0 * passages < storage
     }
 
-    /// ν a_U + (1 − ν) a_O: what the cell holds per length.
+    /// Mean ν a_U + (1 − ν) a_O over the cell: what it holds per length.
     #[cfg(any(test, feature = "verification"))]
     pub fn mean(&self, upstream: f64, own: f64) -> f64 {
-        own + self.upstream / (self.upstream + self.own) * (upstream - own)
+        own + self.upstream / (self.upstream + self.diagonal) * (upstream - own)
     }
 
-    /// The source at a column, from the values (upstream, own) and the source upstream: what the step was made from.
-    pub fn own_source(&self, (upstream, own): (f64, f64), upstream_source: f64) -> f64 {
-        (own - self.keep * upstream - self.upstream * upstream_source) / self.own
+    /// Source at a column, from the values at both ends of the cell and the source upstream: the step solved backwards.
+    pub fn source(&self, values: CellEnds, upstream_source: f64) -> f64 {
+        (values.column - self.courant_weight * values.upstream - self.upstream * upstream_source) / self.diagonal
     }
 
-    /// Change of the value at a column with |V|, from the values and the sources (upstream, own).
-    pub fn speed_tangent(storage: f64, (spacing, speed): (f64, f64), values: (f64, f64), sources: (f64, f64)) -> f64 {
+    /// Change of the value at a column with |V| `speed`, from the values and the sources at both ends of the cell of length Δ
+    /// `spacing`.
+    pub fn speed_tangent(storage: f64, spacing: f64, speed: f64, values: CellEnds, sources: CellEnds) -> f64 {
         let passages = speed / spacing;
         if CellStep::is_short(storage, passages) {
-            (sources.0 - sources.1) / (spacing * storage * storage)
+            (sources.upstream - sources.column) / (spacing * storage * storage)
         } else {
-            (values.0 - values.1) / (spacing * (passages + 0.5 * storage))
+            (values.upstream - values.column) / (spacing * (passages + 0.5 * storage))
         }
     }
 }

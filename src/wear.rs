@@ -4,7 +4,7 @@
 #[allow(dead_code)]
 pub mod strips;
 
-use crate::transport::{CellStep, Cells, Upwind};
+use crate::transport::{CellEnds, CellStep, Cells, Upwind};
 
 /// The step from the wear depth `before` to that at its end, `m`, at all columns.
 pub struct WearMarch<'a> {
@@ -16,17 +16,26 @@ pub struct WearMarch<'a> {
     pub first_contact: usize,
 }
 
-/// The steps through the cells, one for each length. What they are depends on nothing that was asked before.
+/// Change of the data of a march.
+#[derive(Debug, Clone, Copy)]
+pub struct WearChange<'a> {
+    /// Change of the wear rate k |s| p at the contact nodes or cells, `m/s`.
+    pub rate: &'a [f64],
+    /// Change of |V|, `m/s`.
+    pub speed: f64,
+}
+
+/// Steps through the cells, one for each length. They depend on nothing that was asked before.
 #[derive(Debug, Clone)]
 pub struct WearSteps {
     cells: Cells,
     steps: Vec<CellStep>,
-    /// The speed and Δt that they are of.
+    /// Speed and Δt for which the steps were computed.
     conditions: (f64, f64),
 }
 
 impl WearSteps {
-    /// Between columns at `x` `m`.
+    /// Steps for the cells between columns at `x` `m`.
     pub fn new(x: &[f64]) -> WearSteps {
         let cells = Cells::new(x);
         WearSteps {
@@ -36,7 +45,7 @@ impl WearSteps {
         }
     }
 
-    /// A step marches several times at the same speed and Δt.
+    /// Computes the steps, unless the last ones were for the same speed and Δt.
     fn adapt(&mut self, speed: f64, duration: f64) {
         if self.conditions == (speed, duration) {
             return;
@@ -60,40 +69,39 @@ impl WearMarch<'_> {
         for column in self.transport.columns() {
             let step = steps.steps[steps.cells.length_of(&column)];
             let own_source = storage * before[column.index] + self.at(rate, column.index);
-            // The depth upstream enters last: columns wait for each other there, and all the rest can be computed meanwhile.
-            let fed = step.upstream * upstream_source + step.own * own_source;
-            upstream = fed + step.keep * upstream;
+            // The depth upstream is added last: only this waits for the column upstream, all the rest can be computed meanwhile.
+            let fed = step.upstream * upstream_source + step.diagonal * own_source;
+            upstream = fed + step.courant_weight * upstream;
             upstream_source = own_source;
             after[column.index] = upstream;
         }
     }
 
-    /// The change of the result `after` with that of the wear rate, `rate_change`, and of the speed |V|, `speed_change`.
+    /// Computes the change of the result `after` with `change`.
     /// `replaced` is the depth that stood in the inflow column before. The inflow column of `tangent` holds the change of what
     /// enters.
-    pub fn advance_tangent(
-        &self,
-        (rate_change, speed_change): (&[f64], f64),
-        replaced: f64,
-        after: &[f64],
-        tangent: &mut [f64],
-    ) {
+    pub fn advance_tangent(&self, change: WearChange, replaced: f64, after: &[f64], tangent: &mut [f64]) {
         let (storage, speed) = (1.0 / self.duration, self.transport.speed());
-        // The sources that the step was made from follow from its result.
+        // The sources of the step follow from its result.
         let mut upstream_source = storage * replaced;
         let mut upstream_change = 0.0;
         for column in self.transport.columns() {
             let step = CellStep::new(storage, column.spacing, speed);
-            let (upstream, own) = (after[column.upstream], after[column.index]);
-            let own_source = step.own_source((upstream, own), upstream_source);
-            let own_change = self.at(rate_change, column.index);
-            let cell = (column.spacing, speed);
-            let carried = CellStep::speed_tangent(storage, cell, (upstream, own), (upstream_source, own_source));
-            tangent[column.index] = step.keep * tangent[column.upstream]
+            let values = CellEnds {
+                upstream: after[column.upstream],
+                column: after[column.index],
+            };
+            let sources = CellEnds {
+                upstream: upstream_source,
+                column: step.source(values, upstream_source),
+            };
+            let own_change = self.at(change.rate, column.index);
+            let by_speed = CellStep::speed_tangent(storage, column.spacing, speed, values, sources);
+            tangent[column.index] = step.courant_weight * tangent[column.upstream]
                 + step.upstream * upstream_change
-                + step.own * own_change
-                + speed_change * carried;
-            (upstream_source, upstream_change) = (own_source, own_change);
+                + step.diagonal * own_change
+                + change.speed * by_speed;
+            (upstream_source, upstream_change) = (sources.column, own_change);
         }
     }
 
@@ -123,7 +131,7 @@ mod tests {
     }
 
     proptest! {
-        /// In each cell, what is held more, what leaves and what enters balance with what is worn.
+        /// Balance of each cell: its increase, what leaves and what enters add up to what is worn.
         #[test]
         fn the_volume_is_conserved(
             before in prop::collection::vec(0.0..1.0, X.len()),
@@ -182,7 +190,8 @@ mod tests {
             let inflow = march.transport.inflow();
             let mut tangent = vec![0.0; X.len()];
             tangent[inflow] = incoming_change;
-            march.advance_tangent((&rate_change, speed_change), before[inflow], &here, &mut tangent);
+            let change = WearChange { rate: &rate_change, speed: speed_change };
+            march.advance_tangent(change, before[inflow], &here, &mut tangent);
             for column in 0..X.len() {
                 let difference = (ahead[column] - behind[column]) / (2.0 * h);
                 // Truncation h², round-off 1e-16/h.
@@ -211,7 +220,8 @@ mod tests {
         }
     }
 
-    /// At V = 0 the derivative is that to positive speeds: nothing arrives yet, and the sources upstream begin to count.
+    /// One-sided derivative at V = 0, towards positive speeds: nothing arrives yet, and the sources upstream begin to
+    /// count.
     #[test]
     fn the_tangent_at_standstill_is_one_sided_and_finite() {
         let (before, rate) = ([0.3, 0.1, 0.7, 0.2, 0.4, 0.0, 0.9, 0.5, 0.6], [1.0, 0.0, 2.0, 0.5, 0.1]);
@@ -226,7 +236,11 @@ mod tests {
             let h = 1e-5 / duration;
             let (here, ahead) = (at(0.0), at(h));
             let mut tangent = vec![0.0; X.len()];
-            march(0.0, duration).advance_tangent((&[0.0; 5], 1.0), before[X.len() - 1], &here, &mut tangent);
+            let change = WearChange {
+                rate: &[0.0; 5],
+                speed: 1.0,
+            };
+            march(0.0, duration).advance_tangent(change, before[X.len() - 1], &here, &mut tangent);
             let size = tangent.iter().fold(0.0, |m: f64, d| d.abs().max(m));
             for column in 0..X.len() {
                 let difference = (ahead[column] - here[column]) / h;

@@ -46,7 +46,7 @@ impl Sums {
 }
 
 /// One entry of the stiffness between a free and a clamped displacement.
-struct Coupling {
+struct StiffnessEntry {
     /// `2 * node + direction`.
     free: usize,
     /// `2 * node + direction`.
@@ -60,7 +60,7 @@ pub struct Elasticity {
     /// The row in `factor` of each `2 * node + direction`, `None` where clamped.
     rows: Vec<Option<usize>>,
     unknowns: usize,
-    boundary: Vec<Coupling>,
+    boundary: Vec<StiffnessEntry>,
 }
 
 impl Elasticity {
@@ -104,7 +104,7 @@ impl Elasticity {
                         value *= element.measure;
                         match unknown[other] {
                             Some(column) => stiffness.add(row, column, value),
-                            None => boundary.push(Coupling {
+                            None => boundary.push(StiffnessEntry {
                                 free: place,
                                 clamped: other,
                                 stiffness: value,

@@ -9,11 +9,11 @@ pub type Fields = DMatrix<f64>;
 /// A triangle with its three hat functions.
 #[derive(Debug, Clone, Copy)]
 pub struct Element {
-    /// Its nodes, anticlockwise.
+    /// Nodes of the triangle, anticlockwise.
     pub nodes: [usize; 3],
     /// Gradients of their hat functions, `1/m`.
     pub gradients: [[f64; 2]; 3],
-    /// Its area times its weight, `m²`.
+    /// Area of the triangle times its weight, `m²`.
     pub measure: f64,
 }
 

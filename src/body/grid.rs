@@ -20,7 +20,7 @@ pub struct Grid {
 }
 
 impl Grid {
-    /// Over a window of the given half-length and half-breadth, `m`.
+    /// Grid over a window of the given half-length and half-breadth, `m`.
     pub fn new(cells: usize, strips: usize, half_length: f64, half_breadth: f64) -> Grid {
         Grid {
             cells,
@@ -69,10 +69,5 @@ impl Grid {
     /// Half the length of the window, `m`.
     pub fn half_length(&self) -> f64 {
         0.5 * self.length * self.cells as f64
-    }
-
-    /// Half the breadth of the window, `m`.
-    pub fn half_breadth(&self) -> f64 {
-        0.5 * self.breadth * self.strips as f64
     }
 }

@@ -42,16 +42,16 @@ pub struct HalfPlanes {
 /// Relative change of the surface displacement under a load that moves at V, per ρV²: first order of the series, `1/Pa`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct InertiaFactors {
-    /// Of the displacement along x₂ by a load along x₂.
+    /// Factor on the displacement along x₂ by a load along x₂.
     pub normal: f64,
-    /// Of the displacement along x₁ by a load along x₁.
+    /// Factor on the displacement along x₁ by a load along x₁.
     pub tangential: f64,
-    /// Of the displacements across.
+    /// Factor on the displacements across the load: along x₁ by a load along x₂, and the reverse.
     pub mixed: f64,
 }
 
 impl HalfPlane {
-    /// Of Lamé's constants λ and γ, `Pa`.
+    /// Half-plane of Lamé's constants λ and γ, `Pa`.
     pub fn new(lambda: f64, shear: f64) -> HalfPlane {
         HalfPlane {
             poisson_ratio: lambda / (2.0 * (lambda + shear)),
@@ -99,7 +99,7 @@ impl HalfPlane {
 }
 
 impl HalfPlanes {
-    /// Of one body.
+    /// Half-plane of one body against a rigid one.
     pub fn of_body(body: &HalfPlane) -> HalfPlanes {
         HalfPlanes {
             direct: (1.0 - body.poisson_ratio) / body.shear_modulus,
@@ -107,7 +107,7 @@ impl HalfPlanes {
         }
     }
 
-    /// Of rail and wheel. A rigid wheel adds nothing.
+    /// Half-planes of rail and wheel. A rigid wheel adds nothing.
     pub fn of_pair(parameters: &Parameters) -> HalfPlanes {
         let rail = HalfPlanes::of_body(&HalfPlane::new(parameters.lame_lambda, parameters.shear_modulus));
         let wheel = match parameters.wheel {
@@ -309,7 +309,8 @@ mod tests {
         [along(solve(1.0, 0.0)), upward(solve(0.0, 1.0)), along(solve(0.0, 1.0))]
     }
 
-    /// At rest −ln|x|/π and sign(x)/2 have the transforms 1/|k| and 1/(ik): C is (1−ν)/γ of wave number 1, M (1−2ν)/(2γ) i⁻¹.
+    /// Transforms of the static kernels −ln|x|/π and sign(x)/2 are 1/|k| and 1/(ik): C is (1−ν)/γ of wave number 1, M
+    /// (1−2ν)/(2γ) i⁻¹.
     #[test]
     fn the_inertia_factors_are_the_first_order_of_the_moving_load() {
         for (lambda, shear) in [(11.66e10, 8.2e10), (5e10, 2.6e10), (1e10, 9e10)] {

@@ -35,16 +35,16 @@ use std::f64::consts::PI;
 /// Surface displacement of a pair of half-spaces, rail against wheel, `1/Pa`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct HalfSpaces {
-    /// 1/(πG).
+    /// Factor 1/(πG) on the kernels 1/r.
     pub direct: f64,
-    /// ν/(πG).
+    /// Factor ν/(πG) on the kernels of Poisson's effect.
     pub lateral: f64,
-    /// K/(πG); 0 where normal and tangential problem are not coupled.
+    /// Factor K/(πG) of the coupling between normal and tangential displacement; 0 where normal and tangential problem are not coupled.
     pub coupling: f64,
 }
 
 impl HalfSpaces {
-    /// Of rail and wheel. A rigid wheel adds nothing.
+    /// Half-spaces of rail and wheel. A rigid wheel adds nothing.
     pub fn of_pair(parameters: &Parameters) -> HalfSpaces {
         let rail = HalfPlane::new(parameters.lame_lambda, parameters.shear_modulus);
         let wheel = match parameters.wheel {
@@ -68,7 +68,7 @@ impl HalfSpaces {
         }
     }
 
-    /// (1 − ν)/(πG): approach by pressure, and displacement along a shear from beside it.
+    /// Factor (1 − ν)/(πG): approach by pressure, and displacement along a shear from beside it.
     pub fn normal(&self) -> f64 {
         self.direct - self.lateral
     }
@@ -84,44 +84,44 @@ pub struct Rectangle {
 }
 
 impl Rectangle {
-    /// ∬ x²/r³ over the rectangle, seen from `(x, y)` relative to its centre, `m`.
-    pub fn xx(&self, x: f64, y: f64) -> f64 {
+    /// Integral ∬ x²/r³ over the rectangle, seen from `(x, y)` relative to its centre, `m`.
+    pub fn xx_over_r3(&self, x: f64, y: f64) -> f64 {
         self.difference(x, y, |x, y| y * (x / y.abs()).asinh())
     }
 
-    /// ∬ y²/r³, `m`.
-    pub fn yy(&self, x: f64, y: f64) -> f64 {
-        self.transposed().xx(y, x)
+    /// Integral ∬ y²/r³ over the rectangle, `m`.
+    pub fn yy_over_r3(&self, x: f64, y: f64) -> f64 {
+        self.transposed().xx_over_r3(y, x)
     }
 
-    /// ∬ xy/r³, `m`.
-    pub fn xy(&self, x: f64, y: f64) -> f64 {
+    /// Integral ∬ xy/r³ over the rectangle, `m`.
+    pub fn xy_over_r3(&self, x: f64, y: f64) -> f64 {
         self.difference(x, y, |x, y| -x.hypot(y))
     }
 
-    /// ∬ 1/r, `m`.
-    pub fn inverse(&self, x: f64, y: f64) -> f64 {
-        self.xx(x, y) + self.yy(x, y)
+    /// Integral ∬ 1/r over the rectangle, `m`.
+    pub fn one_over_r(&self, x: f64, y: f64) -> f64 {
+        self.xx_over_r3(x, y) + self.yy_over_r3(x, y)
     }
 
-    /// ∬ x/r², `m`.
-    pub fn away_along(&self, x: f64, y: f64) -> f64 {
+    /// Integral ∬ x/r² over the rectangle, `m`.
+    pub fn x_over_r2(&self, x: f64, y: f64) -> f64 {
         self.difference(x, y, |x, y| 0.5 * y * (x * x + y * y).ln() + x * (y / x).atan())
     }
 
-    /// ∬ y/r², `m`.
-    pub fn away_across(&self, x: f64, y: f64) -> f64 {
-        self.transposed().away_along(y, x)
+    /// Integral ∬ y/r² over the rectangle, `m`.
+    pub fn y_over_r2(&self, x: f64, y: f64) -> f64 {
+        self.transposed().x_over_r2(y, x)
     }
 
-    /// ∬ x/r³, dimensionless.
-    pub fn pull_along(&self, x: f64, y: f64) -> f64 {
+    /// Integral ∬ x/r³ over the rectangle, dimensionless.
+    pub fn x_over_r3(&self, x: f64, y: f64) -> f64 {
         self.difference(x, y, |x, y| -(y / x.abs()).asinh())
     }
 
-    /// ∬ y/r³, dimensionless.
-    pub fn pull_across(&self, x: f64, y: f64) -> f64 {
-        self.transposed().pull_along(y, x)
+    /// Integral ∬ y/r³ over the rectangle, dimensionless.
+    pub fn y_over_r3(&self, x: f64, y: f64) -> f64 {
+        self.transposed().x_over_r3(y, x)
     }
 
     fn transposed(&self) -> Rectangle {
@@ -148,14 +148,14 @@ mod tests {
     type Kernel = (fn(f64, f64) -> f64, fn(&Rectangle, f64, f64) -> f64);
 
     const KERNELS: [Kernel; 8] = [
-        (|x, y| x * x / x.hypot(y).powi(3), Rectangle::xx),
-        (|x, y| y * y / x.hypot(y).powi(3), Rectangle::yy),
-        (|x, y| x * y / x.hypot(y).powi(3), Rectangle::xy),
-        (|x, y| 1.0 / x.hypot(y), Rectangle::inverse),
-        (|x, y| x / (x * x + y * y), Rectangle::away_along),
-        (|x, y| y / (x * x + y * y), Rectangle::away_across),
-        (|x, y| x / x.hypot(y).powi(3), Rectangle::pull_along),
-        (|x, y| y / x.hypot(y).powi(3), Rectangle::pull_across),
+        (|x, y| x * x / x.hypot(y).powi(3), Rectangle::xx_over_r3),
+        (|x, y| y * y / x.hypot(y).powi(3), Rectangle::yy_over_r3),
+        (|x, y| x * y / x.hypot(y).powi(3), Rectangle::xy_over_r3),
+        (|x, y| 1.0 / x.hypot(y), Rectangle::one_over_r),
+        (|x, y| x / (x * x + y * y), Rectangle::x_over_r2),
+        (|x, y| y / (x * x + y * y), Rectangle::y_over_r2),
+        (|x, y| x / x.hypot(y).powi(3), Rectangle::x_over_r3),
+        (|x, y| y / x.hypot(y).powi(3), Rectangle::y_over_r3),
     ];
 
     proptest! {
@@ -196,8 +196,8 @@ mod tests {
             half_breadth: b,
         };
         let expected = 4.0 * (a * (b / a).asinh() + b * (a / b).asinh());
-        assert!((rectangle.inverse(0.0, 0.0) / expected - 1.0).abs() < 1e-14);
-        for odd in [Rectangle::xy, Rectangle::away_along, Rectangle::pull_across] {
+        assert!((rectangle.one_over_r(0.0, 0.0) / expected - 1.0).abs() < 1e-14);
+        for odd in [Rectangle::xy_over_r3, Rectangle::x_over_r2, Rectangle::y_over_r3] {
             assert!(odd(&rectangle, 0.0, 0.0).abs() < 1e-15);
         }
     }
@@ -217,12 +217,13 @@ mod tests {
             half_length,
             half_breadth,
         };
-        let along = |x: f64| (pair.normal() * rectangle.inverse(x, 1e-9)) + pair.lateral * rectangle.xx(x, 1e-9);
+        let along =
+            |x: f64| (pair.normal() * rectangle.one_over_r(x, 1e-9)) + pair.lateral * rectangle.xx_over_r3(x, 1e-9);
         let (x, h) = (3e-3, 1e-6);
         let strain = (along(x + h) - along(x - h)) / (2.0 * h);
         let expected = -(1.0 - body.poisson_ratio) / (PI * body.shear_modulus) * 2.0 * half_length / x;
         assert!((strain / expected - 1.0).abs() < 1e-3, "{strain:e} {expected:e}");
-        let lift = |x: f64| -pair.coupling * rectangle.away_along(x, 1e-9);
+        let lift = |x: f64| -pair.coupling * rectangle.x_over_r2(x, 1e-9);
         let step = lift(-x) - lift(x);
         let expected = (1.0 - 2.0 * body.poisson_ratio) / (2.0 * body.shear_modulus) * 2.0 * half_length;
         assert!((step / expected - 1.0).abs() < 1e-3, "{step:e} {expected:e}");

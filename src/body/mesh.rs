@@ -14,7 +14,7 @@ const OUTER_CELLS: f64 = 24.0;
 /// One P1 triangle.
 #[derive(Debug, Clone, Copy)]
 pub struct Triangle {
-    /// Its three nodes, anticlockwise.
+    /// Nodes of the triangle, anticlockwise.
     pub nodes: [usize; 3],
     /// Weight of its integrals: 1, or ½ where both diagonals of a cell are averaged.
     pub weight: f64,

@@ -157,8 +157,9 @@ mod tests {
         ]
     }
 
-    /// The same by nodal unit loads, on a mesh that is fine around the contact and away from it. Linear triangles under a nodal
-    /// force are wrong at the nodes next to it at any fineness, and further off by the square of the cells over the distance.
+    /// Compliance by nodal unit loads, on a mesh that is fine around the contact and away from it. Linear triangles
+    /// under a nodal force are wrong at the nodes next to it at any fineness, and further off by the square of the
+    /// cells over the distance.
     #[test]
     fn finite_elements_have_the_same_compliance_away_from_the_force() {
         for wheel in [Wheel::Rigid, Wheel::Elastic] {

@@ -20,7 +20,7 @@ use nalgebra::DMatrix;
 /// Cells of the remainder's mesh on each side of its window, and in depth.
 const OUTER_CELLS: usize = 24;
 const DEPTH_CELLS: usize = 20;
-/// Its first cell under the surface, and the least half-width of its window, over the height of the strip.
+/// First cell of the mesh under the surface, and the least half-width of its window, over the height of the strip.
 const FIRST_CELL: f64 = 0.02;
 const HALF_WIDTH: f64 = 0.01;
 
@@ -34,7 +34,7 @@ pub struct Remainder {
 }
 
 impl Remainder {
-    /// Of a strip of the given material, λ and γ in `Pa`.
+    /// Remainder of a strip of the given material, λ and γ in `Pa`.
     ///
     /// # Errors
     /// [`crate::error::Error::StiffnessNotPositiveDefinite`].
@@ -150,7 +150,8 @@ mod tests {
         (1.0 - material.poisson_ratio) / (PI * material.shear_modulus)
     }
 
-    /// Against twice and four times as fine a mesh, in the strip of the default and in a shallow and a long one.
+    /// Remainder against that on twice and four times as fine a mesh, in the strip of the default and in a shallow and
+    /// a long one.
     #[test]
     fn the_coarse_mesh_has_the_remainder_to_a_thousandth_of_the_displacement() {
         for (strip_half_length, strip_height) in [(2.0, 1.0), (2.0, 0.3), (10.0, 1.0)] {
@@ -181,7 +182,7 @@ mod tests {
         }
     }
 
-    /// In a strip s times as large the displacement at s times the distance is the same: the remainder grows by ln s.
+    /// Growth by ln s: in a strip s times as large the displacement at s times the distance is the same but for it.
     #[test]
     fn the_remainder_grows_with_the_logarithm_of_the_strip() {
         let small = Parameters::default();

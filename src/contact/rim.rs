@@ -96,7 +96,7 @@ impl ContactHeat {
         let weights = Weights::new(parameters, unit_force);
         let mut heat = ContactHeat::default();
         for (node, change) in nodes {
-            let power = coulomb::vector_power_tangent((node.shear, node.slip), (change.shear, change.slip));
+            let power = coulomb::vector_power_tangent(node.shear, node.slip, change.shear, change.slip);
             heat.friction += weights.friction * power;
             heat.conducted += weights.conduction * (change.pressure * node.rise + node.pressure * change.rise);
             heat.conductance += weights.conduction * change.pressure;

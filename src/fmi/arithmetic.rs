@@ -28,10 +28,10 @@ mod hardware {
 
     /// All exceptions masked, rounding to nearest, no flag set.
     static DEFAULT_MXCSR: u32 = 0x1f80;
-    /// The same of the x87, with 64 bits of significand.
+    /// Default control word of the x87, with 64 bits of significand.
     static DEFAULT_X87: u16 = 0x037f;
 
-    /// What the host had.
+    /// Floating-point environment that the host had.
     pub struct Control {
         mxcsr: u32,
         /// Only where the host's control word is not the default one: it takes as long as a small call.
@@ -79,7 +79,7 @@ mod hardware {
 mod hardware {
     use std::arch::asm;
 
-    /// What the host had.
+    /// Floating-point environment that the host had.
     pub struct Control {
         control: u64,
         status: u64,
@@ -110,7 +110,7 @@ mod hardware {
     }
 }
 
-/// Of other processors the environment is taken as it is.
+/// Control of other processors, whose environment is taken as it is.
 #[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64")))]
 mod hardware {
     pub struct Control;

@@ -22,9 +22,9 @@ pub trait Function: Copy {
     fn allowed_modes(self) -> String;
 }
 
-/// Why a call of a standard did not do all it was asked for.
+/// Refusal of a call that did not do all it was asked for, with its reason.
 pub trait Refusal: Display + From<failures::Failure> {
-    /// Who is to blame.
+    /// Party to blame.
     fn blame(&self) -> Blame;
 }
 
@@ -38,11 +38,11 @@ pub trait Logger: Clone {
 pub trait Instance: Sized {
     /// The functions on an instance.
     type Function: Function;
-    /// Why a call failed.
+    /// Reason why a call failed.
     type Failure: Refusal;
     /// The importer's logger.
     type Logger: Logger;
-    /// What a call returns.
+    /// Status that a call returns.
     type Status;
 
     /// The instance as every version has it.

@@ -14,7 +14,7 @@ use crate::settings::Settings;
 use crate::signals::Inputs;
 use crate::wheel_rail::{ContactNode, Model, Profiles, State, Workspace};
 
-/// What follows from the parameters, and the scratch that goes with it.
+/// Model that follows from the parameters, and the scratch that goes with it.
 pub(super) struct Built {
     pub(super) model: Model,
     pub(super) workspace: Workspace,
@@ -29,7 +29,7 @@ impl Built {
     }
 }
 
-/// What is only looked at: computed from a state when it is asked for.
+/// Fields and meshes that are only looked at: computed from a state when they are asked for.
 #[derive(Default)]
 pub(super) struct Plots {
     profiles: Option<Profiles>,
@@ -92,7 +92,7 @@ impl Component {
         self.time
     }
 
-    /// What a failed call does to the instance, depending on who is to blame.
+    /// Changes the instance as a failed call does, depending on who is to blame.
     pub fn fail(&mut self, blame: Blame) {
         match blame {
             // The step itself has set its state.
@@ -248,7 +248,7 @@ impl Component {
         self.plots.nodes.as_deref().ok_or(Failure::NothingComputed)
     }
 
-    /// After a change of what the solution of the initialisation follows from.
+    /// Forgets the solution of the initialisation after a change of what it follows from.
     pub(super) fn forget_solution(&mut self) {
         self.state = None;
         self.plots = Plots::default();

@@ -129,17 +129,17 @@ impl Component {
     }
 }
 
-/// Which derivatives a call asks for: those of the unknowns with respect to the knowns.
+/// Derivatives that a call asks for: those of the unknowns with respect to the knowns.
 pub struct Jacobian<'a> {
     /// Value references of outputs.
     pub unknowns: &'a [ValueReference],
     /// Value references of inputs.
     pub knowns: &'a [ValueReference],
-    /// How a version of FMI names them.
+    /// Names of outputs and inputs in a version of FMI.
     pub rows: Rows,
 }
 
-/// How a version of FMI names outputs and inputs.
+/// Numbering of outputs and inputs in a version of FMI.
 pub struct Rows {
     /// The row of [`OUTPUTS`].
     pub output: fn(ValueReference) -> Result<usize, Failure>,

@@ -3,7 +3,7 @@
 use super::serialized::Corruption;
 use crate::error::Error;
 
-/// Who is to blame for a call that did not do all it was asked for, and with it what has become of the instance.
+/// Party to blame for a call that did not do all it was asked for, and with it the state of the instance afterwards.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Blame {
     /// An argument without effect; everything else was done.
@@ -15,7 +15,7 @@ pub enum Blame {
     /// A call that cannot be, parameters that make no model, or a solver that gave up at once: nothing was changed, but
     /// the importer must decide how to go on.
     Call,
-    /// This library.
+    /// Blame of this library.
     Library,
 }
 
@@ -40,8 +40,8 @@ impl Blame {
     }
 }
 
-/// Why a call failed, in words that hold for every version of FMI. The message names the variable or argument, its value
-/// and what is allowed; the name of the function is put before it where it is logged.
+/// Reason why a call failed, in words that hold for every version of FMI. The message names the variable or argument,
+/// its value and what is allowed; the name of the function is put before it where it is logged.
 #[derive(Debug, thiserror::Error)]
 pub enum Failure {
     /// A call that the standard's table of states does not allow.
@@ -73,7 +73,7 @@ pub enum Failure {
     /// A defect of this library.
     #[error("internal error: {message}; only a saved state, a reset or a new instance leads on")]
     Panic {
-        /// What the panic said.
+        /// Message of the panic.
         message: String,
     },
     /// A value that cannot be; nothing was set.
@@ -88,7 +88,7 @@ pub enum Failure {
         reached: f64,
         /// Part of the step that was committed, `s`.
         committed: f64,
-        /// Why it stopped.
+        /// Reason why the step stopped.
         error: Error,
     },
     /// A step that could not be begun, with the last committed state standing.
@@ -96,7 +96,7 @@ pub enum Failure {
     Step {
         /// Time of the last communication point, `s`.
         time: f64,
-        /// Why it failed.
+        /// Reason why the computation failed.
         error: Error,
     },
     /// The model refuses the combination of parameters and inputs, or cannot solve for it.
@@ -127,7 +127,7 @@ pub enum Failure {
     UnknownReference {
         /// The value reference.
         reference: u32,
-        /// What it should be.
+        /// Value that the argument should have.
         expected: &'static str,
     },
     /// A variable that cannot be set now.
@@ -135,11 +135,11 @@ pub enum Failure {
     NotSettable {
         /// The variable.
         name: String,
-        /// Its value reference.
+        /// Value reference of the variable.
         reference: u32,
-        /// At what time in the life of the instance.
+        /// Time in the life of the instance.
         when: &'static str,
-        /// What can be set.
+        /// Variables that can be set at that time.
         settable: &'static str,
     },
     /// A start time that is not finite.
@@ -167,7 +167,7 @@ pub enum Failure {
     CommunicationPoint {
         /// The refused value.
         value: f64,
-        /// Where the last step ended, `s`.
+        /// Time at which the last step ended, `s`.
         expected: f64,
     },
     /// A step beyond the stop time of the experiment.
@@ -186,7 +186,7 @@ pub enum Failure {
         /// The category.
         name: String,
     },
-    /// There are no outputs: the error came before the initialisation.
+    /// No outputs exist: the error came before the initialisation.
     #[error("nothing has been computed: the error came before the end of the initialisation")]
     NothingComputed,
     /// A state that this instance has not saved, or has freed.
@@ -209,7 +209,7 @@ pub enum Failure {
 }
 
 impl Failure {
-    /// Who is to blame.
+    /// Returns the party to blame.
     pub fn blame(&self) -> Blame {
         match self {
             Failure::Value(_) => Blame::Value,

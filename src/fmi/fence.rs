@@ -32,7 +32,7 @@ pub fn quiet_panics() {
 /// A panic that was caught: a defect of this library.
 #[derive(Debug)]
 pub struct Panic {
-    /// What it said.
+    /// Message of the panic.
     pub message: String,
 }
 

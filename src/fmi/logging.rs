@@ -6,13 +6,13 @@ use std::ffi::{CStr, CString};
 /// The declared log categories.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Category {
-    /// Why a call failed.
+    /// Reasons why a call failed.
     StatusError,
-    /// Why a call did less than it was asked for, with the instance going on.
+    /// Reasons why a call did less than it was asked for, with the instance going on.
     StatusWarning,
     /// Iterations and residuals.
     Solver,
-    /// What happens in the life of an instance.
+    /// Events in the life of an instance.
     Events,
 }
 
@@ -64,7 +64,7 @@ impl Category {
 /// A message to the importer.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Message {
-    /// Who is to blame; `None` where nothing is wrong.
+    /// Party to blame; `None` where nothing is wrong.
     pub blame: Option<Blame>,
     /// The category.
     pub category: Category,
@@ -78,12 +78,12 @@ pub fn escaped(text: &str) -> CString {
     CString::new(text.trim_end()).unwrap_or_default()
 }
 
-/// Which categories a standard wants on.
+/// Log categories that a standard wants on.
 #[derive(Debug, Clone, Copy)]
 pub struct Rules {
-    /// At first, where the importer has not asked for all.
+    /// Categories on at first, where the importer has not asked for all.
     pub at_first: &'static [Category],
-    /// Whatever the importer has switched off.
+    /// Categories always on, even where the importer has switched them off.
     pub always: &'static [Category],
     /// Whether those that are switched on come on top of those that are on already.
     pub adds: bool,

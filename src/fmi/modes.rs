@@ -9,16 +9,16 @@ use serde::{Deserialize, Serialize};
 pub enum Mode {
     /// New, or reset.
     Instantiated,
-    /// Between the calls that enter and exit the initialisation mode.
+    /// Initialisation mode, between the calls that enter and exit it.
     Initialization,
-    /// At a communication point.
+    /// Communication point.
     StepComplete,
-    /// After a step that came only part of its way.
+    /// State after a step that came only part of its way.
     StepFailed,
-    /// After the simulation was terminated.
+    /// State after the simulation was terminated.
     Terminated,
-    /// After a call that failed.
+    /// State after a call that failed.
     Error,
-    /// Between the calls that enter and exit the configuration mode of FMI 3.0.
+    /// Configuration mode of FMI 3.0, between the calls that enter and exit it.
     Configuration,
 }

@@ -5,7 +5,7 @@ use super::snapshot::Snapshot;
 use std::collections::BTreeMap;
 use std::ffi::c_void;
 
-/// What the importer holds of a saved state: an address that is never followed.
+/// Address that the importer holds of a saved state; it is never followed.
 pub type Handle = *mut c_void;
 
 /// The saved states by the address of their memory. A pointer that is not in here is refused, whatever it points to.

@@ -15,7 +15,8 @@ pub const DESCRIPTION: &str =
 pub const AUTHOR: &str = "the wheelrail authors";
 pub const COPYRIGHT: &str = "Copyright (c) the wheelrail authors";
 pub const GENERATION_TOOL: &str = concat!("wheelrail ", env!("CARGO_PKG_VERSION"));
-/// That of the version in Cargo.toml, and changed with it: the same sources give the same bytes on any day.
+/// Date and time of generation: that of the version in Cargo.toml, and changed with it, so that the same sources give
+/// the same bytes on any day.
 pub const GENERATION_DATE_AND_TIME: &str = "2026-11-22T00:00:00Z";
 
 #[derive(Serialize)]

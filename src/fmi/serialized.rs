@@ -20,7 +20,7 @@ const VERSION: u32 = 7;
 const HEADER: usize = 8 + 4 + 8 + 8;
 const CHECKSUM: usize = 4;
 
-/// Why bytes are not a serialised state.
+/// Reason why bytes are not a serialised state.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum Corruption {
     /// Fewer bytes than the shortest state has, or not as many as it says.

@@ -27,7 +27,7 @@ pub struct Snapshot {
     pub parameters: Parameters,
     /// The inputs at the communication point.
     pub inputs: Inputs,
-    /// Their rates of change in the next step, per second.
+    /// Rates of change of the inputs in the next step, per second.
     pub rates: Inputs,
     /// The communication point, `s`.
     pub time: f64,

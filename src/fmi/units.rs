@@ -54,7 +54,8 @@ impl Unit {
         UNITS.iter().find(|unit| unit.name == name)
     }
 
-    /// How a value is converted that a person gives in a unit spelled like this: the unit itself, or one of its display units.
+    /// Returns the conversion of a value that a person gives in a unit spelled like this: the unit itself, or one of
+    /// its display units.
     pub fn spelled(&self, text: &str) -> Option<DisplayUnit> {
         let name = canonical(text);
         let itself = DisplayUnit {

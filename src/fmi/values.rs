@@ -41,7 +41,7 @@ impl Component {
         Ok((FIELDS[row].value)(node.unwrap_or(&NOWHERE), ambient))
     }
 
-    /// How long arrays are.
+    /// Returns the lengths of the arrays.
     pub fn lengths(&self) -> Lengths {
         Lengths::of(&self.parameters)
     }

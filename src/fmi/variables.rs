@@ -1,9 +1,13 @@
 //! The one table of variables: inputs, outputs, parameters and locals, in the order of a model description. An array is one
 //! variable; FMI 2.0, which has no arrays, lists its elements ([`crate::fmi2::variables`]).
 
+mod list;
+
 use crate::parameters::{INTEGER_PARAMETERS, IntegerKind, Parameters, REAL_PARAMETERS};
 use crate::signals::{INPUTS, OUTPUTS};
 use crate::wheel_rail::{ContactNode, DEPTH_POINTS, PROFILE_POINTS, Profiles, STRIP_POINTS};
+
+pub use list::{fields, time, variables};
 
 /// Number of a variable, or of an element of an array, in the calls of an importer. Each version of FMI gives its own.
 pub type ValueReference = u32;
@@ -99,7 +103,7 @@ pub const FIELDS: [FieldColumn; 9] = [
         description: "Depth of wear of the rail surface in the cells of the patch", value: |node, _| node.wear_depth },
 ];
 
-/// How long arrays are. Those of a patch's fields follow from parameters.
+/// Lengths of arrays. Those of a patch's fields follow from parameters.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Lengths {
     strips: usize,
@@ -107,7 +111,7 @@ pub struct Lengths {
 }
 
 impl Lengths {
-    /// As the parameters say.
+    /// Lengths that follow from the parameters.
     pub fn of(parameters: &Parameters) -> Lengths {
         Lengths {
             strips: parameters.patch_strips,
@@ -137,7 +141,7 @@ impl Lengths {
     }
 }
 
-/// Who sets a variable.
+/// Causality of a variable: who sets it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Causality {
     /// Set before the simulation, or during it where tunable.
@@ -153,7 +157,7 @@ pub enum Causality {
 }
 
 impl Causality {
-    /// As the standards name it.
+    /// Name of the causality in the standards.
     pub fn name(self) -> &'static str {
         match self {
             Causality::Parameter => "parameter",
@@ -165,21 +169,21 @@ impl Causality {
     }
 }
 
-/// When a variable changes.
+/// Variability of a variable: when it changes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Variability {
     /// Never after the initialisation.
     Fixed,
-    /// At communication points, by the importer.
+    /// Variable that the importer changes at communication points.
     Tunable,
-    /// At communication points.
+    /// Variable that changes at communication points.
     Discrete,
-    /// At all times.
+    /// Variable that changes at any time.
     Continuous,
 }
 
 impl Variability {
-    /// As the standards name it.
+    /// Name of the variability in the standards.
     pub fn name(self) -> &'static str {
         match self {
             Variability::Fixed => "fixed",
@@ -190,23 +194,23 @@ impl Variability {
     }
 }
 
-/// How many elements a variable has.
+/// Shape of a variable: its number of elements.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Shape {
     /// One; it is no array.
     Number,
-    /// As many as are given.
+    /// Array of a given number of elements.
     Array(usize),
-    /// Those of a row of [`FIELDS`]: over strips, cells along a strip, or both, as many of them as parameters say.
+    /// Array of a row of [`FIELDS`]: over strips, cells along a strip, or both, as many of them as parameters say.
     Field([bool; 2]),
 }
 
-/// What belongs to a real number, or to an array of them.
+/// Properties of a real number, or of an array of them.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RealKind {
-    /// Which one.
+    /// Variable of the model that it stands for.
     pub variable: RealVariable,
-    /// How many elements it has.
+    /// Shape: the number of elements.
     pub shape: Shape,
     /// Unit.
     pub unit: &'static str,
@@ -237,9 +241,9 @@ pub enum Kind {
     Real(RealKind),
     /// An integer.
     Integer {
-        /// Which one.
+        /// Variable of the model that it stands for.
         variable: IntegerVariable,
-        /// What it counts or chooses.
+        /// Kind of the integer: a count or a choice.
         kind: IntegerKind,
         /// Smallest value.
         minimum: Option<i32>,
@@ -257,15 +261,15 @@ pub struct Variable {
     pub name: &'static str,
     /// One sentence.
     pub description: &'static str,
-    /// Who sets it.
+    /// Causality: who sets it.
     pub causality: Causality,
-    /// When it changes.
+    /// Variability: when it changes.
     pub variability: Variability,
     /// Type, unit and range.
     pub kind: Kind,
 }
 
-/// What a real variable stands for; rows are those of the tables of the model.
+/// Quantity that a real variable stands for; rows are those of the tables of the model.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum RealVariable {
     /// Row of [`INPUTS`].
@@ -284,7 +288,7 @@ pub enum RealVariable {
     Time,
 }
 
-/// What an integer variable stands for.
+/// Quantity that an integer variable stands for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum IntegerVariable {
     /// Row of [`INTEGER_PARAMETERS`].
@@ -296,7 +300,7 @@ pub enum IntegerVariable {
 /// A real variable, or an element of an array, as a call names it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Real {
-    /// Its value reference, for messages.
+    /// Value reference of the variable, for messages.
     pub reference: ValueReference,
     /// The variable.
     pub variable: RealVariable,
@@ -307,14 +311,14 @@ pub struct Real {
 /// An integer variable, as a call names it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Integer {
-    /// Its value reference, for messages.
+    /// Value reference of the variable, for messages.
     pub reference: ValueReference,
     /// The variable.
     pub variable: IntegerVariable,
 }
 
 impl Real {
-    /// Its name, with the index of an element counted from 1.
+    /// Name of the variable, with the index of an element counted from 1.
     pub fn name(&self) -> String {
         match self.variable {
             RealVariable::Input(row) => INPUTS[row].name.to_owned(),
@@ -329,7 +333,7 @@ impl Real {
 }
 
 impl Integer {
-    /// Its name.
+    /// Name of the variable.
     pub fn name(&self) -> &'static str {
         match self.variable {
             IntegerVariable::Parameter(row) => INTEGER_PARAMETERS[row].name,
@@ -341,174 +345,3 @@ impl Integer {
 const RESIDUAL: &str = "solver.residual";
 const ITERATIONS: &str = "solver.iterations";
 const TIME: &str = "time";
-
-/// The table.
-pub fn variables() -> Vec<Variable> {
-    let inputs = INPUTS.iter().enumerate().map(|(row, signal)| Variable {
-        name: signal.name,
-        description: signal.description,
-        causality: Causality::Input,
-        variability: Variability::Continuous,
-        kind: Kind::Real(RealKind {
-            variable: RealVariable::Input(row),
-            shape: Shape::Number,
-            unit: signal.unit,
-            display_unit: signal.display_unit,
-            minimum: Some(signal.minimum),
-            maximum: Some(signal.maximum),
-            nominal: Some(signal.nominal),
-            start: std::slice::from_ref(&signal.default),
-        }),
-    });
-    let outputs = OUTPUTS.iter().enumerate().map(|(row, signal)| Variable {
-        name: signal.name,
-        description: signal.description,
-        causality: Causality::Output,
-        variability: Variability::Continuous,
-        kind: Kind::Real(RealKind {
-            variable: RealVariable::Output(row),
-            shape: Shape::Number,
-            unit: signal.unit,
-            display_unit: signal.display_unit,
-            minimum: signal.minimum,
-            maximum: signal.maximum,
-            nominal: Some(signal.nominal),
-            start: &[],
-        }),
-    });
-    let integer_parameters = INTEGER_PARAMETERS.iter().enumerate().map(|(row, entry)| Variable {
-        name: entry.name,
-        description: entry.description,
-        causality: Causality::Parameter,
-        variability: Variability::Fixed,
-        kind: Kind::Integer {
-            variable: IntegerVariable::Parameter(row),
-            kind: entry.kind,
-            minimum: Some(entry.minimum),
-            maximum: Some(entry.maximum),
-            start: Some(entry.start),
-        },
-    });
-    let real_parameters = REAL_PARAMETERS.iter().enumerate().map(|(row, entry)| Variable {
-        name: entry.name,
-        description: entry.description,
-        causality: Causality::Parameter,
-        variability: if entry.tunable {
-            Variability::Tunable
-        } else {
-            Variability::Fixed
-        },
-        kind: Kind::Real(RealKind {
-            variable: RealVariable::Parameter(row),
-            shape: if entry.is_array {
-                Shape::Array(entry.elements.len())
-            } else {
-                Shape::Number
-            },
-            unit: entry.unit,
-            display_unit: entry.display_unit,
-            minimum: Some(entry.minimum),
-            maximum: Some(entry.maximum),
-            nominal: None,
-            start: entry.start,
-        }),
-    });
-    let profiles = PROFILES.iter().enumerate().map(|(row, column)| Variable {
-        name: column.name,
-        description: column.description,
-        causality: Causality::Local,
-        variability: Variability::Continuous,
-        kind: Kind::Real(RealKind {
-            variable: RealVariable::Profile(row),
-            shape: Shape::Array(column.points),
-            unit: column.unit,
-            display_unit: column.display_unit,
-            minimum: None,
-            maximum: None,
-            nominal: Some(column.nominal),
-            start: &[],
-        }),
-    });
-    inputs
-        .chain(outputs)
-        .chain(integer_parameters)
-        .chain(real_parameters)
-        .chain(profiles)
-        .chain(solver())
-        .collect()
-}
-
-/// The fields of a patch, for versions of FMI that have arrays with lengths of their own.
-pub fn fields() -> impl Iterator<Item = Variable> {
-    FIELDS.iter().enumerate().map(|(row, column)| Variable {
-        name: column.name,
-        description: column.description,
-        causality: Causality::Local,
-        variability: Variability::Continuous,
-        kind: Kind::Real(RealKind {
-            variable: RealVariable::Field(row),
-            shape: Shape::Field(column.over),
-            unit: column.unit,
-            display_unit: column.display_unit,
-            minimum: None,
-            maximum: None,
-            nominal: Some(column.nominal),
-            start: &[],
-        }),
-    })
-}
-
-/// Time, for versions of FMI that have a variable for it.
-pub fn time() -> Variable {
-    Variable {
-        name: TIME,
-        description: "Time",
-        causality: Causality::Independent,
-        variability: Variability::Continuous,
-        kind: Kind::Real(RealKind {
-            variable: RealVariable::Time,
-            shape: Shape::Number,
-            unit: "s",
-            display_unit: None,
-            minimum: None,
-            maximum: None,
-            nominal: None,
-            start: &[],
-        }),
-    }
-}
-
-/// How the last step converged.
-fn solver() -> [Variable; 2] {
-    [
-        Variable {
-            name: RESIDUAL,
-            description: "Last relative change of the operator split in the last step",
-            causality: Causality::Local,
-            variability: Variability::Continuous,
-            kind: Kind::Real(RealKind {
-                variable: RealVariable::Residual,
-                shape: Shape::Number,
-                unit: "1",
-                display_unit: None,
-                minimum: Some(0.0),
-                maximum: None,
-                nominal: Some(1e-9),
-                start: &[],
-            }),
-        },
-        Variable {
-            name: ITERATIONS,
-            description: "Iterations of the operator split in the last step",
-            causality: Causality::Local,
-            variability: Variability::Discrete,
-            kind: Kind::Integer {
-                variable: IntegerVariable::Iterations,
-                kind: IntegerKind::Count,
-                minimum: Some(0),
-                maximum: None,
-                start: None,
-            },
-        },
-    ]
-}

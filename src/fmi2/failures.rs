@@ -3,10 +3,10 @@
 use crate::fmi::call::Refusal;
 use crate::fmi::failures::{self, Blame};
 
-/// Why a call did not return fmi2OK.
+/// Reason why a call did not return fmi2OK.
 #[derive(Debug, thiserror::Error)]
 pub enum Failure {
-    /// What can go wrong in every version of FMI.
+    /// Failure that can occur in every version of FMI.
     #[error(transparent)]
     Shared(#[from] failures::Failure),
     /// fmi2EnterInitializationMode before fmi2SetupExperiment.

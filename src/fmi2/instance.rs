@@ -11,7 +11,7 @@ use crate::fmi::failures::Blame;
 use crate::fmi::logging::{Category, Journal, Rules};
 use std::ffi::CStr;
 
-/// At first the reasons of failed calls are told. A list of categories is the whole list.
+/// Rules of logging: at first the reasons of failed calls are told, and a list of categories is the whole list.
 const LOGGING: Rules = Rules {
     at_first: &[Category::StatusError, Category::StatusWarning],
     always: &[],
@@ -41,7 +41,7 @@ pub struct Instantiation<'a> {
     pub logging_on: bool,
 }
 
-/// Why there is no instance.
+/// Reason why there is no instance.
 #[derive(Debug, thiserror::Error)]
 enum Refusal {
     #[error("instanceName is null or blank")]

@@ -27,7 +27,7 @@ fn profile_row(block: u32) -> usize {
     if block < SOLVER_BLOCK { row } else { row - 1 }
 }
 
-/// Of variables that this version does not have.
+/// Value reference of variables that this version does not have.
 const UNLISTED: ValueReference = ValueReference::MAX;
 const RESIDUAL: ValueReference = SOLVER_BLOCK * BLOCK;
 const ITERATIONS: ValueReference = SOLVER_BLOCK * BLOCK + 1;
@@ -81,7 +81,7 @@ pub fn of_integer(variable: IntegerVariable) -> ValueReference {
     }
 }
 
-/// What a value reference of type Real stands for.
+/// Returns the variable that a value reference of type Real stands for.
 ///
 /// # Errors
 /// [`Failure::UnknownReference`].
@@ -112,7 +112,7 @@ pub fn real(reference: ValueReference) -> Result<Real, Failure> {
     })
 }
 
-/// What a value reference of type Integer stands for.
+/// Returns the variable that a value reference of type Integer stands for.
 ///
 /// # Errors
 /// [`Failure::UnknownReference`].

@@ -25,7 +25,7 @@ fn column(mode: Mode) -> usize {
     }
 }
 
-/// Where a function is never allowed.
+/// State in which a function is named that is never allowed.
 const NEVER: &str = "stepInProgress, which is never reached: steps are not asynchronous";
 
 // The functions that work on an instance and are bound to states. fmi2FreeInstance is allowed in all of them.

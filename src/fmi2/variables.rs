@@ -45,9 +45,9 @@ pub struct Variable {
     pub reference: shared::ValueReference,
     /// One sentence.
     pub description: String,
-    /// Who sets it.
+    /// Causality: who sets it.
     pub causality: Causality,
-    /// When it changes.
+    /// Variability: when it changes.
     pub variability: Variability,
     /// Whether it is a sum over the steps, which at a communication point depends on no input.
     pub is_total: bool,

@@ -4,10 +4,10 @@ use crate::error::Error;
 use crate::fmi::call::Refusal;
 use crate::fmi::failures::{self, Blame};
 
-/// Why a call did not return fmi3OK.
+/// Reason why a call did not return fmi3OK.
 #[derive(Debug, thiserror::Error)]
 pub enum Failure {
-    /// What can go wrong in every version of FMI.
+    /// Failure that can occur in every version of FMI.
     #[error(transparent)]
     Shared(#[from] failures::Failure),
     /// A step that came only part of its way, under an importer that lets the unit return early.
@@ -15,7 +15,7 @@ pub enum Failure {
     ReturnedEarly {
         /// Time reached, `s`.
         reached: f64,
-        /// Why the rest was not begun.
+        /// Reason why the rest of the step was not begun.
         error: Error,
     },
     /// Room for another number of values than the variables have elements.
@@ -31,7 +31,7 @@ pub enum Failure {
     Derivatives {
         /// The argument.
         argument: &'static str,
-        /// Its value.
+        /// Number that was given.
         given: usize,
         /// Variables.
         needed: usize,

@@ -11,8 +11,8 @@ use crate::fmi::failures::{self, Blame};
 use crate::fmi::logging::{Category, Journal, Rules};
 use std::ffi::CStr;
 
-/// Without logging the reasons of errors are told, and nothing else is. Each list of categories switches its own (section
-/// 2.2.3 of the standard).
+/// Rules of logging: without logging the reasons of errors are told, and nothing else is. Each list of categories
+/// switches its own (section 2.2.3 of the standard).
 const LOGGING: Rules = Rules {
     at_first: &[],
     always: &[Category::StatusError],
@@ -41,18 +41,18 @@ pub struct Instantiation<'a> {
     pub early_return_allowed: bool,
     /// The number of variables that the importer wants to set or read between communication points.
     pub intermediate_variables: usize,
-    /// Where messages go.
+    /// Destination of messages.
     pub messages: Messages,
 }
 
-/// Where messages go.
+/// Destination of messages.
 pub struct Messages {
     logger: Logger,
     journal: Journal,
 }
 
 impl Messages {
-    /// To the importer's logger, if there is one; all log categories are on, or only that of errors.
+    /// Messages to the importer's logger, if there is one; all log categories are on, or only that of errors.
     pub fn new(environment: InstanceEnvironment, callback: Option<LogMessageCallback>, all: bool) -> Messages {
         Messages {
             journal: Journal::new(callback.is_some(), all, LOGGING),
@@ -67,7 +67,7 @@ impl Messages {
     }
 }
 
-/// Why there is no instance.
+/// Reason why there is no instance.
 #[derive(Debug, thiserror::Error)]
 pub enum Refusal {
     /// Model exchange, or scheduled execution.
@@ -111,8 +111,8 @@ impl call::Instance for Instance {
     }
 }
 
-/// What fmi3DoStep answers beside its status.
-pub struct Step {
+/// Results of fmi3DoStep beside its status.
+pub struct StepResult {
     /// Whether the step ended before its end.
     pub early_return: types::Boolean,
     /// The communication point that was reached, `s`.
@@ -137,10 +137,10 @@ impl Instance {
     }
 
     /// fmi3DoStep: where the step ended, and why it did not end where it should.
-    pub fn do_step(&mut self, current: f64, size: f64) -> (Step, Result<(), Failure>) {
+    pub fn do_step(&mut self, current: f64, size: f64) -> (StepResult, Result<(), Failure>) {
         let result = self.component.do_step(current, size);
         let early = matches!(result, Err(failures::Failure::Interrupted { .. })) && self.early_return_allowed;
-        let answer = Step {
+        let answer = StepResult {
             early_return: types::Boolean::from(early),
             last_successful_time: self.component.time(),
         };

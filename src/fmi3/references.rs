@@ -35,7 +35,7 @@ pub enum Type {
 }
 
 impl Type {
-    /// That of an integer of the model.
+    /// Type of an integer of the model.
     pub fn of(kind: IntegerKind) -> Type {
         match kind {
             IntegerKind::Count => Type::Int32,
@@ -45,7 +45,7 @@ impl Type {
         }
     }
 
-    /// For messages.
+    /// Name of the type in messages.
     fn words(self) -> &'static str {
         match self {
             Type::Float64 => "a Float64 variable",
@@ -90,7 +90,7 @@ pub fn of_integer(variable: IntegerVariable) -> ValueReference {
     }
 }
 
-/// What a value reference of type Float64 stands for.
+/// Returns the variable that a value reference of type Float64 stands for.
 ///
 /// # Errors
 /// [`Failure::UnknownReference`].
@@ -109,7 +109,8 @@ pub fn real(reference: ValueReference) -> Result<RealVariable, Failure> {
     found.ok_or(unknown(reference, Type::Float64.words()))
 }
 
-/// What a value reference of an integer of the model stands for, where the variable has the given type.
+/// Returns the variable that a value reference of an integer of the model stands for, where the variable has the given
+/// type.
 ///
 /// # Errors
 /// [`Failure::UnknownReference`].

@@ -24,7 +24,7 @@ fn column(mode: Mode) -> usize {
     }
 }
 
-/// Where a function is never allowed.
+/// State in which a function is named that is never allowed.
 const NEVER: &str =
     "no state: this is a unit for co-simulation without event mode, clocks and other types of variables";
 

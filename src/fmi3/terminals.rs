@@ -7,7 +7,7 @@ use crate::fmi::schema::document;
 use quick_xml::se::SeError;
 
 /// Name, rule by which the members of two terminals are matched, description, members: variable and name in the terminal.
-type Row = (
+type TerminalRow = (
     &'static str,
     &'static str,
     &'static str,
@@ -15,7 +15,7 @@ type Row = (
 );
 
 /// The rail before one wheel matches the rail behind another one: their members have the same names.
-const TERMINALS: [Row; 4] = [
+const TERMINALS: [TerminalRow; 4] = [
     (
         "wheel",
         "plug",

@@ -11,7 +11,7 @@ use crate::fmi::variables::{Integer, IntegerVariable, Lengths, Real};
 use crate::parameters::INTEGER_PARAMETERS;
 use std::mem::MaybeUninit;
 
-/// How the importer sees integers of the model, which are 32 bits wide.
+/// Type in which the importer sees integers of the model, which are 32 bits wide.
 pub trait Scalar: Copy {
     /// The type of the variables.
     const TYPE: Type;
@@ -64,7 +64,7 @@ fn elements(
     })
 }
 
-/// That the variables are of this type and have as many elements as there are values.
+/// Checks that the variables are of this type and have as many elements as there are values.
 fn check_elements(references: &[ValueReference], lengths: Lengths, given: usize) -> Result<(), Failure> {
     let mut needed = 0_usize;
     for reference in references {
@@ -73,7 +73,7 @@ fn check_elements(references: &[ValueReference], lengths: Lengths, given: usize)
     check_number(given, needed)
 }
 
-/// That there is room for as many values as there are elements.
+/// Checks that there is room for as many values as there are elements.
 pub fn check_number(given: usize, needed: usize) -> Result<(), Failure> {
     if given == needed {
         Ok(())

@@ -27,7 +27,7 @@ pub fn saturation_slope(slip: f64, regularisation: f64) -> f64 {
     FRAC_2_PI * regularisation / (regularisation * regularisation + slip * slip)
 }
 
-/// By the regularised law a node sticks below this value of |φ|: |s| < 6.3 ε. By Coulomb's it sticks below 1.
+/// Limit of |φ| below which a node sticks by the regularised law: |s| < 6.3 ε. By Coulomb's own law the limit is 1.
 pub const STICK_SATURATION: f64 = 0.9;
 
 /// Whether a node that takes this share of Coulomb's bound counts as sticking.
@@ -41,16 +41,14 @@ pub fn power(shear: f64, slip: f64) -> f64 {
     (-shear * slip).max(0.0)
 }
 
-/// The same of vectors, −τ·s along the rail and across it; with none across, [`power`] to the bit.
+/// Friction power of vectors, −τ·s along the rail and across it where it is positive; with none across, [`power`] to
+/// the bit.
 pub fn vector_power(shear: [f64; 2], slip: [f64; 2]) -> f64 {
     (-shear[0] * slip[0] - shear[1] * slip[1]).max(0.0)
 }
 
 /// Change of [`vector_power`].
-pub fn vector_power_tangent(
-    (shear, slip): ([f64; 2], [f64; 2]),
-    (shear_change, slip_change): ([f64; 2], [f64; 2]),
-) -> f64 {
+pub fn vector_power_tangent(shear: [f64; 2], slip: [f64; 2], shear_change: [f64; 2], slip_change: [f64; 2]) -> f64 {
     if shear[0] * slip[0] + shear[1] * slip[1] < 0.0 {
         -(shear_change[0] * slip[0] + shear[0] * slip_change[0])
             - (shear_change[1] * slip[1] + shear[1] * slip_change[1])
@@ -79,7 +77,7 @@ pub fn magnitude_tangent(vector: [f64; 2], change: [f64; 2]) -> f64 {
 }
 
 /// Change of [`power`].
-pub fn power_tangent((shear, slip): (f64, f64), (shear_change, slip_change): (f64, f64)) -> f64 {
+pub fn power_tangent(shear: f64, slip: f64, shear_change: f64, slip_change: f64) -> f64 {
     if shear * slip < 0.0 {
         -(shear_change * slip + shear * slip_change)
     } else {
@@ -97,7 +95,7 @@ pub struct Sliding {
 }
 
 impl Sliding {
-    /// With slip velocity s `m/s` and φ = −τ/(μ p).
+    /// Sliding at a slip velocity s `m/s` and φ = −τ/(μ p).
     pub fn new(slip: f64, saturation: f64) -> Sliding {
         Sliding {
             speed: slip.abs(),
@@ -105,15 +103,15 @@ impl Sliding {
         }
     }
 
-    /// Its change.
-    pub fn tangent((slip, saturation): (f64, f64), (slip_change, saturation_change): (f64, f64)) -> Sliding {
+    /// Change of [`Sliding::new`].
+    pub fn tangent(slip: f64, saturation: f64, slip_change: f64, saturation_change: f64) -> Sliding {
         Sliding {
             speed: slip.signum() * slip_change,
-            power: power_tangent((-saturation, slip), (-saturation_change, slip_change)),
+            power: power_tangent(-saturation, slip, -saturation_change, slip_change),
         }
     }
 
-    /// With a slip velocity along the rail and across it, `m/s`, and τ/(μ p).
+    /// Sliding at a slip velocity along the rail and across it, `m/s`, and τ/(μ p).
     pub fn of_vectors(slip: [f64; 2], share: [f64; 2]) -> Sliding {
         Sliding {
             speed: magnitude(slip),
@@ -121,14 +119,11 @@ impl Sliding {
         }
     }
 
-    /// Its change.
-    pub fn vector_tangent(
-        (slip, share): ([f64; 2], [f64; 2]),
-        (slip_change, share_change): ([f64; 2], [f64; 2]),
-    ) -> Sliding {
+    /// Change of [`Sliding::of_vectors`].
+    pub fn vector_tangent(slip: [f64; 2], share: [f64; 2], slip_change: [f64; 2], share_change: [f64; 2]) -> Sliding {
         Sliding {
             speed: magnitude_tangent(slip, slip_change),
-            power: vector_power_tangent((share, slip), (share_change, slip_change)),
+            power: vector_power_tangent(share, slip, share_change, slip_change),
         }
     }
 }
@@ -153,12 +148,12 @@ mod tests {
             ([0.2, 0.0], [-0.9, 0.1]),
             ([0.1, 0.2], [0.5, 0.1]),
         ] {
-            let change = ([0.3, -0.7], [0.2, 0.5]);
+            let (slip_change, share_change) = ([0.3, -0.7], [0.2, 0.5]);
             let at = |h: f64| {
                 let moved = |value: [f64; 2], change: [f64; 2]| [0, 1].map(|i| value[i] + h * change[i]);
-                Sliding::of_vectors(moved(slip, change.0), moved(share, change.1))
+                Sliding::of_vectors(moved(slip, slip_change), moved(share, share_change))
             };
-            let (h, exact) = (1e-6, Sliding::vector_tangent((slip, share), change));
+            let (h, exact) = (1e-6, Sliding::vector_tangent(slip, share, slip_change, share_change));
             let (ahead, behind) = (at(h), at(-h));
             // Truncation h².
             assert!((exact.speed - (ahead.speed - behind.speed) / (2.0 * h)).abs() < 1e-9);

@@ -15,17 +15,17 @@ use crate::parameters::Parameters;
 /// The layer's law of all nodes in a step, its stresses scaled.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LayerLaw {
-    /// τ_c0.
+    /// Strength τ_c0 without flow, scaled.
     strength: f64,
-    /// k, `1/m`.
+    /// Hardening k, `1/m`, scaled.
     hardening: f64,
-    /// T; in place of t/d_c it has t, `s`.
+    /// Weights T; its residence is the time t itself, `s`, in place of t/d_c.
     pub passage: Passage,
-    /// Its change with |V|.
+    /// Change of `passage` with |V|.
     pub passage_tangent: Passage,
 }
 
-/// What bounds the shear of a node, and its derivatives.
+/// Bound on the shear of a node, and its derivatives.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Yielding {
     /// The bound over the pressure.
@@ -34,21 +34,21 @@ pub struct Yielding {
     pub cap: f64,
     /// Derivative of the coefficient by μ of the surfaces: 1, or 0 where the layer flows only.
     pub by_friction: f64,
-    /// By u_pl, `1/m`: 0 where the surfaces slip.
+    /// Derivative of the coefficient by u_pl, `1/m`: 0 where the surfaces slip.
     pub by_flow: f64,
-    /// By the pressure at an unchanged u_pl.
+    /// Derivative of the coefficient by the pressure at an unchanged u_pl.
     pub by_pressure: f64,
-    /// u_pl, `m`.
+    /// Way of flow u_pl, `m`.
     pub flow: f64,
-    /// Its derivative by T u_pl.
-    pub flow_by_arrived: f64,
-    /// By the magnitude of the slip velocity, `s`.
+    /// Derivative of u_pl by T u_pl.
+    pub flow_by_advected: f64,
+    /// Derivative of u_pl by the magnitude of the slip velocity, `s`.
     pub flow_by_speed: f64,
-    /// By t, `m/s`.
+    /// Derivative of u_pl by t, `m/s`.
     pub flow_by_time: f64,
-    /// By μ, `m`.
+    /// Derivative of u_pl by μ, `m`.
     pub flow_by_friction: f64,
-    /// By the pressure, `m`.
+    /// Derivative of u_pl by the pressure, `m`.
     pub flow_by_pressure: f64,
 }
 
@@ -63,7 +63,7 @@ impl Yielding {
             by_flow: 0.0,
             by_pressure: 0.0,
             flow: 0.0,
-            flow_by_arrived: 0.0,
+            flow_by_advected: 0.0,
             flow_by_speed: 0.0,
             flow_by_time: 0.0,
             flow_by_friction: 0.0,
@@ -73,7 +73,7 @@ impl Yielding {
 }
 
 impl LayerLaw {
-    /// That of the parameters; none where the layer never yields.
+    /// Law of the parameters; none where the layer never yields.
     pub fn new(parameters: &Parameters, step: &PathStep) -> Option<LayerLaw> {
         if parameters.layer_yield_stress == 0.0 {
             return None;
@@ -91,18 +91,19 @@ impl LayerLaw {
 
     /// Whether it knows how far it has flowed.
     pub fn hardens(&self) -> bool {
-        self.passage.exposure.is_finite()
+        self.passage.residence.is_finite()
     }
 
-    /// t, `s`; none where no time has passed.
+    /// Residence time t, `s`; 0 where the law does not ask for it.
     fn time(&self) -> f64 {
-        if self.hardens() { self.passage.exposure } else { 0.0 }
+        if self.hardens() { self.passage.residence } else { 0.0 }
     }
 
-    /// The bound at a node of this μ and pressure, and u_pl of a particle that brings `arrived` `m` and moves with this slip velocity, `m/s`.
-    pub fn bound(&self, (coefficient, pressure): (f64, f64), arrived: f64, speed: f64) -> Yielding {
+    /// Bound at a node of this μ and pressure, and u_pl of a particle that brings `advected` `m` and moves with this slip velocity,
+    /// `m/s`.
+    pub fn bound(&self, (coefficient, pressure): (f64, f64), advected: f64, speed: f64) -> Yielding {
         let (bound, time) = (coefficient * pressure, self.time());
-        let first = self.strength + self.hardening * arrived;
+        let first = self.strength + self.hardening * advected;
         let last = first + self.hardening * time * speed;
         let none = Yielding {
             cap: if pressure > 0.0 { last / pressure } else { 0.0 },
@@ -111,8 +112,8 @@ impl LayerLaw {
         if bound <= first {
             // The surfaces slip.
             Yielding {
-                flow: arrived,
-                flow_by_arrived: 1.0,
+                flow: advected,
+                flow_by_advected: 1.0,
                 ..none
             }
         } else if bound <= last {
@@ -130,8 +131,8 @@ impl LayerLaw {
                 by_friction: 0.0,
                 by_flow: self.hardening / pressure,
                 by_pressure: -coefficient / pressure,
-                flow: arrived + time * speed,
-                flow_by_arrived: 1.0,
+                flow: advected + time * speed,
+                flow_by_advected: 1.0,
                 flow_by_speed: time,
                 flow_by_time: speed,
                 ..none

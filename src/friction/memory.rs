@@ -1,19 +1,19 @@
-//! What the rail remembers of the friction that it has felt: the state of [`super::path`].
+//! History of friction that the rail carries along: the state of [`super::path`].
 
 use super::PointLaw;
 use crate::parameters::Parameters;
 use serde::{Deserialize, Serialize};
 
-/// What a particle brings along, or a change of it; values of nodes.
+/// History that the particles bring along, values at nodes, or a change of it.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Brought {
     /// μ of the surfaces.
     pub friction: Vec<f64>,
-    /// s, the magnitude of the law's slip velocity, `m/s`, 0 outside the contact.
+    /// Slip velocity s, the magnitude of the law's slip velocity, `m/s`, 0 outside the contact.
     pub speed: Vec<f64>,
-    /// μ(θ), the coefficient at this temperature and no slip.
+    /// Static coefficient μ(θ), that at this temperature and no slip.
     pub resting: Vec<f64>,
-    /// u_pl, the way that the layer has flowed, `m`, 0 outside the contact.
+    /// Way u_pl that the layer has flowed, `m`, 0 outside the contact.
     pub flow: Vec<f64>,
 }
 
@@ -35,23 +35,23 @@ impl Brought {
     }
 }
 
-/// What the nodes of a window remember.
+/// History of friction at the nodes of a window.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Memory {
     /// Whether the step before has remembered.
     pub remembers: bool,
-    /// At the end of the step.
+    /// History at the end of the step.
     pub now: Brought,
-    /// At its beginning. The derivatives of the step need it.
+    /// History at the beginning of the step, which the derivatives of the step need.
     pub before: Brought,
-    /// dμ of the surfaces by μ(θ) at the node's temperature.
+    /// Derivative of μ of the surfaces by μ(θ) at the node's temperature.
     pub share: Vec<f64>,
     /// Bound of a layer that may flow, over the pressure; 0 without one.
     pub cap: Vec<f64>,
 }
 
 impl Memory {
-    /// None, of so many nodes.
+    /// Memory of so many nodes that nothing has happened to yet.
     pub fn new(nodes: usize) -> Memory {
         Memory {
             remembers: false,
@@ -144,23 +144,23 @@ impl Memory {
     }
 }
 
-/// What the particles on one path bring along: of the nodes of a window, or of one of its strips.
+/// History of the particles on one path: the nodes of a window, or of one of its strips.
 #[derive(Debug, Clone, Copy)]
-pub struct Path<'a> {
+pub struct ParticlePath<'a> {
     /// μ of the surfaces.
     pub friction: &'a [f64],
-    /// s, `m/s`.
+    /// Slip velocity s, `m/s`.
     pub speed: &'a [f64],
-    /// μ(θ).
+    /// Static μ(θ).
     pub resting: &'a [f64],
-    /// u_pl, `m`.
+    /// Way of flow u_pl, `m`.
     pub flow: &'a [f64],
 }
 
 impl Brought {
-    /// Over some of the nodes.
-    pub fn path(&self, nodes: std::ops::Range<usize>) -> Path<'_> {
-        Path {
+    /// Path over some of the nodes.
+    pub fn path(&self, nodes: std::ops::Range<usize>) -> ParticlePath<'_> {
+        ParticlePath {
             friction: &self.friction[nodes.clone()],
             speed: &self.speed[nodes.clone()],
             resting: &self.resting[nodes.clone()],

@@ -17,8 +17,14 @@ pub fn coefficient(law: &Parameters, temperature: f64) -> (f64, f64) {
     match law.friction_law {
         FrictionLaw::Constant => (law.friction_cold, 0.0),
         FrictionLaw::PiecewiseLinear => interpolate(
-            (law.friction_temperature_cold, law.friction_cold),
-            (law.friction_temperature_hot, law.friction_hot),
+            TablePoint {
+                temperature: law.friction_temperature_cold,
+                coefficient: law.friction_cold,
+            },
+            TablePoint {
+                temperature: law.friction_temperature_hot,
+                coefficient: law.friction_hot,
+            },
             temperature,
         ),
         FrictionLaw::FlowStress => {
@@ -44,15 +50,24 @@ pub fn largest_coefficient(law: &Parameters) -> f64 {
     }
 }
 
-/// Linear between two (temperature, coefficient) points, constant outside: (12)–(13) with the lower bound of Fig. 3.
-fn interpolate((cold, mu_cold): (f64, f64), (hot, mu_hot): (f64, f64), temperature: f64) -> (f64, f64) {
-    if temperature <= cold {
-        (mu_cold, 0.0)
-    } else if temperature >= hot {
-        (mu_hot, 0.0)
+/// Point of a law that is piecewise linear in the temperature.
+struct TablePoint {
+    /// Absolute temperature, `K`.
+    temperature: f64,
+    /// Friction coefficient there.
+    coefficient: f64,
+}
+
+/// Interpolates linearly between two points, constant outside: (12)–(13) with the lower bound of Fig. 3. Returns μ and its
+/// slope `1/K`.
+fn interpolate(cold: TablePoint, hot: TablePoint, temperature: f64) -> (f64, f64) {
+    if temperature <= cold.temperature {
+        (cold.coefficient, 0.0)
+    } else if temperature >= hot.temperature {
+        (hot.coefficient, 0.0)
     } else {
-        let slope = (mu_hot - mu_cold) / (hot - cold);
-        (mu_cold + slope * (temperature - cold), slope)
+        let slope = (hot.coefficient - cold.coefficient) / (hot.temperature - cold.temperature);
+        (cold.coefficient + slope * (temperature - cold.temperature), slope)
     }
 }
 
@@ -61,7 +76,10 @@ fn table(law: &Parameters, temperature: f64) -> (f64, f64) {
     let temperatures = &law.friction_table_temperature[..points];
     let coefficients = &law.friction_table_coefficient[..points];
     let upper = temperatures.partition_point(|&t| t < temperature).clamp(1, points - 1);
-    let point = |i: usize| (temperatures[i], coefficients[i]);
+    let point = |i: usize| TablePoint {
+        temperature: temperatures[i],
+        coefficient: coefficients[i],
+    };
     interpolate(point(upper - 1), point(upper), temperature)
 }
 
@@ -107,7 +125,7 @@ impl FrictionState<'_> {
 /// μ of a point as a function of its temperature at given slip and history: `base` + `share` μ(θ), but no more than the `cap`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PointLaw {
-    /// What does not depend on the temperature.
+    /// Part of μ that does not depend on the temperature.
     pub base: f64,
     /// Share of μ(θ).
     pub share: f64,

@@ -5,30 +5,30 @@ use super::layer::Yielding;
 /// The law at a node for given temperature, all that the slip in the step does not change.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct PathNode {
-    /// M.
+    /// Static μ(θ) M at the node.
     pub(super) steady: f64,
-    /// T μ without the share of the node before it.
-    pub(super) arrived: f64,
-    /// Share of the μ of the node before it.
-    pub(super) carry: f64,
-    /// T s without the share of the node before it, `m/s`.
+    /// Advected μ, T μ without the part of the node upstream.
+    pub(super) advected: f64,
+    /// Courant weight of the μ of the node upstream.
+    pub(super) courant_weight: f64,
+    /// Advected slip velocity, T s without the part of the node upstream, `m/s`.
     pub(super) speed: f64,
-    /// Share of the slip velocity of the node before it.
-    pub(super) speed_carry: f64,
-    /// T u_pl without the share of the node before it, `m`.
+    /// Courant weight of the slip velocity of the node upstream.
+    pub(super) speed_weight: f64,
+    /// Advected way of flow, T u_pl without the part of the node upstream, `m`.
     pub(super) flow: f64,
-    /// Share of the u_pl of the node before it.
-    pub(super) flow_carry: f64,
+    /// Courant weight of the u_pl of the node upstream.
+    pub(super) flow_weight: f64,
 }
 
-/// What a particle takes from a node in contact to the next one, or a change of it.
+/// Values that a particle takes from a node in contact to the next one, or a change of them.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Passed {
     /// μ of the surfaces.
     pub friction: f64,
     /// Magnitude of the slip velocity, `m/s`.
     pub speed: f64,
-    /// u_pl, `m`.
+    /// Way of flow u_pl, `m`.
     pub flow: f64,
 }
 
@@ -39,17 +39,17 @@ pub struct NodeFriction {
     pub coefficient: f64,
     /// μ of the surfaces.
     pub surfaces: f64,
-    /// Its derivative by μ(θ) at the node's temperature.
+    /// Derivative of the coefficient by μ(θ) at the node's temperature.
     pub share: f64,
-    /// By the μ of the node before it.
+    /// Derivative of the coefficient by the μ of the node upstream.
     pub(super) by_before: f64,
-    /// By the magnitude of the slip velocity of the node before it, `s/m`.
+    /// Derivative of the coefficient by the magnitude of the slip velocity at the node upstream, `s/m`.
     pub(super) by_speed_before: f64,
-    /// By that of its own, `s/m`.
+    /// Derivative of the coefficient by the magnitude of the node's own slip velocity, `s/m`.
     pub(super) by_speed: f64,
     /// The layer.
     pub(super) layer: Yielding,
-    /// Derivative of u_pl by that of the node before it.
+    /// Derivative of u_pl by that of the node upstream.
     pub(super) flow_by_before: f64,
 }
 
@@ -69,7 +69,7 @@ impl Default for NodeFriction {
 }
 
 impl NodeFriction {
-    /// u_pl, `m`.
+    /// Way of flow u_pl, `m`.
     pub fn flow(&self) -> f64 {
         self.layer.flow
     }
@@ -79,17 +79,17 @@ impl NodeFriction {
         self.layer.cap
     }
 
-    /// The coefficient by the node's own slip velocity, `s/m`.
+    /// Derivative of the coefficient by the node's own slip velocity, `s/m`.
     pub fn by_speed(&self) -> f64 {
         self.layer.by_friction * self.by_speed + self.layer.by_flow * self.layer.flow_by_speed
     }
 
-    /// The coefficient by the node's own pressure.
+    /// Derivative of the coefficient by the node's own pressure.
     pub fn by_pressure(&self) -> f64 {
         self.layer.by_pressure
     }
 
-    /// What the node passes on.
+    /// Returns the values that a particle takes from this node to the next one.
     pub fn passed(&self, speed: f64) -> Passed {
         Passed {
             friction: self.surfaces,

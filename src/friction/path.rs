@@ -32,13 +32,13 @@
 
 use super::largest_coefficient;
 use super::layer::{LayerLaw, Yielding};
-use super::memory::Path;
+use super::memory::ParticlePath;
 pub use super::node::{NodeFriction, Passed, PassedTogether, PathNode};
 use super::passage::Passage;
 pub use super::passage::PathStep;
 use crate::parameters::Parameters;
 
-/// f(s).
+/// Slip factor f(s) of the coefficient.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SlipLaw {
     share: f64,
@@ -46,7 +46,7 @@ pub struct SlipLaw {
 }
 
 impl SlipLaw {
-    /// That of the parameters.
+    /// Slip factor of the parameters.
     pub fn new(parameters: &Parameters) -> SlipLaw {
         SlipLaw {
             share: parameters.friction_slip_share,
@@ -69,22 +69,22 @@ impl SlipLaw {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PathLaw {
     slip: SlipLaw,
-    /// s₀, `m/s`.
+    /// Least slip velocity s₀ of the relaxation, `m/s`.
     least_speed: f64,
-    /// β.
-    own: f64,
+    /// Weight β of the node's own slip velocity in the effective one.
+    own_slip_weight: f64,
     passage: Passage,
-    /// Its change with |V|.
+    /// Change of `passage` with |V|.
     passage_tangent: Passage,
-    /// What is left of the μ that a particle brings where nothing slips.
-    idle_fade: f64,
+    /// Fraction that is left, where nothing slips, of the μ that a particle brings.
+    idle_relaxation: f64,
     /// Whether particles come from high indices.
     forward: bool,
     layer: Option<LayerLaw>,
 }
 
 impl PathLaw {
-    /// That of the parameters; none where friction knows nothing but the temperature.
+    /// Law of the parameters; none where friction depends on the temperature only.
     pub fn new(parameters: &Parameters, step: &PathStep) -> Option<PathLaw> {
         let slip = SlipLaw::new(parameters);
         let distance = parameters.friction_memory_distance;
@@ -97,15 +97,15 @@ impl PathLaw {
         Some(PathLaw {
             slip,
             least_speed: parameters.friction_memory_speed,
-            own: if passage.exposure.is_infinite() || distance >= displacement {
+            own_slip_weight: if passage.residence.is_infinite() || distance >= displacement {
                 1.0
             } else {
                 distance / displacement
             },
             passage,
             passage_tangent: passage.tangent(step.duration, step.spacing, step.speed.abs()),
-            idle_fade: if passage.exposure.is_finite() {
-                (-passage.exposure * parameters.friction_memory_speed).exp()
+            idle_relaxation: if passage.residence.is_finite() {
+                (-passage.residence * parameters.friction_memory_speed).exp()
             } else {
                 0.0
             },
@@ -126,7 +126,7 @@ impl PathLaw {
 
     /// Whether μ follows on a way of slip.
     fn follows(&self) -> bool {
-        self.passage.exposure.is_finite()
+        self.passage.residence.is_finite()
     }
 
     /// Whether particles come from high indices.
@@ -134,21 +134,21 @@ impl PathLaw {
         self.forward
     }
 
-    /// exp(−max(s, s₀) t/d_c) and its derivative by s.
-    fn fade(&self, speed: f64) -> (f64, f64) {
+    /// Relaxation exp(−max(s, s₀) t/d_c) of the difference from the steady μ, and its derivative by s.
+    fn relaxation(&self, speed: f64) -> (f64, f64) {
         if !self.follows() {
             return (0.0, 0.0);
         }
         if speed <= self.least_speed {
-            return (self.idle_fade, 0.0);
+            return (self.idle_relaxation, 0.0);
         }
-        let fade = (-self.passage.exposure * speed).exp();
-        (fade, -self.passage.exposure * fade)
+        let relaxation = (-self.passage.residence * speed).exp();
+        (relaxation, -self.passage.residence * relaxation)
     }
 
-    /// ŝ.
-    fn felt(&self, node: &PathNode, speed_before: f64, speed: f64) -> f64 {
-        self.own * speed + (1.0 - self.own) * (node.speed + node.speed_carry * speed_before)
+    /// Effective slip velocity ŝ, the mean of the node's own and the advected one.
+    fn effective_slip(&self, node: &PathNode, speed_before: f64, speed: f64) -> f64 {
+        self.own_slip_weight * speed + (1.0 - self.own_slip_weight) * (node.speed + node.speed_weight * speed_before)
     }
 
     /// Whether a layer may flow.
@@ -160,26 +160,26 @@ impl PathLaw {
     // Called, it copies its result: 3 % of a step.
     #[inline(always)]
     pub fn friction(&self, node: &PathNode, before: &Passed, speed: f64, pressure: f64) -> NodeFriction {
-        let felt = self.felt(node, before.speed, speed);
-        let (factor, factor_slope) = self.slip.factor(felt);
-        let (fade, fade_slope) = self.fade(felt);
+        let effective_slip = self.effective_slip(node, before.speed, speed);
+        let (factor, factor_slope) = self.slip.factor(effective_slip);
+        let (relaxation, relaxation_slope) = self.relaxation(effective_slip);
         let steady = node.steady * factor;
-        let more = node.arrived + node.carry * before.friction - steady;
-        let by_felt = (1.0 - fade) * node.steady * factor_slope + fade_slope * more;
-        let surfaces = steady + fade * more;
+        let more = node.advected + node.courant_weight * before.friction - steady;
+        let by_effective_slip = (1.0 - relaxation) * node.steady * factor_slope + relaxation_slope * more;
+        let surfaces = steady + relaxation * more;
         let layer = match &self.layer {
             None => Yielding::none(surfaces),
-            Some(layer) => layer.bound((surfaces, pressure), node.flow + node.flow_carry * before.flow, speed),
+            Some(layer) => layer.bound((surfaces, pressure), node.flow + node.flow_weight * before.flow, speed),
         };
         NodeFriction {
             coefficient: layer.coefficient,
-            share: (1.0 - fade) * factor,
+            share: (1.0 - relaxation) * factor,
             surfaces,
-            by_before: fade * node.carry,
-            by_speed_before: by_felt * (1.0 - self.own) * node.speed_carry,
-            by_speed: by_felt * self.own,
+            by_before: relaxation * node.courant_weight,
+            by_speed_before: by_effective_slip * (1.0 - self.own_slip_weight) * node.speed_weight,
+            by_speed: by_effective_slip * self.own_slip_weight,
             layer,
-            flow_by_before: layer.flow_by_arrived * node.flow_carry,
+            flow_by_before: layer.flow_by_advected * node.flow_weight,
         }
     }
 
@@ -190,30 +190,30 @@ impl PathLaw {
     }
 
     /// A node and the one upstream of it, with μ(θ) of all.
-    fn node(&self, path: &Path, resting: &[f64], node: usize, upstream: usize) -> PathNode {
+    fn node(&self, path: &ParticlePath, resting: &[f64], node: usize, upstream: usize) -> PathNode {
         let start = |values: &[f64]| self.passage.start(values[upstream], values[node]);
         let layer = self.layer.as_ref().map(|layer| &layer.passage);
         PathNode {
             steady: resting[node],
-            arrived: start(path.friction),
-            carry: self.passage.upstream,
+            advected: start(path.friction),
+            courant_weight: self.passage.upstream,
             speed: start(path.speed),
-            speed_carry: self.passage.upstream,
+            speed_weight: self.passage.upstream,
             flow: layer.map_or(0.0, |passage| passage.start(path.flow[upstream], path.flow[node])),
-            flow_carry: layer.map_or(0.0, |passage| passage.upstream),
+            flow_weight: layer.map_or(0.0, |passage| passage.upstream),
         }
     }
 
     /// μ of a node outside the contact, where nothing slips, after one with the given μ.
     fn idle(&self, node: &PathNode, before: f64) -> f64 {
-        node.steady + self.idle_fade * (node.arrived + node.carry * before - node.steady)
+        node.steady + self.idle_relaxation * (node.advected + node.courant_weight * before - node.steady)
     }
 
     /// Gives the nodes in contact their law, in the order of the particles, with μ(θ) of all nodes. What lies between two of them is
     /// taken together: the node before is the one in contact that was given before.
     pub fn prepare(
         &self,
-        path: &Path,
+        path: &ParticlePath,
         resting: &[f64],
         in_contact: impl Fn(usize) -> bool,
         mut give: impl FnMut(usize, PathNode),
@@ -241,7 +241,7 @@ impl PathLaw {
         if touched {
             let entering = PathNode {
                 steady: constant,
-                arrived: constant,
+                advected: constant,
                 ..PathNode::default()
             };
             give(upstream, entering);
@@ -254,24 +254,30 @@ impl PathLaw {
                 give(
                     node,
                     PathNode {
-                        arrived: own.arrived + own.carry * constant,
-                        carry: own.carry * share,
-                        speed_carry: if touched { own.speed_carry } else { 0.0 },
-                        flow_carry: if touched { own.flow_carry } else { 0.0 },
+                        advected: own.advected + own.courant_weight * constant,
+                        courant_weight: own.courant_weight * share,
+                        speed_weight: if touched { own.speed_weight } else { 0.0 },
+                        flow_weight: if touched { own.flow_weight } else { 0.0 },
                         ..own
                     },
                 );
                 (constant, share) = (0.0, 1.0);
             } else {
                 constant = self.idle(&own, constant);
-                share *= self.idle_fade * own.carry;
+                share *= self.idle_relaxation * own.courant_weight;
             }
             (upstream, touched) = (node, touches);
         }
     }
 
     /// μ of the nodes outside the contact at the end of the step, where `friction` and `resting` hold all the rest.
-    pub fn close(&self, path: &Path, resting: &[f64], in_contact: impl Fn(usize) -> bool, friction: &mut [f64]) {
+    pub fn close(
+        &self,
+        path: &ParticlePath,
+        resting: &[f64],
+        in_contact: impl Fn(usize) -> bool,
+        friction: &mut [f64],
+    ) {
         let mut order = self.order(resting.len());
         let Some(mut upstream) = order.next() else {
             return;
@@ -292,7 +298,7 @@ impl PathLaw {
     /// pressure; `now` is the solution.
     pub fn tangent(
         &self,
-        (path, now): (&Path, &Path),
+        (path, now): (&ParticlePath, &ParticlePath),
         (pressure, pressure_change): (&[f64], impl Fn(usize) -> f64),
         (speed, resting): (f64, &[f64]),
         friction: &mut [f64],
@@ -316,36 +322,36 @@ impl PathLaw {
             let moved = |change: &Passage, now: &[f64], before: &[f64]| {
                 speed * (change.upstream * now[upstream] + change.start(before[upstream], before[node]))
             };
-            let arrived_change = passage.upstream * passed.friction + moved(change, now.friction, path.friction);
+            let advected_change = passage.upstream * passed.friction + moved(change, now.friction, path.friction);
             let contact = in_contact(node);
-            let felt = if contact {
-                self.felt(&own, now.speed[upstream], now.speed[node])
+            let effective_slip = if contact {
+                self.effective_slip(&own, now.speed[upstream], now.speed[node])
             } else {
                 0.0
             };
-            let (factor, factor_slope) = self.slip.factor(felt);
-            let (fade, fade_slope) = self.fade(felt);
-            let more = own.arrived + own.carry * now.friction[upstream] - own.steady * factor;
+            let (factor, factor_slope) = self.slip.factor(effective_slip);
+            let (relaxation, relaxation_slope) = self.relaxation(effective_slip);
+            let more = own.advected + own.courant_weight * now.friction[upstream] - own.steady * factor;
             let slid = if contact {
-                (1.0 - self.own) * moved(change, now.speed, path.speed)
+                (1.0 - self.own_slip_weight) * moved(change, now.speed, path.speed)
             } else {
                 0.0
             };
-            let by_felt = (1.0 - fade) * own.steady * factor_slope + fade_slope * more;
-            let by_exposure = -felt.max(self.least_speed) * fade * more;
-            let surfaces = (1.0 - fade) * factor * resting[node]
-                + fade * arrived_change
-                + by_felt * slid
-                + by_exposure * speed * change.exposure;
+            let by_effective_slip = (1.0 - relaxation) * own.steady * factor_slope + relaxation_slope * more;
+            let by_residence = -effective_slip.max(self.least_speed) * relaxation * more;
+            let surfaces = (1.0 - relaxation) * factor * resting[node]
+                + relaxation * advected_change
+                + by_effective_slip * slid
+                + by_residence * speed * change.residence;
             friction[node] = surfaces;
             let mut flow = 0.0;
             if let (Some(layer), true) = (&self.layer, contact) {
-                let arrived = own.flow + own.flow_carry * now.flow[upstream];
-                let yielding = layer.bound((now.friction[node], pressure[node]), arrived, now.speed[node]);
+                let advected = own.flow + own.flow_weight * now.flow[upstream];
+                let yielding = layer.bound((now.friction[node], pressure[node]), advected, now.speed[node]);
                 let change = &layer.passage_tangent;
-                flow = yielding.flow_by_arrived
+                flow = yielding.flow_by_advected
                     * (layer.passage.upstream * passed.flow + moved(change, now.flow, path.flow))
-                    + yielding.flow_by_time * speed * change.exposure
+                    + yielding.flow_by_time * speed * change.residence
                     + yielding.flow_by_friction * surfaces
                     + yielding.flow_by_pressure * pressure_change(node);
                 friction[node] = yielding.by_friction * surfaces

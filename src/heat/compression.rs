@@ -105,9 +105,9 @@ impl Moments {
     }
 }
 
-/// Takes from the `rows` (each of `inputs` values) their parts along a few orthonormal combinations, until what is left of
-/// those in question is below the tolerance: Gram and Schmidt's method on the row that is largest. Returns the
-/// combinations and, one after the other, the parts of all rows along them.
+/// Splits off from the `rows` (each of `inputs` values) their components along a few orthonormal combinations, until the
+/// remainder of the rows that are `far` is below the tolerance: Gram and Schmidt's method, pivoting on the largest row.
+/// Returns the combinations and, one after the other, the components of all rows along them.
 fn split_off(rows: &mut [f64], inputs: usize, far: impl Fn(usize) -> bool, tolerance: f64) -> (Vec<f64>, Vec<f64>) {
     let (mut combinations, mut parts) = (Vec::new(), Vec::new());
     for _ in 0..inputs {
@@ -126,10 +126,10 @@ fn split_off(rows: &mut [f64], inputs: usize, far: impl Fn(usize) -> bool, toler
         direction.iter_mut().for_each(|value| *value /= length);
         dense::vectorised(
             #[inline(always)]
-            |arithmetic| {
+            |fma| {
                 for row in rows.chunks_exact_mut(inputs) {
-                    let part = arithmetic.dot(row, &direction);
-                    arithmetic.add_multiple(&direction, -part, row);
+                    let part = fma.dot(row, &direction);
+                    fma.add_multiple(&direction, -part, row);
                     parts.push(part);
                 }
             },
@@ -139,39 +139,39 @@ fn split_off(rows: &mut [f64], inputs: usize, far: impl Fn(usize) -> bool, toler
     (combinations, parts)
 }
 
-/// A block of neighbouring columns and its part of the map.
-pub struct Piece {
+/// Response to a block of neighbouring columns: its part of the map.
+pub struct BlockResponse {
     /// The columns.
     pub columns: Range<usize>,
     /// Contact nodes next to it.
     pub near: Range<usize>,
-    /// Effects per moment, row by row.
+    /// Far moments per moment of the columns, row by row.
     pub combinations: Vec<f64>,
-    /// Displacement per effect, effect by effect, 2n each.
-    pub parts: Vec<f64>,
-    /// Displacement of the near nodes per moment, less that of the effects; along x₁, then along x₂, row by row.
-    pub gains: Vec<f64>,
+    /// Displacement per far moment, one far moment after the other, 2n each.
+    pub far_response: Vec<f64>,
+    /// Displacement of the near nodes per moment, less that by the far moments; along x₁, then along x₂, row by row.
+    pub near_response: Vec<f64>,
 }
 
-impl Piece {
-    fn new(moments: &Moments, columns: Range<usize>, near: Range<usize>, tolerance: f64) -> Piece {
+impl BlockResponse {
+    fn new(moments: &Moments, columns: Range<usize>, near: Range<usize>, tolerance: f64) -> BlockResponse {
         let (n, inputs) = (moments.images[0].nrows() / 2, columns.len() * moments.images[0].ncols());
         let mut rows = moments.rows(columns.clone());
-        let (combinations, parts) = split_off(&mut rows, inputs, |row| !near.contains(&(row % n)), tolerance);
+        let (combinations, far_response) = split_off(&mut rows, inputs, |row| !near.contains(&(row % n)), tolerance);
         let next_to = |first: usize| &rows[(first + near.start) * inputs..(first + near.end) * inputs];
-        let gains = [next_to(0), next_to(n)].concat();
-        Piece {
+        let near_response = [next_to(0), next_to(n)].concat();
+        BlockResponse {
             columns,
             near,
             combinations,
-            parts,
-            gains,
+            far_response,
+            near_response,
         }
     }
 
     /// The mirror image in x₁ = 0 on a mesh of so many columns, with n contact nodes and so many moments a column: u₁
     /// changes its sign.
-    fn mirrored(&self, mesh_columns: usize, n: usize, moments: usize) -> Piece {
+    fn mirrored(&self, mesh_columns: usize, n: usize, moments: usize) -> BlockResponse {
         let opposite = |range: &Range<usize>, count: usize| count - range.end..count - range.start;
         // Values at nodes or columns, `size` each, in opposite order.
         let reversed =
@@ -187,27 +187,27 @@ impl Piece {
             let along: Vec<f64> = along.iter().map(|value| -value).collect();
             [reversed(&along, size), reversed(upward, size)].concat()
         };
-        Piece {
+        BlockResponse {
             columns: opposite(&self.columns, mesh_columns),
             near: opposite(&self.near, n),
             combinations: opposite_inputs(&self.combinations),
-            parts: self
-                .parts
+            far_response: self
+                .far_response
                 .chunks_exact(2 * n)
                 .flat_map(|part| opposite_nodes(part, 1))
                 .collect(),
-            gains: opposite_nodes(&opposite_inputs(&self.gains), inputs),
+            near_response: opposite_nodes(&opposite_inputs(&self.near_response), inputs),
         }
     }
 }
 
 /// Blocks of √n columns from the middle to the left, their mirror images, and between them the middle column, if there is
 /// one: mirrored motion is to give mirrored fields to round-off.
-pub fn pieces(mesh: &Mesh, moments: &Moments, tolerance: f64) -> Vec<Piece> {
+pub fn block_responses(mesh: &Mesh, moments: &Moments, tolerance: f64) -> Vec<BlockResponse> {
     let (n, columns) = (mesh.contact_nodes, mesh.columns());
     let width = (n as f64).sqrt().round() as usize;
     let half = columns / 2;
-    let mut left: Vec<Piece> = (0..half)
+    let mut left: Vec<BlockResponse> = (0..half)
         .step_by(width)
         .map(|distance| {
             let own = half.saturating_sub(distance + width)..half - distance;
@@ -218,15 +218,15 @@ pub fn pieces(mesh: &Mesh, moments: &Moments, tolerance: f64) -> Vec<Piece> {
                 (Some(first), Some(last)) => first..last + 1,
                 _ => 0..0,
             };
-            Piece::new(moments, own, near, tolerance)
+            BlockResponse::new(moments, own, near, tolerance)
         })
         .collect();
-    let right: Vec<Piece> = left
+    let right: Vec<BlockResponse> = left
         .iter()
-        .map(|piece| piece.mirrored(columns, n, moments.images[0].ncols()))
+        .map(|block| block.mirrored(columns, n, moments.images[0].ncols()))
         .collect();
     left.reverse();
-    // The middle column is its own mirror image; it is one column, so all its gains are kept (all nodes count as near).
-    let middle = (columns % 2 == 1).then(|| Piece::new(moments, half..half + 1, 0..n, tolerance));
+    // The middle column is its own mirror image; it is one column, so all its responses are kept (all nodes count as near).
+    let middle = (columns % 2 == 1).then(|| BlockResponse::new(moments, half..half + 1, 0..n, tolerance));
     left.into_iter().chain(middle).chain(right).collect()
 }

@@ -5,35 +5,36 @@
 //! and computed for the cells that something warm crosses.
 
 use super::basis::DepthBasis;
-use super::step::ModeStep;
-use crate::numerics::dense::{Arithmetic, LANES};
+use super::step::{DecayRate, ModeStep, Transit};
+use crate::numerics::dense::{LANES, MultiplyAdd};
 use crate::transport::{Cells, Column};
 
 /// The fields of [`ModeStep`], in their order, of as many modes as are computed at once.
-type Block = [[f64; LANES]; 5];
+type StepLanes = [[f64; LANES]; 5];
 
 /// Factors of all modes in the cells between columns; m modes. What they are depends on nothing that was asked before.
 #[derive(Debug, Clone)]
 pub struct CellFactors {
     cells: Cells,
-    /// The conditions of what is known.
+    /// Conditions under which the known factors were computed.
     conditions: Conditions,
     /// Whether the factors of a length are known.
     known: Vec<bool>,
     /// r and 1/r of the modes, in blocks, the last one filled up.
     rates: Vec<[[f64; LANES]; 2]>,
-    /// As many blocks for each length, one length after the other.
-    blocks: Vec<Block>,
-    /// The length that `passed_on`, `taken` and `response` are of.
+    /// Blocks of the factors: as many as `rates` has for each length, one length after the other.
+    blocks: Vec<StepLanes>,
+    /// Length that the responses to a flux are of.
     heated: Option<usize>,
-    /// What feeds a mode, and what the modes take, of a flux upstream and of their column's own, m each, `K m^½ / (W/m²)`.
-    heating: Vec<f64>,
-    passed_on: Vec<f64>,
-    taken: Vec<f64>,
+    /// Source of a mode per heat flux, and the amplitudes that a flux upstream and the column's own flux cause, m each,
+    /// `K m^½ / (W/m²)`.
+    source_per_flux: Vec<f64>,
+    upstream_response: Vec<f64>,
+    diagonal_response: Vec<f64>,
     response: f64,
 }
 
-/// What the factors depend on beside the length of a cell.
+/// Conditions that the factors depend on beside the length of a cell.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Conditions {
     /// |V|, `m/s`.
@@ -49,32 +50,32 @@ pub struct Conditions {
 /// The steps of all modes through a cell.
 #[derive(Debug, Clone, Copy)]
 pub struct Factors<'a> {
-    blocks: &'a [Block],
+    blocks: &'a [StepLanes],
 }
 
-/// What a column takes of the heat flux, m each.
+/// Factors on the heat flux of a column and of the one upstream, m each.
 #[derive(Debug, Clone, Copy)]
 pub struct HeatFactors<'a> {
-    /// f of a mode per heat flux, φ(0)/(ρ c_p).
-    pub heating: &'a [f64],
+    /// Source f of a mode per heat flux, φ(0)/(ρ c_p).
+    pub source_per_flux: &'a [f64],
     /// Amplitude per flux upstream.
-    pub passed_on: &'a [f64],
-    /// Amplitude per own flux.
-    pub taken: &'a [f64],
-    /// Surface temperature per own flux, `K/(W/m²)`.
+    pub upstream_response: &'a [f64],
+    /// Amplitude per flux of the column itself.
+    pub diagonal_response: &'a [f64],
+    /// Surface temperature per flux of the column itself, `K/(W/m²)`.
     pub response: f64,
 }
 
-/// What the modes of a column come from but for its own heat flux, m each.
+/// Sources of the modes of a column but for its own heat flux, m each.
 #[derive(Debug, Clone, Copy)]
 pub struct Sources<'a> {
     /// Amplitudes in the column upstream.
     pub upstream: &'a [f64],
-    /// Those of the step before there.
+    /// Amplitudes of the step before in the column upstream.
     pub old_upstream: &'a [f64],
-    /// Those of the step before in the column itself.
+    /// Amplitudes of the step before in the column itself.
     pub old: &'a [f64],
-    /// Heat flux into the column upstream, with what is taken of it.
+    /// Heat flux into the column upstream, with the amplitudes per flux there.
     pub flux: Option<(f64, &'a [f64])>,
 }
 
@@ -82,47 +83,54 @@ impl Factors<'_> {
     /// The step of one mode.
     pub fn step(&self, mode: usize) -> ModeStep {
         let block = &self.blocks[mode / LANES];
-        let [arriving, old_upstream, old, fed_upstream, fed] = std::array::from_fn(|which| block[which][mode % LANES]);
+        let [advected, old_upstream, old, source_upstream, source] =
+            std::array::from_fn(|which| block[which][mode % LANES]);
         ModeStep {
-            arriving,
+            advected,
             old_upstream,
             old,
-            fed_upstream,
-            fed,
+            source_upstream,
+            source,
         }
     }
 
-    /// The step of the modes but for their own heat flux, and the surface value of what comes of it: as [`Arithmetic::dot`],
-    /// in the same pass.
+    /// Advances the modes but for their own heat flux, and returns the surface value of the result: as
+    /// [`MultiplyAdd::dot`], in the same pass.
     #[inline(always)]
-    pub fn carry_over(&self, arithmetic: Arithmetic, own: &mut [f64], sources: &Sources, surface: &[f64]) -> f64 {
-        let fma = |a, b, c| arithmetic.multiply_add(a, b, c);
+    pub fn advance(&self, fma: MultiplyAdd, own: &mut [f64], sources: &Sources, surface: &[f64]) -> f64 {
+        let fma = |a, b, c| fma.multiply_add(a, b, c);
         let Sources {
             upstream,
             old_upstream,
             old,
             flux,
         } = *sources;
-        let (heat, passed_on) = flux.unwrap_or((0.0, surface));
+        let (heat, upstream_response) = flux.unwrap_or((0.0, surface));
         let mut sums = [0.0; LANES];
         let (blocks, rest) = own.as_chunks_mut::<LANES>();
         let whole = LANES * blocks.len();
         let sources = chunks(upstream)
             .zip(chunks(old_upstream))
             .zip(chunks(old))
-            .zip(chunks(passed_on));
+            .zip(chunks(upstream_response));
         let inputs = self.blocks.iter().zip(sources).zip(chunks(surface));
-        for (own, ((factors, (((upstream, old_upstream), old), passed_on)), surface)) in blocks.iter_mut().zip(inputs) {
-            let [arriving, handed_on, kept, ..] = factors;
+        for (own, ((factors, (((upstream, old_upstream), old), upstream_response)), surface)) in
+            blocks.iter_mut().zip(inputs)
+        {
+            let [advected, old_upstream_factor, old_factor, ..] = factors;
             // All values are loaded before one is stored: otherwise the compiler must assume that the slices overlap, and does
             // not vectorise.
             let mut values = [0.0; LANES];
             for lane in 0..LANES {
-                // What waits for the column upstream comes last.
-                let stored = fma(kept[lane], old[lane], handed_on[lane] * old_upstream[lane]);
-                values[lane] = fma(arriving[lane], upstream[lane], stored);
+                // The term with the column upstream comes last: only this waits for that column.
+                let stored = fma(
+                    old_factor[lane],
+                    old[lane],
+                    old_upstream_factor[lane] * old_upstream[lane],
+                );
+                values[lane] = fma(advected[lane], upstream[lane], stored);
                 if flux.is_some() {
-                    values[lane] = fma(heat, passed_on[lane], values[lane]);
+                    values[lane] = fma(heat, upstream_response[lane], values[lane]);
                 }
             }
             *own = values;
@@ -133,9 +141,9 @@ impl Factors<'_> {
         let mut tail = 0.0;
         for (own, mode) in rest.iter_mut().zip(whole..) {
             let step = self.step(mode);
-            *own = step.arriving * upstream[mode] + step.old_upstream * old_upstream[mode] + step.old * old[mode];
+            *own = step.advected * upstream[mode] + step.old_upstream * old_upstream[mode] + step.old * old[mode];
             if flux.is_some() {
-                *own += heat * passed_on[mode];
+                *own += heat * upstream_response[mode];
             }
             tail += *own * surface[mode];
         }
@@ -148,7 +156,7 @@ fn chunks(values: &[f64]) -> impl Iterator<Item = &[f64; LANES]> {
 }
 
 impl CellFactors {
-    /// For columns at `x` `m`.
+    /// Factors, none known yet, for columns at `x` `m`.
     pub fn new(basis: &DepthBasis, x: &[f64]) -> CellFactors {
         let m = basis.len();
         let cells = Cells::new(x);
@@ -163,11 +171,11 @@ impl CellFactors {
             },
             known: vec![false; lengths],
             rates: vec![[[1.0; LANES]; 2]; blocks],
-            blocks: vec![Block::default(); blocks * lengths],
+            blocks: vec![StepLanes::default(); blocks * lengths],
             heated: None,
-            heating: vec![0.0; m],
-            passed_on: vec![0.0; m],
-            taken: vec![0.0; m],
+            source_per_flux: vec![0.0; m],
+            upstream_response: vec![0.0; m],
+            diagonal_response: vec![0.0; m],
             response: 0.0,
         }
     }
@@ -184,7 +192,7 @@ impl CellFactors {
             let rate = conditions.diffusivity * eigenvalue;
             let [rates, lifetimes] = &mut self.rates[mode / LANES];
             (rates[mode % LANES], lifetimes[mode % LANES]) = (rate, 1.0 / rate);
-            self.heating[mode] = basis.surface[mode] / conditions.capacity;
+            self.source_per_flux[mode] = basis.surface[mode] / conditions.capacity;
         }
     }
 
@@ -195,10 +203,10 @@ impl CellFactors {
 
     /// Factors at a length.
     #[inline(always)]
-    pub fn at(&mut self, arithmetic: Arithmetic, length: usize) -> Factors<'_> {
+    pub fn at(&mut self, fma: MultiplyAdd, length: usize) -> Factors<'_> {
         if !self.known[length] {
             self.known[length] = true;
-            self.compute(arithmetic, length);
+            self.compute(fma, length);
         }
         self.known_at(length)
     }
@@ -213,26 +221,21 @@ impl CellFactors {
 
     /// Factors at a length, and those of the flux.
     #[inline(always)]
-    pub fn heated_at(
-        &mut self,
-        arithmetic: Arithmetic,
-        basis: &DepthBasis,
-        length: usize,
-    ) -> (Factors<'_>, HeatFactors<'_>) {
-        self.at(arithmetic, length);
+    pub fn heated_at(&mut self, fma: MultiplyAdd, basis: &DepthBasis, length: usize) -> (Factors<'_>, HeatFactors<'_>) {
+        self.at(fma, length);
         if self.heated != Some(length) {
             self.heated = Some(length);
             for mode in 0..basis.len() {
                 let step = self.known_at(length).step(mode);
-                self.passed_on[mode] = self.heating[mode] * step.fed_upstream;
-                self.taken[mode] = self.heating[mode] * step.fed;
+                self.upstream_response[mode] = self.source_per_flux[mode] * step.source_upstream;
+                self.diagonal_response[mode] = self.source_per_flux[mode] * step.source;
             }
-            self.response = arithmetic.dot(&basis.surface, &self.taken);
+            self.response = fma.dot(&basis.surface, &self.diagonal_response);
         }
         let heat = HeatFactors {
-            heating: &self.heating,
-            passed_on: &self.passed_on,
-            taken: &self.taken,
+            source_per_flux: &self.source_per_flux,
+            upstream_response: &self.upstream_response,
+            diagonal_response: &self.diagonal_response,
             response: self.response,
         };
         (self.known_at(length), heat)
@@ -240,16 +243,26 @@ impl CellFactors {
 
     /// [`ModeStep`] of every mode.
     #[inline(always)]
-    fn compute(&mut self, arithmetic: Arithmetic, length: usize) {
+    fn compute(&mut self, fma: MultiplyAdd, length: usize) {
         let (length_of_cell, speed) = (self.cells.lengths[length], self.conditions.speed);
-        let passage = (length_of_cell / speed, speed / length_of_cell);
+        let transit = Transit::new(length_of_cell, speed);
         let storage = 1.0 / self.conditions.duration;
         let count = self.rates.len();
         for (block, [rates, lifetimes]) in self.blocks[count * length..].iter_mut().zip(&self.rates) {
-            let mut factors = Block::default();
+            let mut factors = StepLanes::default();
             for lane in 0..LANES {
-                let step = ModeStep::at(arithmetic, (rates[lane], lifetimes[lane]), storage, passage);
-                let step = [step.arriving, step.old_upstream, step.old, step.fed_upstream, step.fed];
+                let rate = DecayRate {
+                    rate: rates[lane],
+                    lifetime: lifetimes[lane],
+                };
+                let step = ModeStep::at(fma, rate, storage, transit);
+                let step = [
+                    step.advected,
+                    step.old_upstream,
+                    step.old,
+                    step.source_upstream,
+                    step.source,
+                ];
                 for (factors, factor) in factors.iter_mut().zip(step) {
                     factors[lane] = factor;
                 }
@@ -263,7 +276,8 @@ impl CellFactors {
 mod tests {
     use super::*;
 
-    /// Whatever was asked before: columns on either side, under other conditions, with heat or without.
+    /// Factors do not depend on what was asked before: columns on either side, under other conditions, with heat or
+    /// without.
     #[test]
     fn what_is_kept_is_the_step_of_the_cell() {
         let x = [-0.1, -0.01, -0.004, -0.002, 0.0, 0.002, 0.004, 0.01, 0.1];
@@ -292,21 +306,21 @@ mod tests {
                     spacing,
                 };
                 let length = cells.length_of(&column);
-                let (factors, heat) = cells.heated_at(Arithmetic::SEPARATE, &basis, length);
+                let (factors, heat) = cells.heated_at(MultiplyAdd::SEPARATE, &basis, length);
                 let mut response = 0.0;
                 for mode in 0..basis.len() {
                     let rate = 1.4e-5 * basis.eigenvalues[mode];
-                    let passage = (spacing / speed, speed / spacing);
-                    let step = ModeStep::at(Arithmetic::SEPARATE, (rate, 1.0 / rate), 1.0 / duration, passage);
+                    let (rate, transit) = (DecayRate::new(rate), Transit::new(spacing, speed));
+                    let step = ModeStep::at(MultiplyAdd::SEPARATE, rate, 1.0 / duration, transit);
                     let kept = factors.step(mode);
-                    let heating = basis.surface[mode] / 3.6e6;
-                    response += basis.surface[mode] * heating * step.fed;
+                    let source_per_flux = basis.surface[mode] / 3.6e6;
+                    response += basis.surface[mode] * source_per_flux * step.source;
                     for (kept, exact) in [
-                        (kept.arriving, step.arriving),
+                        (kept.advected, step.advected),
                         (kept.old_upstream, step.old_upstream),
                         (kept.old, step.old),
-                        (heat.passed_on[mode], heating * step.fed_upstream),
-                        (heat.taken[mode], heating * step.fed),
+                        (heat.upstream_response[mode], source_per_flux * step.source_upstream),
+                        (heat.diagonal_response[mode], source_per_flux * step.source),
                     ] {
                         // The lengths differ by round-off.
                         assert!(

@@ -25,7 +25,7 @@ use incoming::Incoming;
 use march::Heated;
 use thermal_map::ThermalMap;
 
-/// What the heat of a rail needs and what does not change after initialisation.
+/// Heat of a rail: all that a step needs and that does not change after initialisation.
 pub struct Heat {
     /// Eigenbasis of the depth operator.
     pub basis: DepthBasis,
@@ -36,7 +36,7 @@ pub struct Heat {
 }
 
 impl Heat {
-    /// For a mesh, with the exact map from temperature to displacement on it.
+    /// Heat on a mesh, with the exact map from temperature to displacement on it.
     ///
     /// # Errors
     /// [`crate::error::Error::DepthBasis`].
@@ -62,7 +62,7 @@ impl Heat {
         let m = self.basis.len();
         self.incoming.enter(
             rise,
-            &mut field.temperature[inflow * m..(inflow + 1) * m],
+            &mut field.amplitudes[inflow * m..(inflow + 1) * m],
             &mut field.surface[inflow],
         );
     }
@@ -128,7 +128,7 @@ mod tests {
                         let rise = if step % 20 < 10 { 100.0 } else { 0.0 };
                         incoming.enter(rise, &mut after[inflow * m..][..m], &mut surface[inflow]);
                         let mut field = Heated {
-                            temperature: &mut after,
+                            amplitudes: &mut after,
                             surface: &mut surface,
                             flux: &mut vec![0.0; mesh.contact_nodes],
                         };

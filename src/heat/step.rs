@@ -1,6 +1,6 @@
 //! One mode of the temperature on its way through the cell between two columns.
 //!
-//! A mode decays at the rate r = κλ and is fed by f = φ(0) q/(ρ c_p): ∂a/∂t − V ∂a/∂x₁ + r a = f. In the steady state, with f
+//! A mode decays at the rate r = κλ with a source f = φ(0) q/(ρ c_p): ∂a/∂t − V ∂a/∂x₁ + r a = f. In the steady state, with f
 //! linear over the cell of length Δ from the column upstream (U) to the next one (O), this is solved exactly by an exponential
 //! integrator (M. Hochbruck and A. Ostermann, *Exponential integrators*, Acta Numerica 19, 2010),
 //!
@@ -8,7 +8,7 @@
 //!
 //! z = r Δ/|V|,  E = e⁻ᶻ,  g = (1 − E)/r,  ω = 1/z − 1/(eᶻ − 1).
 //!
-//! It is of second order in Δ, and exact for what decays without being fed, however long the cell. What a step of Δt stores,
+//! It is of second order in Δ, and exact for what decays without a source, however long the cell. What a step of Δt stores,
 //! (a − aⁿ)/Δt at both ends, is taken from f with weights c and d, c + d = g:
 //!
 //! (1 + d/Δt) a_O = (E − c/Δt) a_U + c/Δt aⁿ_U + d/Δt aⁿ_O + G f_U + H f_O,  c = min(G, E Δt).
@@ -25,96 +25,131 @@
 //! and over cells of one length the weights of a column add up to 1, whatever V, Δt and λ.
 
 use crate::numerics::decay::{Decay, decay};
-use crate::numerics::dense::Arithmetic;
+use crate::numerics::dense::MultiplyAdd;
 
 /// Factors on what makes a column's amplitude in a step.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ModeStep {
-    /// On the amplitude upstream.
-    pub arriving: f64,
-    /// On that of the step before upstream.
+    /// Factor on the amplitude upstream.
+    pub advected: f64,
+    /// Factor on the amplitude upstream in the step before.
     pub old_upstream: f64,
-    /// On that of the step before.
+    /// Factor on the amplitude in the step before.
     pub old: f64,
-    /// On f upstream, `s`.
-    pub fed_upstream: f64,
-    /// On f, `s`.
-    pub fed: f64,
+    /// Factor on the source f upstream, `s`.
+    pub source_upstream: f64,
+    /// Factor on the source f in the column itself, `s`: the diagonal of the recurrence.
+    pub source: f64,
+}
+
+/// Rate of decay of a mode and its inverse.
+#[derive(Debug, Clone, Copy)]
+pub struct DecayRate {
+    /// Rate of decay r = κλ, `1/s`.
+    pub rate: f64,
+    /// Inverse 1/r, `s`.
+    pub lifetime: f64,
+}
+
+impl DecayRate {
+    /// Rate r `1/s` of a mode.
+    #[cfg(any(test, feature = "verification"))]
+    pub fn new(rate: f64) -> DecayRate {
+        DecayRate {
+            rate,
+            lifetime: 1.0 / rate,
+        }
+    }
+}
+
+/// Time in which the rail crosses a cell and its inverse.
+#[derive(Debug, Clone, Copy)]
+pub struct Transit {
+    /// Time Δ/|V|, `s`.
+    pub time: f64,
+    /// Inverse |V|/Δ, `1/s`.
+    pub rate: f64,
+}
+
+impl Transit {
+    /// Transit through a cell of length Δ `spacing` `m` at |V| `speed` `m/s`.
+    pub fn new(spacing: f64, speed: f64) -> Transit {
+        Transit {
+            time: spacing / speed,
+            rate: speed / spacing,
+        }
+    }
 }
 
 /// A mode and a cell.
 #[derive(Debug, Clone, Copy)]
 pub struct Crossing {
-    /// r, `1/s`.
+    /// Rate of decay r = κλ, `1/s`.
     pub rate: f64,
-    /// 1/Δt, `1/s`.
+    /// Inverse 1/Δt of the step, `1/s`.
     pub storage: f64,
-    /// Δ, `m`.
+    /// Length Δ of the cell, `m`.
     pub spacing: f64,
-    /// |V|, `m/s`.
+    /// Speed |V| of the rail, `m/s`.
     pub speed: f64,
 }
 
 /// Amplitudes, those of the step before and f, each upstream and at the column.
 #[derive(Debug, Clone, Copy)]
-pub struct Ends {
-    /// a.
+pub struct ModeEnds {
+    /// Amplitudes a.
     pub value: [f64; 2],
-    /// aⁿ.
+    /// Amplitudes aⁿ in the step before.
     pub old: [f64; 2],
-    /// f, per second.
-    pub feed: [f64; 2],
+    /// Sources f, per second.
+    pub source: [f64; 2],
 }
 
 impl ModeStep {
-    /// From r `1/s` and Δ/|V| `s`, each with its inverse, and 1/Δt, without branches: several at once vectorise.
+    /// Step of a mode with 1/Δt `storage` `1/s`, without branches: several at once vectorise.
     #[inline(always)]
-    pub fn at(
-        arithmetic: Arithmetic,
-        (rate, lifetime): (f64, f64),
-        storage: f64,
-        (passage, passages): (f64, f64),
-    ) -> ModeStep {
-        let Decay { keep, upstream, own } = decay(arithmetic, rate * passage, lifetime * passages);
-        let (fed_upstream, fed) = (upstream * lifetime, own * lifetime);
-        let stored_upstream = (fed_upstream * storage).min(keep);
-        let stored = arithmetic.multiply_add(fed_upstream + fed, storage, -stored_upstream);
+    pub fn at(fma: MultiplyAdd, rate: DecayRate, storage: f64, transit: Transit) -> ModeStep {
+        let DecayRate { rate, lifetime } = rate;
+        let Decay { keep, upstream, own } = decay(fma, rate * transit.time, lifetime * transit.rate);
+        let (source_upstream, source) = (upstream * lifetime, own * lifetime);
+        let stored_upstream = (source_upstream * storage).min(keep);
+        let stored = fma.multiply_add(source_upstream + source, storage, -stored_upstream);
         let share = 1.0 / (1.0 + stored);
         ModeStep {
-            arriving: (keep - stored_upstream) * share,
+            advected: (keep - stored_upstream) * share,
             old_upstream: stored_upstream * share,
             old: stored * share,
-            fed_upstream: fed_upstream * share,
-            fed: fed * share,
+            source_upstream: source_upstream * share,
+            source: source * share,
         }
     }
 
-    /// ν.
+    /// Weight ν of the end upstream in what the cell stores.
     #[cfg(any(test, feature = "verification"))]
-    pub fn stored_share(&self) -> f64 {
+    pub fn storage_weight(&self) -> f64 {
         self.old_upstream / (self.old_upstream + self.old)
     }
 
-    /// ω.
+    /// Weight ω of the end upstream in the source and the decay.
     #[cfg(any(test, feature = "verification"))]
-    pub fn fed_share(&self) -> f64 {
-        self.fed_upstream / (self.fed_upstream + self.fed)
+    pub fn source_weight(&self) -> f64 {
+        self.source_upstream / (self.source_upstream + self.source)
     }
 
-    /// The amplitude of the step before at the column, which the step was made from; `ends` holds all the others.
-    pub fn own_old(&self, ends: &Ends) -> f64 {
+    /// Amplitude of the step before at the column, from all the others in `ends`: the step solved backwards.
+    pub fn previous(&self, ends: &ModeEnds) -> f64 {
         if self.old == 0.0 {
             return 0.0;
         }
-        let rest = self.arriving * ends.value[0]
+        let rest = self.advected * ends.value[0]
             + self.old_upstream * ends.old[0]
-            + self.fed_upstream * ends.feed[0]
-            + self.fed * ends.feed[1];
+            + self.source_upstream * ends.source[0]
+            + self.source * ends.source[1];
         (ends.value[1] - rest) / self.old
     }
 
     /// Change of the column's amplitude with |V|.
-    pub fn speed_tangent(&self, crossing: &Crossing, ends: &Ends) -> f64 {
+    pub fn speed_tangent(&self, crossing: &Crossing, ends: &ModeEnds) -> f64 {
         let Crossing {
             rate,
             storage,
@@ -122,12 +157,12 @@ impl ModeStep {
             speed,
         } = *crossing;
         // 1/(1 + d/Δt), from E + r g = 1.
-        let share = self.arriving + self.old_upstream + rate * (self.fed_upstream + self.fed);
-        let keep = (self.arriving + self.old_upstream) / share;
-        let fed_upstream = self.fed_upstream / share;
+        let share = self.advected + self.old_upstream + rate * (self.source_upstream + self.source);
+        let keep = (self.advected + self.old_upstream) / share;
+        let source_upstream = self.source_upstream / share;
         // dE/dV = z E/V, dG/dV = (G − E Δ/V)/V and dH/dV = −G/V. At V = 0 nothing arrives, and G/V is 1/(r² Δ).
         let per_speed = if speed > 0.0 {
-            fed_upstream / speed
+            source_upstream / speed
         } else {
             1.0 / (rate * rate * spacing)
         };
@@ -137,11 +172,11 @@ impl ModeStep {
             0.0
         };
         let (keep, upstream, own) = (rate * delayed, per_speed - delayed, -per_speed);
-        let stored_upstream = if self.arriving > 0.0 { storage * upstream } else { keep };
+        let stored_upstream = if self.advected > 0.0 { storage * upstream } else { keep };
         let stored = storage * (upstream + own) - stored_upstream;
-        let Ends { value, old, feed } = ends;
+        let ModeEnds { value, old, source } = ends;
         let growth = stored_upstream * (value[0] - old[0]) + stored * (value[1] - old[1]);
-        share * (keep * value[0] + upstream * feed[0] + own * feed[1] - growth)
+        share * (keep * value[0] + upstream * source[0] + own * source[1] - growth)
     }
 }
 
@@ -157,17 +192,17 @@ mod tests {
             spacing,
             speed,
         } = *crossing;
-        let passage = (spacing / speed, speed / spacing);
-        ModeStep::at(Arithmetic::SEPARATE, (rate, 1.0 / rate), storage, passage)
+        let transit = Transit::new(spacing, speed);
+        ModeStep::at(MultiplyAdd::SEPARATE, DecayRate::new(rate), storage, transit)
     }
 
     /// The amplitude at the column, from all else in `ends`.
-    fn advance(step: &ModeStep, ends: &Ends) -> f64 {
-        step.arriving * ends.value[0]
+    fn advance(step: &ModeStep, ends: &ModeEnds) -> f64 {
+        step.advected * ends.value[0]
             + step.old_upstream * ends.old[0]
             + step.old * ends.old[1]
-            + step.fed_upstream * ends.feed[0]
-            + step.fed * ends.feed[1]
+            + step.source_upstream * ends.source[0]
+            + step.source * ends.source[1]
     }
 
     /// Decay, Courant number and their cell, from slow to fast.
@@ -188,40 +223,40 @@ mod tests {
         #[test]
         fn weights_are_positive_and_the_cell_is_balanced(
             crossing in crossings(),
-            upstream in 0.0..1.0, old in prop::array::uniform2(0.0..1.0), feed in prop::array::uniform2(0.0..1.0),
+            upstream in 0.0..1.0, old in prop::array::uniform2(0.0..1.0), source in prop::array::uniform2(0.0..1.0),
         ) {
             let step = step(&crossing);
             let Crossing { rate, storage, spacing, speed } = crossing;
-            for weight in [step.arriving, step.old_upstream, step.old, step.fed_upstream, step.fed] {
+            for weight in [step.advected, step.old_upstream, step.old, step.source_upstream, step.source] {
                 prop_assert!(weight >= 0.0, "{step:?}");
             }
-            let feed = feed.map(|f: f64| f * (rate + storage));
-            let mut ends = Ends { value: [upstream, 0.0], old, feed };
+            let source = source.map(|f: f64| f * (rate + storage));
+            let mut ends = ModeEnds { value: [upstream, 0.0], old, source };
             ends.value[1] = advance(&step, &ends);
             let mean = |share: f64, [upstream, own]: [f64; 2]| share * upstream + (1.0 - share) * own;
-            let stored = |values: [f64; 2]| spacing * storage * mean(step.stored_share(), values);
+            let stored = |values: [f64; 2]| spacing * storage * mean(step.storage_weight(), values);
             let terms = [
                 stored(ends.value),
                 -stored(old),
                 speed * (ends.value[1] - upstream),
-                rate * spacing * mean(step.fed_share(), ends.value),
-                -spacing * mean(step.fed_share(), feed),
+                rate * spacing * mean(step.source_weight(), ends.value),
+                -spacing * mean(step.source_weight(), source),
             ];
             let size: f64 = terms.iter().map(|term| term.abs()).sum::<f64>() + speed;
             prop_assert!(terms.iter().sum::<f64>().abs() < 1e-13 * size, "{terms:?}");
             // And what the step was made from is found again, to round-off over what is left of it.
-            let found = step.own_old(&Ends { old: [old[0], f64::NAN], ..ends });
+            let found = step.previous(&ModeEnds { old: [old[0], f64::NAN], ..ends });
             prop_assert!((found - old[1]).abs() < 1e-14 * (1.0 + 1.0 / step.old), "{found} {}", old[1]);
         }
 
-        /// With all Δt the same, that of the exact solution where nothing is fed.
+        /// Steady state: independent of Δt, and that of the exact solution where there are no sources.
         #[test]
-        fn what_is_settled_is_the_steady_state(crossing in crossings(), feed in prop::array::uniform2(0.0..1.0)) {
+        fn what_is_settled_is_the_steady_state(crossing in crossings(), source in prop::array::uniform2(0.0..1.0)) {
             let steady = step(&Crossing { storage: 0.0, ..crossing });
-            let feed = feed.map(|f: f64| f * crossing.rate);
-            let mut ends = Ends { value: [0.7, 0.0], old: [0.7, 0.0], feed };
+            let source = source.map(|f: f64| f * crossing.rate);
+            let mut ends = ModeEnds { value: [0.7, 0.0], old: [0.7, 0.0], source };
             let settled = advance(&steady, &ends);
-            prop_assert!((steady.arriving - (-crossing.rate * crossing.spacing / crossing.speed).exp()).abs() < 1e-14);
+            prop_assert!((steady.advected - (-crossing.rate * crossing.spacing / crossing.speed).exp()).abs() < 1e-14);
             ends.old[1] = settled;
             prop_assert!((advance(&step(&crossing), &ends) - settled).abs() < 1e-14);
         }
@@ -229,14 +264,14 @@ mod tests {
         #[test]
         fn the_tangent_is_the_derivative(
             crossing in crossings(),
-            value in prop::array::uniform2(0.0..1.0), old in prop::array::uniform2(0.0..1.0), feed in prop::array::uniform2(0.0..1.0),
+            value in prop::array::uniform2(0.0..1.0), old in prop::array::uniform2(0.0..1.0), source in prop::array::uniform2(0.0..1.0),
         ) {
-            let feed = feed.map(|f: f64| f * (crossing.rate + crossing.storage));
-            let ends = Ends { value, old, feed };
+            let source = source.map(|f: f64| f * (crossing.rate + crossing.storage));
+            let ends = ModeEnds { value, old, source };
             let at = |change: f64| {
                 let crossing = Crossing { speed: crossing.speed * (1.0 + change), ..crossing };
                 let step = step(&crossing);
-                (advance(&step, &ends), step.arriving > 0.0)
+                (advance(&step, &ends), step.advected > 0.0)
             };
             let h = 1e-4;
             let (ahead, behind) = (at(h), at(-h));

@@ -6,8 +6,8 @@ use crate::friction::{self, FrictionState, PointLaw};
 use crate::parameters::Parameters;
 use crate::settings::HeatSettings;
 
-/// What heats and cools one column's surface, at the rail temperature θ (rise):
-/// q = ᾱ [ μ(θ) P + S − H θ ], the condition (23) with P = p φ s, S = θ_w p / r and H = k ρ c_p |s| p + p / r.
+/// Heating and cooling of one column's surface at the rail temperature θ (rise): q = ᾱ [ μ(θ) P + S − H θ ], the
+/// condition (23) with P = p φ s, S = θ_w p / r and H = k ρ c_p |s| p + p / r.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct SurfaceExchange {
     /// P: friction power per area and friction coefficient, `W/m²`.
@@ -35,7 +35,7 @@ pub struct ExchangeChange {
     pub coefficient: f64,
 }
 
-/// What [`SurfaceExchange`] changes by.
+/// Change of a [`SurfaceExchange`].
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct ExchangeTangent {
     /// dP, `W/m²`.
@@ -113,27 +113,31 @@ pub struct SurfaceCondition<'a> {
 /// Changes that all columns have in common.
 #[derive(Debug, Clone, Copy)]
 pub struct CommonChange {
-    /// Of the ambient temperature, `K`.
+    /// Change of the ambient temperature, `K`.
     pub ambient: f64,
-    /// Of the factor on μ.
+    /// Change of the factor on μ.
     pub friction_scale: f64,
 }
 
+/// Temperature rise at a column's surface as a function of its own heat flux q: θ = `unheated` + `response` q.
+#[derive(Debug, Clone, Copy)]
+pub struct SurfaceRise {
+    /// Rise without heat flux, or its change, `K`.
+    pub unheated: f64,
+    /// Rise per heat flux, `K/(W/m²)`.
+    pub response: f64,
+}
+
 impl SurfaceCondition<'_> {
-    /// The flux q into the rail that satisfies (23) where θ = `unheated` + `response` q: Newton with a bracket, from the `guess` of θ
+    /// The flux q into the rail that satisfies (23) at the surface temperature θ of a [`SurfaceRise`]: Newton with a bracket, from the `guess` of θ
     /// if that can be it, else from the hot end. `position` is that of the column, `m`, for the error.
     ///
     /// Friction that rises with temperature may have several solutions: from a guess it is one next to it.
     ///
     /// # Errors
     /// [`Error::SurfaceHeatNotConverged`].
-    pub fn flux(
-        &self,
-        exchange: &SurfaceExchange,
-        (unheated, response): (f64, f64),
-        guess: f64,
-        position: f64,
-    ) -> Result<f64> {
+    pub fn flux(&self, exchange: &SurfaceExchange, rise: SurfaceRise, guess: f64, position: f64) -> Result<f64> {
+        let SurfaceRise { unheated, response } = rise;
         let parameters = self.friction.parameters;
         let gain = response * parameters.heat_partition;
         let loss = exchange.loss();
@@ -174,15 +178,17 @@ impl SurfaceCondition<'_> {
         })
     }
 
-    /// The change of [`SurfaceCondition::flux`] at its solution with surface temperature `rise`, `K`, where `unheated` is
+    /// The change of [`SurfaceCondition::flux`] at its solution with surface temperature `rise`, `K`, where `change` holds
     /// the change of the temperature at an unchanged flux.
     pub fn flux_tangent(
         &self,
         exchange: &SurfaceExchange,
         tangent: &ExchangeTangent,
         common: &CommonChange,
-        (rise, unheated, response): (f64, f64, f64),
+        rise: f64,
+        change: SurfaceRise,
     ) -> f64 {
+        let SurfaceRise { unheated, response } = change;
         let parameters = self.friction.parameters;
         let (mu, slope) = exchange.law.of(self.friction.coefficient(rise));
         let by_scale = friction::coefficient(parameters, self.friction.ambient + rise).0;
@@ -238,7 +244,7 @@ mod tests {
             let parameters = parameters(10.0_f64.powf(log_resistance));
             let condition = condition(&parameters);
             let exchange = SurfaceExchange::new(&parameters, pressure, Sliding::new(-speed, -saturation), wheel_rise);
-            let flux = condition.flux(&exchange, (unheated, response), f64::INFINITY, 0.0).unwrap();
+            let flux = condition.flux(&exchange, SurfaceRise { unheated, response }, f64::INFINITY, 0.0).unwrap();
             // (23), written out.
             let rise = unheated + response * flux;
             let mu = 0.9 * friction::coefficient(&parameters, 293.15 + rise).0;
@@ -285,7 +291,8 @@ mod tests {
                     wheel_rise + h * change.wheel_rise,
                 );
                 exchange.law = law(h);
-                let flux = condition.flux(&exchange, (unheated + h * du, response), f64::INFINITY, 0.0).unwrap();
+                let rise = SurfaceRise { unheated: unheated + h * du, response };
+                let flux = condition.flux(&exchange, rise, f64::INFINITY, 0.0).unwrap();
                 let rise = unheated + h * du + response * flux;
                 (flux, friction::coefficient(&parameters, condition.friction.ambient + rise).1)
             };
@@ -297,7 +304,8 @@ mod tests {
             exchange.law = law(0.0);
             let tangent = SurfaceExchange::tangent(&parameters, pressure, sliding, wheel_rise, &change);
             let rise = unheated + response * here.0;
-            let exact = condition(&parameters).flux_tangent(&exchange, &tangent, &common, (rise, du, response));
+            let change = SurfaceRise { unheated: du, response };
+            let exact = condition(&parameters).flux_tangent(&exchange, &tangent, &common, rise, change);
             let difference = (ahead.0 - behind.0) / (2.0 * h);
             // Truncation h², round-off of the flux over h.
             prop_assert!((exact - difference).abs() <= 1e-5 * exact.abs() + 1e-9 / h * here.0.abs().max(1e4), "{exact} {difference}");
@@ -311,7 +319,7 @@ mod tests {
         condition.settings.surface_newton_steps = 0;
         let exchange = SurfaceExchange::new(&parameters, 1e9, Sliding::new(0.1, 1.0), 0.0);
         assert!(matches!(
-            condition.flux(&exchange, (0.0, 1e-7), f64::INFINITY, 1.5e-3),
+            condition.flux(&exchange, SurfaceRise { unheated: 0.0, response: 1e-7 }, f64::INFINITY, 1.5e-3),
             Err(Error::SurfaceHeatNotConverged { position, iterations: 0, .. }) if position == 1.5e-3
         ));
     }

@@ -6,14 +6,14 @@
 //!    ("moments") carry it. The weights are common to all columns: the leading right singular vectors of the map over the
 //!    profiles that a heated surface can make ([`super::compression`]).
 //! 2. Along the rail. The displacement is smooth also in the place of its cause, but for the nodes next to it. Columns are
-//!    taken in blocks of √n; far from a block, a few combinations of its moments carry their effect ("effects"). Next to
-//!    the block what these leave is added from the moments themselves.
+//!    taken in blocks of √n; far from a block, a few combinations of its moments ("far moments") carry the response to it.
+//!    Next to the block what these leave is added from the moments themselves.
 
 use super::basis::DepthBasis;
-use super::compression::{Moments, pieces};
+use super::compression::{Moments, block_responses};
 use crate::body::compliance::ThermalDisplacement;
 use crate::body::mesh::Mesh;
-use crate::numerics::dense::{self, Arithmetic, LANES};
+use crate::numerics::dense::{self, LANES, MultiplyAdd};
 use nalgebra::DMatrix;
 use std::ops::Range;
 
@@ -26,28 +26,29 @@ pub struct ThermalMap {
     modes: usize,
     /// Number of moments of a column, a multiple of [`LANES`]: the partial sums of a product.
     moments: usize,
-    /// Number of effects of all blocks, padded to [`LANES`].
-    effects: usize,
+    /// Number of far moments of all blocks, padded to [`LANES`].
+    far_moments: usize,
     /// Weights of the moments: per [`LANES`] moments and mode the weights of those moments.
     weights: Vec<[f64; LANES]>,
-    blocks: Vec<Block>,
-    /// Displacement per effect, row by row, 2n × effects. Gains are in single precision: 6e-8 is far below the tolerance,
-    /// and it halves the memory that an application streams through.
-    far: Vec<f32>,
+    blocks: Vec<ColumnBlock>,
+    /// Displacement per far moment, row by row, 2n × far moments. Responses are in single precision: 6e-8 is far below the
+    /// tolerance, and it halves the memory that an application streams through.
+    far_response: Vec<f32>,
 }
 
 /// Neighbouring columns and what their temperature does.
 #[derive(Debug, Clone)]
-struct Block {
+struct ColumnBlock {
     columns: Range<usize>,
-    /// Its effects among all.
-    effects: Range<usize>,
-    /// Effects per moment of the columns, row by row.
+    /// Range of the block's far moments among those of all blocks.
+    far_moments: Range<usize>,
+    /// Far moments per moment of the columns, row by row.
     combinations: Vec<f32>,
     /// Contact nodes next to the block.
     near: Range<usize>,
-    /// Their displacement per moment of the columns, less that of the effects; along x₁, then along x₂, row by row.
-    gains: Vec<f32>,
+    /// Displacement of the near nodes per moment of the columns, less that by the far moments; along x₁,
+    /// then along x₂, row by row.
+    near_response: Vec<f32>,
 }
 
 impl ThermalMap {
@@ -68,66 +69,70 @@ impl ThermalMap {
                 (0..modes).map(|mode| std::array::from_fn(|lane| column_moments.weights[(mode, first + lane)])),
             );
         }
-        let pieces = if moments == 0 {
+        let block_responses = if moments == 0 {
             Vec::new()
         } else {
-            pieces(mesh, &column_moments, tolerance)
+            block_responses(mesh, &column_moments, tolerance)
         };
-        let mut blocks = Vec::with_capacity(pieces.len());
-        // Displacement per effect, effect by effect.
-        let (mut effects, mut far) = (0, Vec::new());
-        for piece in pieces {
-            let own = piece.parts.len() / (2 * n);
-            far.extend(piece.parts);
-            blocks.push(Block {
-                columns: piece.columns,
-                effects: effects..effects + own,
-                combinations: single(&piece.combinations),
-                near: piece.near,
-                gains: single(&piece.gains),
+        let mut blocks = Vec::with_capacity(block_responses.len());
+        // Displacement per far moment, one far moment after the other.
+        let (mut far_moments, mut far_response) = (0, Vec::new());
+        for response in block_responses {
+            let own = response.far_response.len() / (2 * n);
+            far_response.extend(response.far_response);
+            blocks.push(ColumnBlock {
+                columns: response.columns,
+                far_moments: far_moments..far_moments + own,
+                combinations: single(&response.combinations),
+                near: response.near,
+                near_response: single(&response.near_response),
             });
-            effects += own;
+            far_moments += own;
         }
-        let far = DMatrix::from_vec(2 * n, effects, far).transpose();
-        effects = effects.next_multiple_of(LANES);
+        let far_response = DMatrix::from_vec(2 * n, far_moments, far_response).transpose();
+        far_moments = far_moments.next_multiple_of(LANES);
         ThermalMap {
             modes,
             moments,
-            effects,
+            far_moments,
             weights,
             blocks,
-            far: single(far.resize_vertically(effects, 0.0).as_slice()),
+            far_response: single(far_response.resize_vertically(far_moments, 0.0).as_slice()),
         }
     }
 
-    /// Numbers of moments a column, of effects and of gains.
+    /// Numbers of moments a column, of far moments and of the values of all responses.
     pub fn size(&self) -> (usize, usize, usize) {
         let near = self
             .blocks
             .iter()
-            .map(|block| block.combinations.len() + block.gains.len());
-        (self.moments, self.effects, self.far.len() + near.sum::<usize>())
+            .map(|block| block.combinations.len() + block.near_response.len());
+        (
+            self.moments,
+            self.far_moments,
+            self.far_response.len() + near.sum::<usize>(),
+        )
     }
 
-    /// Values that [`ThermalMap::apply`] needs for moments and effects.
+    /// Values that [`ThermalMap::apply`] needs for moments and far moments.
     pub fn scratch_len(&self) -> usize {
         let columns = self.blocks.last().map_or(0, |block| block.columns.end);
-        columns * self.moments + self.effects
+        columns * self.moments + self.far_moments
     }
 
     /// The displacement of the field into `displacement` (2n); `scratch` holds [`ThermalMap::scratch_len`] values.
     pub fn apply(&self, amplitudes: &[f64], scratch: &mut [f64], displacement: &mut [f64]) {
         dense::vectorised(
             #[inline(always)]
-            |arithmetic| self.apply_kernel(arithmetic, amplitudes, scratch, displacement),
+            |fma| self.apply_kernel(fma, amplitudes, scratch, displacement),
         )
     }
 
     #[inline(always)]
-    fn apply_kernel(&self, arithmetic: Arithmetic, amplitudes: &[f64], scratch: &mut [f64], displacement: &mut [f64]) {
+    fn apply_kernel(&self, fma: MultiplyAdd, amplitudes: &[f64], scratch: &mut [f64], displacement: &mut [f64]) {
         displacement.fill(0.0);
         // Columns upstream of the contact hold no heat unless rail came in warm: their blocks are left out.
-        let is_warm = |block: &&Block| {
+        let is_warm = |block: &&ColumnBlock| {
             let columns = &amplitudes[block.columns.start * self.modes..block.columns.end * self.modes];
             columns.chunks_exact(self.modes).any(|column| column[0] != 0.0)
         };
@@ -139,8 +144,8 @@ impl ThermalMap {
             return;
         };
         let warm = &self.blocks[first..=last];
-        let (effects, all_moments) = scratch.split_at_mut(self.effects);
-        effects.fill(0.0);
+        let (far_moments, all_moments) = scratch.split_at_mut(self.far_moments);
+        far_moments.fill(0.0);
         let (shifts, lifts) = displacement.split_at_mut(displacement.len() / 2);
         for block in warm {
             let columns = block.columns.clone();
@@ -149,27 +154,27 @@ impl ThermalMap {
                 .chunks_exact(self.modes)
                 .zip(moments.chunks_exact_mut(self.moments))
             {
-                self.column_moments(arithmetic, column, moments);
+                self.column_moments(fma, column, moments);
             }
             multiply_add(
-                arithmetic,
+                fma,
                 &block.combinations,
                 moments,
-                &mut effects[block.effects.clone()],
+                &mut far_moments[block.far_moments.clone()],
             );
-            let (along, upward) = block.gains.split_at(block.gains.len() / 2);
-            multiply_add(arithmetic, along, moments, &mut shifts[block.near.clone()]);
-            multiply_add(arithmetic, upward, moments, &mut lifts[block.near.clone()]);
+            let (along, upward) = block.near_response.split_at(block.near_response.len() / 2);
+            multiply_add(fma, along, moments, &mut shifts[block.near.clone()]);
+            multiply_add(fma, upward, moments, &mut lifts[block.near.clone()]);
         }
-        let end = warm[warm.len() - 1].effects.end;
-        let range = warm[0].effects.start / LANES * LANES..end.next_multiple_of(LANES);
-        for (row, displacement) in self.far.chunks_exact(self.effects).zip(displacement) {
-            *displacement += dot(arithmetic, &row[range.clone()], &effects[range.clone()]);
+        let end = warm[warm.len() - 1].far_moments.end;
+        let range = warm[0].far_moments.start / LANES * LANES..end.next_multiple_of(LANES);
+        for (row, displacement) in self.far_response.chunks_exact(self.far_moments).zip(displacement) {
+            *displacement += dot(fma, &row[range.clone()], &far_moments[range.clone()]);
         }
     }
 
     #[inline(always)]
-    fn column_moments(&self, arithmetic: Arithmetic, column: &[f64], moments: &mut [f64]) {
+    fn column_moments(&self, fma: MultiplyAdd, column: &[f64], moments: &mut [f64]) {
         for (moments, weights) in moments
             .chunks_exact_mut(LANES)
             .zip(self.weights.chunks_exact(self.modes))
@@ -178,11 +183,11 @@ impl ThermalMap {
             let (mut even, mut odd) = ([0.0; LANES], [0.0; LANES]);
             for (amplitudes, weights) in column.chunks(2).zip(weights.chunks(2)) {
                 for lane in 0..LANES {
-                    even[lane] = arithmetic.multiply_add(amplitudes[0], weights[0][lane], even[lane]);
+                    even[lane] = fma.multiply_add(amplitudes[0], weights[0][lane], even[lane]);
                 }
                 if let ([_, amplitude], [_, weights]) = (amplitudes, weights) {
                     for lane in 0..LANES {
-                        odd[lane] = arithmetic.multiply_add(*amplitude, weights[lane], odd[lane]);
+                        odd[lane] = fma.multiply_add(*amplitude, weights[lane], odd[lane]);
                     }
                 }
             }
@@ -199,26 +204,26 @@ fn single(values: &[f64]) -> Vec<f32> {
 
 /// `out += rows · x`.
 #[inline(always)]
-fn multiply_add(arithmetic: Arithmetic, rows: &[f32], x: &[f64], out: &mut [f64]) {
+fn multiply_add(fma: MultiplyAdd, rows: &[f32], x: &[f64], out: &mut [f64]) {
     for (row, out) in rows.chunks_exact(x.len()).zip(out) {
-        *out += dot(arithmetic, row, x);
+        *out += dot(fma, row, x);
     }
 }
 
-/// Σ gains · x of a multiple of [`LANES`] values.
+/// Σ response · x of a multiple of [`LANES`] values.
 #[inline(always)]
-fn dot(arithmetic: Arithmetic, gains: &[f32], x: &[f64]) -> f64 {
+fn dot(fma: MultiplyAdd, response: &[f32], x: &[f64]) -> f64 {
     let mut sums = [0.0; LANES];
-    for (gains, x) in gains.chunks_exact(LANES).zip(x.chunks_exact(LANES)) {
+    for (response, x) in response.chunks_exact(LANES).zip(x.chunks_exact(LANES)) {
         for lane in 0..LANES {
-            sums[lane] = arithmetic.multiply_add(f64::from(gains[lane]), x[lane], sums[lane]);
+            sums[lane] = fma.multiply_add(f64::from(response[lane]), x[lane], sums[lane]);
         }
     }
     // One after the other: summed in pairs, the compiler chose vector registers of half the width for the whole loop.
     sums.iter().sum()
 }
 
-/// On fields that the heat march makes under random fluxes, speeds and times.
+/// Compressed map on fields that the heat march makes under random fluxes, speeds and times.
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -320,7 +325,7 @@ mod tests {
                     &before,
                     &exchange,
                     &mut Heated {
-                        temperature: &mut after,
+                        amplitudes: &mut after,
                         surface: &mut vec![0.0; rail.mesh.columns()],
                         flux: &mut vec![0.0; 61],
                     },
@@ -331,14 +336,14 @@ mod tests {
             let expected = exact_displacement(&rail.mesh, &rail.heat.basis, &rail.exact, &before);
             let mut computed = vec![0.0; expected.len()];
             rail.heat.displacement.apply(&before, &mut vec![0.0; rail.heat.displacement.scratch_len()], &mut computed);
-            // Each moment of each column keeps its gains down to TOLERANCE of the largest displacement that a unit of it
+            // Each moment of each column keeps its responses down to TOLERANCE of the largest displacement that a unit of it
             // makes in the middle of the window; what the columns drop adds up with random signs.
             let error = dense::largest_change(&expected, &computed) / dense::largest(&expected);
             prop_assert!(error <= 10.0 * TOLERANCE, "{error:e}");
         }
     }
 
-    /// Rail that comes in hot is hot in all columns, whose dropped gains add up.
+    /// Rail that comes in hot is hot in all columns, whose dropped responses add up.
     #[test]
     fn the_compressed_map_holds_for_rail_that_comes_in_hot() {
         let rail = rail();

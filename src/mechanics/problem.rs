@@ -4,7 +4,7 @@ use super::front::NearField;
 use super::normal::problem::Constraint;
 use super::transient::Transient;
 use crate::body::compliance::Compliance;
-use crate::friction::memory::Path;
+use crate::friction::memory::ParticlePath;
 use crate::friction::path::PathLaw;
 use crate::parameters::NormalSolver;
 use nalgebra::DMatrix;
@@ -25,7 +25,7 @@ pub struct MechanicsProblem<'a> {
     /// μ, n; where it depends on more than the temperature, that without slip.
     pub friction: &'a [f64],
     /// How it depends on slip and on what was before; none where it does not.
-    pub path: Option<(PathLaw, Path<'a>)>,
+    pub path: Option<(PathLaw, ParticlePath<'a>)>,
     /// Load or penetration.
     pub constraint: Constraint,
     /// Method for the normal problem.

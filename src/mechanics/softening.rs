@@ -64,14 +64,14 @@ impl Softening {
     pub fn update(&mut self, stiff: &DMatrix<f64>, slip: &[f64], per_slip: f64, step: CellStep, forward: bool) -> bool {
         let fastest = slip.iter().fold(0.0, |m: f64, s| s.abs().max(m));
         let was_soft = self.is_soft();
-        if per_slip * (step.upstream + step.own) * fastest <= self.settings.explicit * self.smallest_compliance {
+        if per_slip * (step.upstream + step.diagonal) * fastest <= self.settings.explicit * self.smallest_compliance {
             if was_soft {
                 self.own.fill(0.0);
                 self.compliance.copy_from(stiff);
             }
             return was_soft;
         }
-        let factor = per_slip * step.own;
+        let factor = per_slip * step.diagonal;
         let largest = factor * fastest;
         let change = self
             .own
@@ -94,7 +94,7 @@ impl Softening {
             let mut row = Some(node);
             while let Some(worn) = row.filter(|_| depth > 0.0) {
                 self.compliance[(worn, node)] += depth;
-                depth = self.step.keep * depth + std::mem::take(&mut next);
+                depth = self.step.courant_weight * depth + std::mem::take(&mut next);
                 row = self.downstream(worn);
             }
         }
@@ -112,7 +112,7 @@ impl Softening {
         for k in 0..n {
             let node = if self.forward { n - 1 - k } else { k };
             let own = self.own[node] * pressure[node];
-            carried = self.step.keep * carried + passed_on * upstream + own;
+            carried = self.step.courant_weight * carried + passed_on * upstream + own;
             upstream = own;
             wear[node] -= carried;
         }
@@ -124,7 +124,7 @@ impl Softening {
 
     /// Wear of the next node downstream over that of a node's own, both by the node's pressure alone.
     fn passed_on(&self) -> f64 {
-        self.step.upstream / self.step.own
+        self.step.upstream / self.step.diagonal
     }
 
     fn downstream(&self, node: usize) -> Option<usize> {

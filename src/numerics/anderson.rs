@@ -27,7 +27,7 @@ pub struct Anderson {
 }
 
 impl Anderson {
-    /// For vectors of the given size.
+    /// Acceleration of vectors of the given size.
     pub fn new(size: usize) -> Anderson {
         Anderson {
             size,
@@ -47,7 +47,7 @@ impl Anderson {
         self.iterates = 0;
     }
 
-    /// From the iterate x and its image G(x), the next iterate into `image`.
+    /// Computes the next iterate, into `image`, from the iterate x and its image G(x).
     pub fn next(&mut self, iterate: &[f64], image: &mut [f64]) {
         let size = self.size;
         for ((residual, image), iterate) in self.residual.iter_mut().zip(&*image).zip(iterate) {

@@ -1,6 +1,6 @@
 //! Weights of the exact solution of y′ = −z y + S over a unit interval, for several z at once.
 
-use super::dense::Arithmetic;
+use super::dense::MultiplyAdd;
 use std::f64::consts::LOG2_E;
 
 /// The solution at the end of the interval is `keep` times that at its start, plus, of a source S that is linear over the
@@ -43,8 +43,8 @@ const SERIES: [f64; 12] = [
 
 /// The weights at z > 0, to round-off of each and without branches. `inverse` is 1/z; z may be infinite.
 #[inline(always)]
-pub fn decay(arithmetic: Arithmetic, z: f64, inverse: f64) -> Decay {
-    let fma = |a, b, c| arithmetic.multiply_add(a, b, c);
+pub fn decay(fma: MultiplyAdd, z: f64, inverse: f64) -> Decay {
+    let fma = |a, b, c| fma.multiply_add(a, b, c);
     let clamped = z.min(ALL_GONE);
     // z = n ln 2 − f, e⁻ᶻ = 2⁻ⁿ eᶠ.
     let shifted = fma(clamped, LOG2_E, ROUND);
@@ -85,7 +85,7 @@ mod tests {
     fn the_weights_are_those_of_the_c_library() {
         for exponent in -2100..=500 {
             let z = 10.0_f64.powf(0.01 * f64::from(exponent));
-            let weights = decay(Arithmetic::SEPARATE, z, 1.0 / z);
+            let weights = decay(MultiplyAdd::SEPARATE, z, 1.0 / z);
             let keep = (-z).exp();
             // (1 − E)/z − E = Σ (−1)ᵏ⁺¹ zᵏ k/(k+1)!, the other 1 − (1 − E)/z = Σ (−1)ᵏ⁺¹ zᵏ/(k+1)!.
             let (mut upstream, mut own, mut term) = (0.0, 0.0, -1.0);
@@ -113,6 +113,6 @@ mod tests {
             upstream: 0.0,
             own: 1.0,
         };
-        assert_eq!(decay(Arithmetic::SEPARATE, f64::INFINITY, 0.0), at_once);
+        assert_eq!(decay(MultiplyAdd::SEPARATE, f64::INFINITY, 0.0), at_once);
     }
 }

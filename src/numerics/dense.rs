@@ -8,22 +8,22 @@ use nalgebra::DMatrix;
 /// Runs loops with the widest vector instructions that the machine and the compiler offer. What `kernel` calls must be
 /// `#[inline(always)]` to profit; it receives how this machine multiplies and adds.
 #[inline(always)]
-pub fn vectorised<R>(kernel: impl FnOnce(Arithmetic) -> R) -> R {
+pub fn vectorised<R>(kernel: impl FnOnce(MultiplyAdd) -> R) -> R {
     let arch = pulp::Arch::new();
     #[cfg(target_arch = "x86_64")]
     if let pulp::Arch::V3(simd) = arch {
         return simd.vectorize(
             #[inline(always)]
-            || kernel(Arithmetic { fused: true }),
+            || kernel(MultiplyAdd { fused: true }),
         );
     }
     arch.dispatch(
         #[inline(always)]
-        || kernel(Arithmetic::SEPARATE),
+        || kernel(MultiplyAdd::SEPARATE),
     )
 }
 
-/// As [`vectorised`] for kernels that are written with vectors themselves.
+/// Runs a kernel that is written with vectors itself on the widest that the machine has (see [`vectorised`]).
 #[inline(always)]
 pub fn with_vectors<Op: pulp::WithSimd>(kernel: Op) -> Op::Output {
     pulp::Arch::new().dispatch(kernel)
@@ -32,15 +32,15 @@ pub fn with_vectors<Op: pulp::WithSimd>(kernel: Op) -> Op::Output {
 /// Interleaved partial results of a loop, which the compiler keeps in two vector registers of AVX2.
 pub const LANES: usize = 8;
 
-/// How a machine computes a · b + c: in one instruction where it has one. A constant after inlining.
+/// Way in which a machine computes a · b + c: in one instruction where it has one. A constant after inlining.
 #[derive(Debug, Clone, Copy)]
-pub struct Arithmetic {
+pub struct MultiplyAdd {
     fused: bool,
 }
 
-impl Arithmetic {
-    /// In two, for code outside the hot loops.
-    pub const SEPARATE: Arithmetic = Arithmetic { fused: false };
+impl MultiplyAdd {
+    /// Multiplication and addition in two instructions, for code outside the hot loops.
+    pub const SEPARATE: MultiplyAdd = MultiplyAdd { fused: false };
 
     /// a · b + c.
     #[inline(always)]
@@ -97,15 +97,15 @@ pub fn multiply_add(matrix: &DMatrix<f64>, x: &[f64], factor: f64, out: &mut [f6
     let rows = matrix.nrows();
     vectorised(
         #[inline(always)]
-        |arithmetic| multiply_add_kernel(arithmetic, matrix.as_slice(), x, factor, &mut out[..rows]),
+        |fma| multiply_add_kernel(fma, matrix.as_slice(), x, factor, &mut out[..rows]),
     )
 }
 
 #[inline(always)]
-fn multiply_add_kernel(arithmetic: Arithmetic, matrix: &[f64], x: &[f64], factor: f64, out: &mut [f64]) {
+fn multiply_add_kernel(fma: MultiplyAdd, matrix: &[f64], x: &[f64], factor: f64, out: &mut [f64]) {
     for (columns, x) in matrix.chunks((QUAD * out.len()).max(1)).zip(x.chunks(QUAD)) {
         if x.iter().any(|&x| x != 0.0) {
-            add_columns(arithmetic, columns, x, factor, out);
+            add_columns(fma, columns, x, factor, out);
         }
     }
 }
@@ -115,26 +115,26 @@ pub const QUAD: usize = 4;
 
 /// `out += factor · columns · x`, for [`QUAD`] columns or the rest of them.
 #[inline(always)]
-fn add_columns(arithmetic: Arithmetic, columns: &[f64], x: &[f64], factor: f64, out: &mut [f64]) {
+fn add_columns(fma: MultiplyAdd, columns: &[f64], x: &[f64], factor: f64, out: &mut [f64]) {
     let n = out.len();
     let Ok(x) = <[f64; QUAD]>::try_from(x) else {
         for (column, x) in columns.chunks_exact(n.max(1)).zip(x) {
-            arithmetic.add_multiple(column, factor * x, out);
+            fma.add_multiple(column, factor * x, out);
         }
         return;
     };
     let column = |k: usize| &columns[k * n..(k + 1) * n];
-    arithmetic.add_quad([column(0), column(1), column(2), column(3)], x.map(|x| factor * x), out);
+    fma.add_quad([column(0), column(1), column(2), column(3)], x.map(|x| factor * x), out);
 }
 
-/// [`Arithmetic::add_multiple`] without the run-time choice of instructions, for code outside the hot loops.
+/// [`MultiplyAdd::add_multiple`] without the run-time choice of instructions, for code outside the hot loops.
 pub fn add_multiple(x: &[f64], factor: f64, out: &mut [f64]) {
-    Arithmetic::SEPARATE.add_multiple(x, factor, out);
+    MultiplyAdd::SEPARATE.add_multiple(x, factor, out);
 }
 
-/// [`Arithmetic::dot`] without the run-time choice of instructions, for code outside the hot loops.
+/// [`MultiplyAdd::dot`] without the run-time choice of instructions, for code outside the hot loops.
 pub fn dot(x: &[f64], y: &[f64]) -> f64 {
-    Arithmetic::SEPARATE.dot(x, y)
+    MultiplyAdd::SEPARATE.dot(x, y)
 }
 
 /// Largest magnitude.
@@ -156,9 +156,9 @@ pub fn largest_change(now: &[f64], last: &[f64]) -> f64 {
 pub fn multiply(a: &[f64], n: usize, x: &[f64], out: &mut [f64]) {
     vectorised(
         #[inline(always)]
-        |arithmetic| {
+        |fma| {
             out[..n].fill(0.0);
-            multiply_add_kernel(arithmetic, &a[..n * n], &x[..n], 1.0, &mut out[..n]);
+            multiply_add_kernel(fma, &a[..n * n], &x[..n], 1.0, &mut out[..n]);
         },
     );
 }
@@ -167,7 +167,7 @@ pub fn multiply(a: &[f64], n: usize, x: &[f64], out: &mut [f64]) {
 pub fn multiply_columns(a: &[f64], rows: usize, x: &[f64], out: &mut [f64]) {
     vectorised(
         #[inline(always)]
-        |arithmetic| multiply_add_kernel(arithmetic, &a[..rows * x.len()], x, 1.0, &mut out[..rows]),
+        |fma| multiply_add_kernel(fma, &a[..rows * x.len()], x, 1.0, &mut out[..rows]),
     )
 }
 
@@ -176,13 +176,13 @@ pub fn multiply_columns(a: &[f64], rows: usize, x: &[f64], out: &mut [f64]) {
 pub fn lu(a: &mut [f64], n: usize, pivots: &mut [usize]) -> bool {
     vectorised(
         #[inline(always)]
-        |arithmetic| lu_kernel(arithmetic, a, n, pivots),
+        |fma| lu_kernel(fma, a, n, pivots),
     )
 }
 
-/// In panels of [`QUAD`] columns: what is right of a panel is loaded and stored once for it.
+/// Factorises in panels of [`QUAD`] columns: what is right of a panel is loaded and stored once for it.
 #[inline(always)]
-fn lu_kernel(arithmetic: Arithmetic, a: &mut [f64], n: usize, pivots: &mut [usize]) -> bool {
+fn lu_kernel(fma: MultiplyAdd, a: &mut [f64], n: usize, pivots: &mut [usize]) -> bool {
     for first in (0..n).step_by(QUAD) {
         let end = n.min(first + QUAD);
         for j in first..end {
@@ -204,13 +204,13 @@ fn lu_kernel(arithmetic: Arithmetic, a: &mut [f64], n: usize, pivots: &mut [usiz
                 *value *= inverse;
             }
             for column in right.chunks_exact_mut(n).take(end - (j + 1)) {
-                arithmetic.add_multiple(multipliers, -column[j], &mut column[j + 1..]);
+                fma.add_multiple(multipliers, -column[j], &mut column[j + 1..]);
             }
         }
         let (left, right) = a.split_at_mut(end * n);
         let panel = &left[first * n..];
         for column in right.chunks_exact_mut(n) {
-            subtract_panel(arithmetic, panel, n, first, &mut column[first..]);
+            subtract_panel(fma, panel, n, first, &mut column[first..]);
         }
     }
     true
@@ -234,16 +234,16 @@ fn position_of_largest(values: &[f64]) -> usize {
 /// Forward substitution of the unit lower triangle of one panel, whose diagonal begins at `first`, into `b`, which begins
 /// there too.
 #[inline(always)]
-fn subtract_panel(arithmetic: Arithmetic, panel: &[f64], n: usize, first: usize, b: &mut [f64]) {
+fn subtract_panel(fma: MultiplyAdd, panel: &[f64], n: usize, first: usize, b: &mut [f64]) {
     let width = panel.len() / n;
     let (head, tail) = b.split_at_mut(width);
     for j in 0..width {
         let (known, rest) = head.split_at_mut(j + 1);
-        arithmetic.add_multiple(&panel[j * n + first + j + 1..][..width - (j + 1)], -known[j], rest);
+        fma.add_multiple(&panel[j * n + first + j + 1..][..width - (j + 1)], -known[j], rest);
     }
     if let Ok(head) = <[f64; QUAD]>::try_from(&*head) {
         let below = |j: usize| &panel[j * n + first + QUAD..(j + 1) * n];
-        arithmetic.add_quad([below(0), below(1), below(2), below(3)], head.map(|value| -value), tail);
+        fma.add_quad([below(0), below(1), below(2), below(3)], head.map(|value| -value), tail);
     }
 }
 
@@ -251,18 +251,18 @@ fn subtract_panel(arithmetic: Arithmetic, panel: &[f64], n: usize, first: usize,
 pub fn lu_solve(a: &[f64], n: usize, pivots: &[usize], b: &mut [f64]) {
     vectorised(
         #[inline(always)]
-        |arithmetic| lu_solve_kernel(arithmetic, a, n, pivots, b),
+        |fma| lu_solve_kernel(fma, a, n, pivots, b),
     )
 }
 
 #[inline(always)]
-fn lu_solve_kernel(arithmetic: Arithmetic, a: &[f64], n: usize, pivots: &[usize], b: &mut [f64]) {
+fn lu_solve_kernel(fma: MultiplyAdd, a: &[f64], n: usize, pivots: &[usize], b: &mut [f64]) {
     for (j, &pivot) in pivots[..n].iter().enumerate() {
         b.swap(j, pivot);
     }
     let panels = || (0..n).step_by(QUAD).zip(a[..n * n].chunks((QUAD * n).max(1)));
     for (first, panel) in panels() {
-        subtract_panel(arithmetic, panel, n, first, &mut b[first..n]);
+        subtract_panel(fma, panel, n, first, &mut b[first..n]);
     }
     for (first, panel) in panels().rev() {
         let width = panel.len() / n;
@@ -270,18 +270,18 @@ fn lu_solve_kernel(arithmetic: Arithmetic, a: &[f64], n: usize, pivots: &[usize]
         for j in (0..width).rev() {
             let (rest, unknown) = own[..=j].split_at_mut(j);
             unknown[0] *= panel[j * n + first + j];
-            arithmetic.add_multiple(&panel[j * n + first..][..j], -unknown[0], rest);
+            fma.add_multiple(&panel[j * n + first..][..j], -unknown[0], rest);
         }
         let column = |j: usize| &panel[j * n..j * n + first];
         if let Ok(own) = <[f64; QUAD]>::try_from(&*own) {
-            arithmetic.add_quad(
+            fma.add_quad(
                 [column(0), column(1), column(2), column(3)],
                 own.map(|value| -value),
                 above,
             );
         } else {
             for (j, value) in own.iter().enumerate() {
-                arithmetic.add_multiple(column(j), -value, above);
+                fma.add_multiple(column(j), -value, above);
             }
         }
     }

@@ -12,7 +12,7 @@ pub struct Elliptic {
     pub share: f64,
 }
 
-/// Of the complementary modulus k' = √(1 − k²), in (0, 1].
+/// Integrals of the complementary modulus k' = √(1 − k²), in (0, 1].
 pub fn complete(complement: f64) -> Elliptic {
     let (mut arithmetic, mut geometric) = (1.0, complement);
     // S = Σ 2ⁿ⁻¹ c_n²/k², with c₀ = k and c_{n+1} = (a_n − g_n)/2 = c_n²/(4 a_{n+1}).

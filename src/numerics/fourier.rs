@@ -51,7 +51,7 @@ pub fn good_size(size: usize) -> usize {
 }
 
 impl<T: Real> Fourier<T> {
-    /// Of P rows, P a [`good_size`].
+    /// Transform of P rows, P a [`good_size`].
     pub fn new(size: usize) -> Fourier<T> {
         let (mut rest, mut factors) = (size, Vec::new());
         for factor in [4, 3, 2] {
@@ -161,7 +161,7 @@ type Parts<'a, T> = (&'a mut Vec<T>, &'a mut Vec<T>);
 /// Rows of vectors, real and imaginary parts.
 type Source<'a, T, S> = (&'a [<T as Real>::Vector<S>], &'a [<T as Real>::Vector<S>]);
 
-/// The same, to be written.
+/// Real and imaginary part of values that are written.
 type Target<'a, T, S> = (&'a mut [<T as Real>::Vector<S>], &'a mut [<T as Real>::Vector<S>]);
 
 /// Complex numbers side by side, real and imaginary parts.

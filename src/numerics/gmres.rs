@@ -17,7 +17,7 @@ pub struct Gmres {
     work: Vec<f32>,
 }
 
-/// How a solve ended.
+/// Result of a solve.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Solved {
     /// Products with the matrix.
@@ -27,7 +27,7 @@ pub struct Solved {
 }
 
 impl Gmres {
-    /// For up to `unknowns` and `iterations`.
+    /// Method for up to `unknowns` and `iterations`.
     pub fn new(unknowns: usize, iterations: usize) -> Gmres {
         Gmres {
             iterations,

@@ -7,7 +7,7 @@ use pulp::Simd;
 
 /// A number in single or double precision.
 pub trait Real: Copy + std::fmt::Debug + Default + PartialEq {
-    /// As many numbers as a machine computes with at once.
+    /// Vector of as many numbers as a machine computes with at once.
     type Vector<S: Simd>: Copy;
 
     /// Rounded from double precision.
@@ -18,7 +18,7 @@ pub trait Real: Copy + std::fmt::Debug + Default + PartialEq {
     fn vectors<S: Simd>(values: &[Self]) -> &[Self::Vector<S>];
     /// A slice as vectors, to be written.
     fn vectors_mut<S: Simd>(values: &mut [Self]) -> &mut [Self::Vector<S>];
-    /// The same number in all places.
+    /// Vector with the same number in all places.
     fn splat<S: Simd>(simd: S, value: Self) -> Self::Vector<S>;
     /// a + b.
     fn add<S: Simd>(simd: S, a: Self::Vector<S>, b: Self::Vector<S>) -> Self::Vector<S>;

@@ -9,13 +9,13 @@ const LANES: usize = 16;
 pub fn dot(x: &[f32], y: &[f32]) -> f32 {
     dense::vectorised(
         #[inline(always)]
-        |arithmetic| {
+        |fma| {
             let mut sums = [0.0_f32; LANES];
             let (x_blocks, x_rest) = x.as_chunks::<LANES>();
             let (y_blocks, y_rest) = y.as_chunks::<LANES>();
             for (x, y) in x_blocks.iter().zip(y_blocks) {
                 for lane in 0..LANES {
-                    sums[lane] = arithmetic.multiply_add_single(x[lane], y[lane], sums[lane]);
+                    sums[lane] = fma.multiply_add_single(x[lane], y[lane], sums[lane]);
                 }
             }
             let tail: f32 = x_rest.iter().zip(y_rest).map(|(x, y)| x * y).sum();
@@ -33,9 +33,9 @@ pub fn norm(x: &[f32]) -> f32 {
 pub fn add_multiple(x: &[f32], factor: f32, out: &mut [f32]) {
     dense::vectorised(
         #[inline(always)]
-        |arithmetic| {
+        |fma| {
             for (out, x) in out.iter_mut().zip(x) {
-                *out = arithmetic.multiply_add_single(factor, *x, *out);
+                *out = fma.multiply_add_single(factor, *x, *out);
             }
         },
     );
@@ -45,7 +45,7 @@ pub fn add_multiple(x: &[f32], factor: f32, out: &mut [f32]) {
 pub fn lu(matrix: &mut [f32], n: usize, pivots: &mut [usize]) -> bool {
     dense::vectorised(
         #[inline(always)]
-        |arithmetic| {
+        |fma| {
             for k in 0..n {
                 let own = &mut matrix[k * n..(k + 1) * n];
                 let mut pivot = k;
@@ -73,7 +73,7 @@ pub fn lu(matrix: &mut [f32], n: usize, pivots: &mut [usize]) -> bool {
                     // Stick in one direction does not see the other: many are 0.
                     if factor != 0.0 {
                         for (value, lower) in column[k + 1..].iter_mut().zip(lower) {
-                            *value = arithmetic.multiply_add_single(factor, *lower, *value);
+                            *value = fma.multiply_add_single(factor, *lower, *value);
                         }
                     }
                 }
@@ -87,21 +87,21 @@ pub fn lu(matrix: &mut [f32], n: usize, pivots: &mut [usize]) -> bool {
 pub fn lu_solve(factors: &[f32], n: usize, pivots: &[usize], values: &mut [f32]) {
     dense::vectorised(
         #[inline(always)]
-        |arithmetic| {
+        |fma| {
             for (k, &pivot) in pivots[..n].iter().enumerate() {
                 values.swap(k, pivot);
             }
             for k in 0..n {
                 let (value, rest) = (-values[k], &mut values[k + 1..n]);
                 for (out, lower) in rest.iter_mut().zip(&factors[k * n + k + 1..(k + 1) * n]) {
-                    *out = arithmetic.multiply_add_single(value, *lower, *out);
+                    *out = fma.multiply_add_single(value, *lower, *out);
                 }
             }
             for k in (0..n).rev() {
                 let value = values[k] / factors[k * n + k];
                 values[k] = value;
                 for (out, upper) in values[..k].iter_mut().zip(&factors[k * n..k * n + k]) {
-                    *out = arithmetic.multiply_add_single(-value, *upper, *out);
+                    *out = fma.multiply_add_single(-value, *upper, *out);
                 }
             }
         },

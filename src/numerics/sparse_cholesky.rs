@@ -5,7 +5,7 @@
 //! keeps its sizes of caches on the heap, and with faer's feature `std` a thread-local buffer with a destructor, and neither
 //! may be left behind by a library that is unloaded at run time. Without that feature faer's solve is slow, too.
 
-use crate::numerics::dense::{self, Arithmetic, QUAD};
+use crate::numerics::dense::{self, MultiplyAdd, QUAD};
 use faer::Side;
 use faer::sparse::SparseColMat;
 use faer::sparse::linalg::SupernodalThreshold;
@@ -83,7 +83,7 @@ impl SparseCholesky {
             for (other, from) in std::mem::take(&mut waiting[node]) {
                 let (columns, below): (usize, &[usize]) =
                     (end[other] - begin[other], supernodes.supernode(other).pattern());
-                let factor = Block {
+                let factor = SupernodeFactor {
                     values: &before[supernodes.col_ptr_for_val()[other]..],
                     rows: columns + below.len(),
                     columns,
@@ -120,7 +120,7 @@ impl SparseCholesky {
         let factor = SupernodalLltRef::new(symbolic, &self.values);
         dense::vectorised(
             #[inline(always)]
-            |arithmetic| {
+            |fma| {
                 for node in 0..symbolic.n_supernodes() {
                     let node = factor.supernode(node);
                     let (start, block) = (node.start(), node.val());
@@ -136,7 +136,7 @@ impl SparseCholesky {
                         };
                         let mut sum = rows[target];
                         for column in 0..row.min(columns) {
-                            subtract(arithmetic, &mut sum, block[(row, column)], &rows[start + column]);
+                            subtract(fma, &mut sum, block[(row, column)], &rows[start + column]);
                         }
                         if row < columns {
                             divide(&mut sum, block[(row, row)]);
@@ -151,10 +151,10 @@ impl SparseCholesky {
                     for column in (0..columns).rev() {
                         let mut sum = rows[start + column];
                         for row in column + 1..columns {
-                            subtract(arithmetic, &mut sum, block[(row, column)], &rows[start + row]);
+                            subtract(fma, &mut sum, block[(row, column)], &rows[start + row]);
                         }
                         for (below, place) in node.pattern().iter().enumerate() {
-                            subtract(arithmetic, &mut sum, block[(columns + below, column)], &rows[*place]);
+                            subtract(fma, &mut sum, block[(columns + below, column)], &rows[*place]);
                         }
                         divide(&mut sum, block[(column, column)]);
                         rows[start + column] = sum;
@@ -173,34 +173,34 @@ fn wait(waiting: &mut [Vec<(usize, usize)>], supernode_of: &[usize], node: usize
 }
 
 /// The factor of a supernode, column by column.
-struct Block<'a> {
+struct SupernodeFactor<'a> {
     values: &'a [f64],
     rows: usize,
     columns: usize,
 }
 
-impl Block<'_> {
+impl SupernodeFactor<'_> {
     /// The rows from `row` on times the row `row`: a column of L Lᵀ.
     fn product(&self, row: usize, out: &mut [f64]) {
         out.fill(0.0);
         dense::vectorised(
             #[inline(always)]
-            |arithmetic| self.add_columns(arithmetic, row, 1.0, out),
+            |fma| self.add_columns(fma, row, 1.0, out),
         );
     }
 
     /// `out += factor ·` the rows from `row` on times the row `row`.
     #[inline(always)]
-    fn add_columns(&self, arithmetic: Arithmetic, row: usize, factor: f64, out: &mut [f64]) {
+    fn add_columns(&self, fma: MultiplyAdd, row: usize, factor: f64, out: &mut [f64]) {
         let length = out.len();
         let column = |column: usize| &self.values[column * self.rows + row..][..length];
         let quads = self.columns - self.columns % QUAD;
         for first in (0..quads).step_by(QUAD) {
             let four = [column(first), column(first + 1), column(first + 2), column(first + 3)];
-            arithmetic.add_quad(four, four.map(|column| factor * column[0]), out);
+            fma.add_quad(four, four.map(|column| factor * column[0]), out);
         }
         for first in quads..self.columns {
-            arithmetic.add_multiple(column(first), factor * column(first)[0], out);
+            fma.add_multiple(column(first), factor * column(first)[0], out);
         }
     }
 }
@@ -209,16 +209,16 @@ impl Block<'_> {
 fn factorise_block(block: &mut [f64], rows: usize, columns: usize) -> Option<()> {
     dense::vectorised(
         #[inline(always)]
-        |arithmetic| {
+        |fma| {
             for column in 0..columns {
                 let (before, rest) = block.split_at_mut(column * rows);
-                let before = Block {
+                let before = SupernodeFactor {
                     values: before,
                     rows,
                     columns: column,
                 };
                 let out = &mut rest[column..rows];
-                before.add_columns(arithmetic, column, -1.0, out);
+                before.add_columns(fma, column, -1.0, out);
                 let pivot = out[0];
                 if pivot.is_nan() || pivot <= 0.0 {
                     return None;
@@ -234,9 +234,9 @@ fn factorise_block(block: &mut [f64], rows: usize, columns: usize) -> Option<()>
 }
 
 #[inline(always)]
-fn subtract<const WIDTH: usize>(arithmetic: Arithmetic, sum: &mut [f64; WIDTH], factor: f64, row: &[f64; WIDTH]) {
+fn subtract<const WIDTH: usize>(fma: MultiplyAdd, sum: &mut [f64; WIDTH], factor: f64, row: &[f64; WIDTH]) {
     for (sum, value) in sum.iter_mut().zip(row) {
-        *sum = arithmetic.multiply_add(-factor, *value, *sum);
+        *sum = fma.multiply_add(-factor, *value, *sum);
     }
 }
 

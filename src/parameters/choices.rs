@@ -15,22 +15,22 @@ macro_rules! choices {
         impl $name {
             /// All values, in the order of their numbers.
             pub const ALL: &'static [$name] = &[$($name::$value),+];
-            /// Their names, in the same order.
+            /// Names of the choices, in the same order.
             pub const NAMES: &'static [&'static str] = &[$($value_name),+];
         }
     )+};
 }
 
 choices! {
-    /// How the contact is resolved.
+    /// Resolution of the contact.
     ContactModel {
-        /// Along the rail, uniform over `contact_width`: the paper's.
+        /// Line contact along the rail, uniform over `contact_width`: the paper's.
         Line "line",
-        /// Along the rail and across it: lateral force and spin moment.
+        /// Patch along the rail and across it: lateral force and spin moment.
         Patch "patch",
     }
 
-    /// What is prescribed in the normal direction.
+    /// Quantity prescribed in the normal direction.
     Control {
         /// The normal load is given, the penetration follows (the component's normal use).
         Load "load",
@@ -38,7 +38,7 @@ choices! {
         Penetration "penetration",
     }
 
-    /// Which pair of inputs defines the motion.
+    /// Pair of inputs that defines the motion.
     SlipSource {
         /// Wheel speed and creepage: V = ω r₀ / (1 + ξ).
         Creepage "creepage",
@@ -54,7 +54,7 @@ choices! {
         Pschenichnyj "pschenichnyj",
     }
 
-    /// Which triangulation is used.
+    /// Triangulation of the rail.
     MeshKind {
         /// `contact_nodes` evenly spaced nodes under the wheel, graded outside.
         Graded "graded",
@@ -74,7 +74,7 @@ choices! {
         Table "table",
     }
 
-    /// What the wheel is made of.
+    /// Material of the wheel.
     Wheel {
         /// Rigid: the paper's. On an elastic rail it pulls at creepage 0.
         Rigid "rigid",

@@ -125,8 +125,8 @@ mod tests {
         }
     }
 
-    /// Against Hertz's solution as the program CONTACT prints it, to its digits; its approach is 1e-4 to 2e-4 below the closed
-    /// form, also for spheres, where that is a²/R.
+    /// Ellipse against Hertz's solution as the program CONTACT prints it, to its digits; its approach is 1e-4 to 2e-4
+    /// below the closed form, also for spheres, where that is a²/R.
     #[test]
     fn the_ellipse_is_that_of_contact() {
         for (across, expected) in [

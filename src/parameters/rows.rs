@@ -11,7 +11,7 @@ macro_rules! real {
     (unit { $unit:literal $($rest:tt)* }) => { concat!("\n\nUnit: `", $unit, "`") };
     (row $field:ident, $description:expr,
      { $unit:literal $(shown in $display:literal)?, $start:expr, $minimum:expr, $maximum:expr $(, $tunable:ident)? }) => {
-        Row::Real(RealParameter {
+        ParameterRow::Real(RealParameter {
             name: stringify!($field),
             is_array: false,
             elements: &[stringify!($field)],
@@ -38,7 +38,7 @@ macro_rules! reals {
     };
     (row $field:ident, $description:expr,
      { $name:literal [$($element:literal)+], $unit:literal $(shown in $display:literal)?, $start:expr, $minimum:expr, $maximum:expr }) => {
-        Row::Real(RealParameter {
+        ParameterRow::Real(RealParameter {
             name: $name,
             is_array: true,
             elements: &[$(concat!($name, "[", $element, "]")),+],
@@ -64,7 +64,7 @@ macro_rules! count {
         ""
     };
     (row $field:ident, $description:expr, { $start:expr, $minimum:expr, $maximum:expr }) => {
-        Row::Integer(IntegerParameter {
+        ParameterRow::Integer(IntegerParameter {
             name: stringify!($field),
             start: $start,
             minimum: $minimum,
@@ -87,7 +87,7 @@ macro_rules! choice {
         ""
     };
     (row $field:ident, $description:expr, { $type:ident::$start:ident }) => {
-        Row::Integer(IntegerParameter {
+        ParameterRow::Integer(IntegerParameter {
             name: stringify!($field),
             start: $type::$start as i32 + 1,
             minimum: 1,
@@ -128,7 +128,7 @@ macro_rules! switch {
 macro_rules! of_kind {
     ($kind:expr, $row:expr) => {
         match $row {
-            Row::Integer(row) => Row::Integer(IntegerParameter { kind: $kind, ..row }),
+            ParameterRow::Integer(row) => ParameterRow::Integer(IntegerParameter { kind: $kind, ..row }),
             other => other,
         }
     };
@@ -179,7 +179,7 @@ macro_rules! parameters {
             }
         }
 
-        const ROWS: &[Row] = &[
+        const ROWS: &[ParameterRow] = &[
             $($kind!(row $field, concat!($($description),+).trim_ascii(), $columns),)+
         ];
     };

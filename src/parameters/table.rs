@@ -46,8 +46,8 @@ pub struct RealParameter {
     pub get_mut: fn(&mut Parameters) -> &mut [f64],
 }
 
-/// What an integer parameter counts or chooses. FMI 2.0 has an Integer for each, with the meaning of the values of a choice in
-/// its description: some of its importers pass over Enumerations. FMI 3.0 has a type for each.
+/// Kind of an integer parameter: a count or a choice. FMI 2.0 has an Integer for each, with the meaning of the values
+/// of a choice in its description: some of its importers pass over Enumerations. FMI 3.0 has a type for each.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum IntegerKind {
     /// A number of things.
@@ -71,7 +71,7 @@ pub struct IntegerParameter {
     pub minimum: i32,
     /// Largest allowed value.
     pub maximum: i32,
-    /// What it counts or chooses.
+    /// Kind of the parameter: a count or a choice.
     pub kind: IntegerKind,
     /// One sentence, with the meaning of each value of a choice.
     pub description: &'static str,
@@ -103,7 +103,7 @@ impl IntegerParameter {
         self.check_any(f64::from(value))
     }
 
-    /// As [`IntegerParameter::check`], of a value that may have more digits.
+    /// Checks, as [`IntegerParameter::check`] does, a value that may have more digits.
     ///
     /// # Errors
     /// [`Error::OutOfRange`].
@@ -115,7 +115,7 @@ impl IntegerParameter {
 
 /// A row of either kind, as the list below has them.
 #[derive(Clone, Copy)]
-enum Row {
+enum ParameterRow {
     Real(RealParameter),
     Integer(IntegerParameter),
 }
@@ -254,7 +254,7 @@ macro_rules! rows_of {
         const NUMBER: usize = {
             let (mut row, mut number) = (0, 0);
             while row < ROWS.len() {
-                number += matches!(ROWS[row], Row::$kind(_)) as usize;
+                number += matches!(ROWS[row], ParameterRow::$kind(_)) as usize;
                 row += 1;
             }
             number
@@ -262,7 +262,7 @@ macro_rules! rows_of {
         const TABLE: Option<[$type; NUMBER]> = {
             let (mut row, mut filled, mut table) = (0, 0, None);
             while row < ROWS.len() {
-                if let Row::$kind(entry) = ROWS[row] {
+                if let ParameterRow::$kind(entry) = ROWS[row] {
                     // An array begins as copies of its first entry.
                     let mut entries = match table {
                         Some(entries) => entries,
@@ -305,7 +305,7 @@ impl Parameters {
         Ok(())
     }
 
-    /// These parameters with every tunable one at its start value: what a model is built for.
+    /// Parameters with every tunable one at its start value: what a model is built for.
     pub fn fixed_part(&self) -> Parameters {
         let mut fixed = self.clone();
         for entry in REAL_PARAMETERS.iter().filter(|entry| entry.tunable) {

@@ -70,7 +70,7 @@ impl Parameters {
         Ok(())
     }
 
-    /// What a patch needs of the curvatures, and what it does without.
+    /// Checks the curvatures that a patch needs, and refuses what it does without.
     fn validate_patch(&self) -> Result<()> {
         let curvatures = |requirement| {
             combination(

@@ -4,7 +4,7 @@ use super::Inputs;
 use crate::error::Result;
 use crate::parameters::{Parameters, SlipSource, check_range};
 
-/// Why a speed is too large, as [`Parameters::largest_speed`] has it.
+/// Reason why a speed is too large, as [`Parameters::largest_speed`] has it.
 pub const LARGEST_SPEED: &str = "the limit is 5 % of the speed of Rayleigh waves, up to which the compliance of rail and \
      wheel holds: lame_lambda, shear_modulus and density set it, and where wheel is elastic wheel_lame_lambda, \
      wheel_shear_modulus and wheel_density";

@@ -20,7 +20,7 @@ pub enum Error {
     TimeNotAscending {
         /// The row, the first being 0.
         row: usize,
-        /// Its time, `s`.
+        /// Time of the point, `s`.
         time: f64,
         /// The time of the row before, `s`; −∞ for the first.
         before: f64,
@@ -36,11 +36,11 @@ pub enum Error {
     Interrupted {
         /// Start of the step, `s`.
         time: f64,
-        /// Its length, `s`.
+        /// Length of the step, `s`.
         step: f64,
         /// Time of it that was simulated, `s`.
         committed: f64,
-        /// Why it could not go on.
+        /// Reason why the model could not go on.
         source: error::Error,
     },
     /// A state of a model with another mesh or other ranges, or with values that are not finite.

@@ -43,7 +43,7 @@ pub struct Simulation {
     pub model: Arc<Model>,
     /// Scratch of its steps.
     pub workspace: Workspace,
-    /// Where it stands: time, inputs, outputs and fields.
+    /// State that the simulation has reached: time, inputs, outputs and fields.
     pub state: State,
 }
 
@@ -158,7 +158,7 @@ mod tests {
         }
     }
 
-    /// Into a slide within 20 ms.
+    /// Schedule into a slide within 20 ms.
     fn schedule(creepage: f64) -> Schedule {
         let inputs = Inputs::default();
         let sliding = Inputs { creepage, ..inputs };

@@ -24,9 +24,9 @@ pub struct Schedule {
 /// A communication step: the inputs change linearly from one point to the other.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Step {
-    /// Where it begins.
+    /// Point at which the step begins.
     pub from: Point,
-    /// Where it ends.
+    /// Point at which the step ends.
     pub to: Point,
 }
 
@@ -145,7 +145,7 @@ impl Iterator for Steps<'_> {
 impl ExactSizeIterator for Steps<'_> {}
 
 impl Step {
-    /// Its length, `s`.
+    /// Length of the step, `s`.
     pub fn duration(&self) -> f64 {
         self.to.time - self.from.time
     }
@@ -160,8 +160,8 @@ impl Step {
         rates
     }
 
-    /// The same step in `count` sub-steps of equal length (at least one), for more accuracy in time between the same
-    /// communication points.
+    /// Divides the step into `count` sub-steps of equal length (at least one), for more accuracy in time between the
+    /// same communication points.
     pub fn parts(self, count: usize) -> impl Iterator<Item = Step> {
         let count = count.max(1);
         let rates = self.rates();

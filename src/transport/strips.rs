@@ -5,7 +5,7 @@
 //! as those of a line contact, and hold one value for all strips. What comes from there is the same for every strip; what leaves
 //! is the mean over the breadth B of the contact. A rail that came in at 0 and got a_j in the strips then holds Σ b a_j = B ā.
 //! But what came in is in strips that the contact does not touch, too. So the rail beside the contact, a strip that is never touched,
-//! is marched with the others, and the mean is over what the strips have more:
+//! is marched with the others, and the breadth-averaged value is its value plus the mean excess of the strips:
 //!
 //! ā = a_beside + (b/B) Σ (a_j − a_beside).
 //!
@@ -14,6 +14,7 @@
 
 use crate::numerics::dense::LANES;
 use crate::transport::Upwind;
+use std::ops::Range;
 
 /// Strips side by side.
 #[derive(Debug, Clone)]
@@ -22,7 +23,7 @@ pub struct Strips {
     pub strips: usize,
     /// Number of cells of a strip.
     pub cells: usize,
-    /// b, `m`.
+    /// Breadth b of a strip, `m`.
     pub breadth: f64,
     /// Positions of all columns, ascending, `m`.
     x: Vec<f64>,
@@ -33,22 +34,22 @@ pub struct Strips {
 /// One end of the strips: a place in what is kept for both.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Side {
-    /// Towards −x₁.
+    /// End towards −x₁.
     Left = 0,
-    /// Towards +x₁.
+    /// End towards +x₁.
     Right = 1,
 }
 
 impl Strips {
-    /// `strips` of breadth `breadth` `m` over columns at `x` `m`, of which those from `first` on are the `cells` of the window. The
+    /// Strips, `strips` of breadth `breadth` `m`, over columns at `x` `m`, of which those in `window` are the cells of the window. The
     /// columns next to the window are as far from it as its cells are from each other; there are two or more at either end.
-    pub fn new(x: &[f64], (first, cells): (usize, usize), strips: usize, breadth: f64) -> Strips {
+    pub fn new(x: &[f64], window: Range<usize>, strips: usize, breadth: f64) -> Strips {
         Strips {
             strips,
-            cells,
+            cells: window.len(),
             breadth,
             x: x.to_vec(),
-            first,
+            first: window.start,
         }
     }
 
@@ -85,7 +86,7 @@ impl Strips {
         }
     }
 
-    /// Where rail comes from, and where it goes.
+    /// Sides of the window (inflow, outflow): the one that rail comes from, and the one that it goes to.
     pub fn ends(&self, speed: f64) -> (Side, Side) {
         if speed >= 0.0 {
             (Side::Right, Side::Left)

@@ -115,7 +115,7 @@ fn forth(force: f64, x: f64) -> f64 {
     ellipse(1.0, x) - ellipse((1.0 - force).max(0.0).sqrt(), x)
 }
 
-/// The same at `force` on the way back from `turn`.
+/// Shear over the peak of μp at `force` on the way back from `turn`.
 fn back(turn: f64, force: f64, x: f64) -> f64 {
     forth(turn, x) - 2.0 * forth(0.5 * (turn - force), x)
 }

@@ -62,49 +62,49 @@ pub const ELLIPSES: [Ellipse; 3] = [
 
 /// One force at one creepage on the circle, a/b = 1.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Point {
+pub struct CreepForce {
     /// The creepage that is not zero.
     pub creepage: f64,
-    /// At n = 40.
+    /// Value at n = 40.
     pub coarse: f64,
-    /// At n = 80.
+    /// Value at n = 80.
     pub fine: f64,
 }
 
-impl Point {
-    const fn new(creepage: f64, coarse: f64, fine: f64) -> Point {
-        Point { creepage, coarse, fine }
+impl CreepForce {
+    const fn new(creepage: f64, coarse: f64, fine: f64) -> CreepForce {
+        CreepForce { creepage, coarse, fine }
     }
 
-    /// Where finer elements lead, to some 0.002. CONTACT converges with first order: the limit lies once the last difference
-    /// beyond n = 80, to about half that difference; ¾ was the best on finer grids.
+    /// Limit for ever finer elements, to some 0.002. CONTACT converges with first order: the limit lies once the last
+    /// difference beyond n = 80, to about half that difference; ¾ was the best on finer grids.
     pub fn limit(&self) -> f64 {
         self.fine + 0.75 * (self.fine - self.coarse)
     }
 }
 
 /// F_x by longitudinal creepage ξ alone. In full slip it is a little under 1, as the elastic slip has a lateral part.
-pub const LONGITUDINAL: [Point; 8] = [
-    Point::new(0.0002, 0.110_32, 0.109_20),
-    Point::new(0.0005, 0.261_93, 0.259_12),
-    Point::new(0.001, 0.478_32, 0.473_29),
-    Point::new(0.0015, 0.650_90, 0.645_51),
-    Point::new(0.002, 0.783_63, 0.778_65),
-    Point::new(0.003, 0.945_19, 0.941_68),
-    Point::new(0.005, 0.999_25, 0.999_24),
-    Point::new(0.01, 0.999_82, 0.999_82),
+pub const LONGITUDINAL: [CreepForce; 8] = [
+    CreepForce::new(0.0002, 0.110_32, 0.109_20),
+    CreepForce::new(0.0005, 0.261_93, 0.259_12),
+    CreepForce::new(0.001, 0.478_32, 0.473_29),
+    CreepForce::new(0.0015, 0.650_90, 0.645_51),
+    CreepForce::new(0.002, 0.783_63, 0.778_65),
+    CreepForce::new(0.003, 0.945_19, 0.941_68),
+    CreepForce::new(0.005, 0.999_25, 0.999_24),
+    CreepForce::new(0.01, 0.999_82, 0.999_82),
 ];
 
 /// F_y by lateral creepage η alone.
-pub const LATERAL: [Point; 8] = [
-    Point::new(0.0002, 0.096_65, 0.095_55),
-    Point::new(0.0005, 0.230_62, 0.228_05),
-    Point::new(0.001, 0.425_71, 0.420_90),
-    Point::new(0.0015, 0.586_55, 0.581_05),
-    Point::new(0.002, 0.716_06, 0.710_53),
-    Point::new(0.003, 0.892_20, 0.887_88),
-    Point::new(0.005, 0.999_08, 0.998_84),
-    Point::new(0.01, 0.999_82, 0.999_82),
+pub const LATERAL: [CreepForce; 8] = [
+    CreepForce::new(0.0002, 0.096_65, 0.095_55),
+    CreepForce::new(0.0005, 0.230_62, 0.228_05),
+    CreepForce::new(0.001, 0.425_71, 0.420_90),
+    CreepForce::new(0.0015, 0.586_55, 0.581_05),
+    CreepForce::new(0.002, 0.716_06, 0.710_53),
+    CreepForce::new(0.003, 0.892_20, 0.887_88),
+    CreepForce::new(0.005, 0.999_08, 0.998_84),
+    CreepForce::new(0.01, 0.999_82, 0.999_82),
 ];
 
 /// M_z by lateral creepage η alone, at n = 80 only: creepage and share. It changes by 0.002 from n = 40 at the most.
@@ -132,7 +132,8 @@ pub const FLASH_TEMPERATURE: f64 = 50.4;
 /// Elements in contact, and least and largest CPU time of a call on one thread with inputs that vary from call to call, s, at
 /// n = 20, 30 and 40.
 pub const RUN_TIMES: [(usize, f64, f64); 3] = [(316, 0.011, 0.018), (725, 0.048, 0.071), (1276, 0.101, 0.187)];
-/// The same for CONTACT's FASTSIM, s: its forces differ from CONTACT's by 0.007 in the median, by 0.07 at large spin.
+/// Run times of CONTACT's FASTSIM by number of elements, s: its forces differ from CONTACT's by 0.007 in the median, by
+/// 0.07 at large spin.
 pub const FASTSIM_RUN_TIMES: [(usize, f64); 3] = [(316, 0.2e-3), (725, 0.4e-3), (1276, 0.6e-3)];
 
 #[cfg(test)]
@@ -176,7 +177,8 @@ mod tests {
     #[test]
     fn curves_are_smooth() {
         for curve in [LONGITUDINAL, LATERAL] {
-            let slope = |pair: &[Point]| (pair[1].limit() - pair[0].limit()) / (pair[1].creepage - pair[0].creepage);
+            let slope =
+                |pair: &[CreepForce]| (pair[1].limit() - pair[0].limit()) / (pair[1].creepage - pair[0].creepage);
             let slopes: Vec<f64> = curve.windows(2).map(slope).collect();
             assert!(slopes.windows(2).all(|pair| pair[1] < pair[0]), "{slopes:?}");
             assert!(

@@ -292,7 +292,7 @@ fn temperature_error(contact_nodes: usize, cells: usize, speed: f64) -> Result<f
         &before,
         &exchange,
         &mut Heated {
-            temperature: &mut after,
+            amplitudes: &mut after,
             surface: &mut vec![0.0; mesh.columns()],
             flux: &mut vec![0.0; contact_nodes],
         },

@@ -49,7 +49,7 @@ fn curves(wheel: Wheel, contact_nodes: usize) -> Result<Vec<f64>> {
     Ok(values)
 }
 
-/// All of it.
+/// Rows of the whole curve.
 ///
 /// # Errors
 /// A solver that did not converge.

@@ -108,7 +108,7 @@ fn mean_error(contact_nodes: usize) -> Result<f64> {
     Ok(sum / count)
 }
 
-/// Like bodies without heat or wear in the gap.
+/// Simulation of like bodies without heat or wear in the gap.
 fn like_bodies(contact_nodes: usize) -> Result<Simulation> {
     let parameters = Parameters {
         wheel: Wheel::Elastic,

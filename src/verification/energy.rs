@@ -11,8 +11,8 @@ use super::row::{Row, larger};
 use crate::contact::line::fields::LineFields;
 use crate::contact::rim;
 use crate::error::Result;
-use crate::heat::step::ModeStep;
-use crate::numerics::dense::Arithmetic;
+use crate::heat::step::{DecayRate, ModeStep, Transit};
+use crate::numerics::dense::MultiplyAdd;
 use crate::parameters::{FrictionLaw, Parameters, SlipSource, Wheel, WheelHeating};
 use crate::signals::Inputs;
 use crate::simulation::Simulation;
@@ -36,18 +36,18 @@ struct Balance {
     friction: f64,
     /// Stored in the rim and given to the ambient; of a wheel that stays cold, what flows into it.
     rim: f64,
-    /// All of the friction power.
+    /// Friction power, all of it.
     power: f64,
 }
 
 impl Balance {
-    /// What the balance of the rail misses, over the friction heat.
+    /// Defect of the rail's balance, over the friction heat.
     fn defect(&self) -> f64 {
         let sum = self.rail() + self.conduction;
         ((sum - self.friction) / self.friction).abs()
     }
 
-    /// What the balance of rail, wheel and debris misses, over the friction power.
+    /// Defect of the balance of rail, wheel and debris, over the friction power.
     fn total_defect(&self) -> f64 {
         let sum = self.rail() + self.rim;
         ((sum - self.power) / self.power).abs()
@@ -57,7 +57,7 @@ impl Balance {
         self.stored + self.carried_out - self.carried_in + self.bottom + self.debris
     }
 
-    /// Of each term the larger share of the friction heat: that so far, or that of another step.
+    /// Larger share of the friction heat, term by term: that so far, or that of another step.
     fn largest(self, other: Balance) -> Balance {
         let share = |term: f64| (term / other.friction).abs();
         Balance {
@@ -74,9 +74,16 @@ impl Balance {
     }
 }
 
-/// Speed `m/s`, wheel's circumferential speed `m/s` and load `N` of one step; changes below a fifth, so that the step
-/// is not divided.
-type Step = (f64, f64, f64);
+/// Inputs of one step; their changes stay below a fifth, so that the step is not divided.
+#[derive(Clone, Copy)]
+struct DrivenStep {
+    /// Speed, `m/s`.
+    speed: f64,
+    /// Circumferential speed of the wheel, `m/s`.
+    circumferential: f64,
+    /// Normal load, `N`.
+    load: f64,
+}
 
 /// The largest defect of any step of a transient at speed, and of one where the strip is shallow, slow, and the heat
 /// reaches its bottom.
@@ -92,10 +99,14 @@ pub fn rows() -> Result<Vec<Row>> {
         wear_coefficient: 5e-12,
         ..Parameters::default()
     };
-    let fast: Vec<Step> = (0..40)
+    let fast: Vec<DrivenStep> = (0..40)
         .map(|i| {
             let wave = (0.7 * f64::from(i)).sin();
-            (10.0 + wave, (10.0 + wave) * 1.05, 60e3 * (1.0 + 0.08 * wave))
+            DrivenStep {
+                speed: 10.0 + wave,
+                circumferential: (10.0 + wave) * 1.05,
+                load: 60e3 * (1.0 + 0.08 * wave),
+            }
         })
         .collect();
     let shallow = Parameters {
@@ -108,11 +119,15 @@ pub fn rows() -> Result<Vec<Row>> {
         wear_coefficient: 0.0,
         ..shallow.clone()
     };
-    let slow: Vec<Step> = (0..12)
+    let slow: Vec<DrivenStep> = (0..12)
         .map(|i| {
             let wave = (0.7 * f64::from(i)).sin();
             let speed = -0.02 * (1.0 + 0.08 * wave);
-            (speed, 1.05 * speed, 30e3)
+            DrivenStep {
+                speed,
+                circumferential: 1.05 * speed,
+                load: 30e3,
+            }
         })
         .collect();
     let warm = Parameters {
@@ -125,7 +140,14 @@ pub fn rows() -> Result<Vec<Row>> {
         rim_width: 1e-3,
         ..base.clone()
     };
-    let on_the_spot: Vec<Step> = vec![(0.0, 1e-3, 30e3); 12];
+    let on_the_spot: Vec<DrivenStep> = vec![
+        DrivenStep {
+            speed: 0.0,
+            circumferential: 1e-3,
+            load: 30e3,
+        };
+        12
+    ];
 
     let mut rows = Vec::new();
     for (name, parameters, steps, duration) in [
@@ -139,65 +161,72 @@ pub fn rows() -> Result<Vec<Row>> {
             5.0,
         ),
     ] {
-        let warm = parameters.wheel_heating == WheelHeating::On;
-        let incoming = if warm {
-            340.0
-        } else {
-            Inputs::default().incoming_temperature
-        };
-        let (defect, total_defect, shares) = largest_defect(parameters, steps, duration, incoming)?;
-        rows.push(Row::absolute(
+        rows.extend(case_rows(name, parameters, steps, duration)?);
+    }
+    Ok(rows)
+}
+
+/// Rows of one case: the defects of both balances, and the smallest share of a term.
+fn case_rows(name: &str, parameters: &Parameters, steps: &[DrivenStep], duration: f64) -> Result<Vec<Row>> {
+    let warm = parameters.wheel_heating == WheelHeating::On;
+    let incoming = if warm {
+        340.0
+    } else {
+        Inputs::default().incoming_temperature
+    };
+    let (defect, total_defect, shares) = largest_defect(parameters, steps, duration, incoming)?;
+    // A balance that closes says nothing about a term that is 0 all the time.
+    let shallow = parameters.strip_height < 0.1;
+    let smallest = [
+        (shares.stored, true),
+        (shares.carried_out, steps[0].speed != 0.0),
+        (shares.carried_in, warm),
+        (shares.rim, true),
+        (shares.bottom, shallow),
+        (shares.conduction, true),
+        (shares.debris, parameters.wear_coefficient > 0.0),
+    ]
+    .iter()
+    .filter(|(_, expected)| *expected)
+    .fold(f64::INFINITY, |m, (share, _)| share.min(m));
+    Ok(vec![
+        Row::absolute(
             format!("heat balance defect of rail, wheel and debris over friction power, {name}"),
             "1",
             0.0,
             total_defect,
             TOLERANCE,
             SOURCE,
-        ));
-        rows.push(Row::absolute(
+        ),
+        Row::absolute(
             format!("heat balance defect over friction heat, {name}"),
             "1",
             0.0,
             defect,
             TOLERANCE,
             SOURCE,
-        ));
-        // A balance that closes says nothing about a term that is 0 all the time.
-        let shallow = parameters.strip_height < 0.1;
-        let smallest = [
-            (shares.stored, true),
-            (shares.carried_out, steps[0].0 != 0.0),
-            (shares.carried_in, warm),
-            (shares.rim, true),
-            (shares.bottom, shallow),
-            (shares.conduction, true),
-            (shares.debris, parameters.wear_coefficient > 0.0),
-        ]
-        .iter()
-        .filter(|(_, expected)| *expected)
-        .fold(f64::INFINITY, |m, (share, _)| share.min(m));
-        rows.push(Row::at_least(
+        ),
+        Row::at_least(
             format!("smallest share of a term at its largest, {name}"),
             "1",
             1e-5,
             smallest,
             "each term takes part",
-        ));
-    }
-    Ok(rows)
+        ),
+    ])
 }
 
 /// The largest defect over the steps, of the rail and of rail, wheel and debris, and the largest share of each term.
 fn largest_defect(
     parameters: &Parameters,
-    steps: &[Step],
+    steps: &[DrivenStep],
     duration: f64,
     incoming_temperature: f64,
 ) -> Result<(f64, f64, Balance)> {
-    let inputs = |&(vehicle_speed, circumferential, normal_load): &Step| Inputs {
-        wheel_speed: circumferential / parameters.wheel_radius,
-        vehicle_speed,
-        normal_load,
+    let inputs = |step: &DrivenStep| Inputs {
+        wheel_speed: step.circumferential / parameters.wheel_radius,
+        vehicle_speed: step.speed,
+        normal_load: step.load,
         incoming_temperature,
         ..Inputs::default()
     };
@@ -208,7 +237,7 @@ fn largest_defect(
         let before = run.state.fields()?.clone();
         let inputs = inputs(step);
         run.step(&inputs, duration)?;
-        let balance = balance(&run, &before, step.0, duration)?;
+        let balance = balance(&run, &before, step.speed, duration)?;
         let divided = run.state.duration != duration;
         let worse = |worst: f64, own: f64| larger(worst, if divided { f64::NAN } else { own });
         defect = worse(defect, balance.defect());
@@ -234,11 +263,11 @@ fn balance(run: &Simulation, before: &LineFields, speed: f64, duration: f64) -> 
         let [old_upstream, old_own] = [column.upstream, column.index].map(|index| amplitudes(before, index));
         for mode in 0..basis.len() {
             let rate = kappa * basis.eigenvalues[mode];
-            let passage = (column.spacing / speed, speed / column.spacing);
-            let step = ModeStep::at(Arithmetic::SEPARATE, (rate, 1.0 / rate), 1.0 / duration, passage);
+            let transit = Transit::new(column.spacing, speed);
+            let step = ModeStep::at(MultiplyAdd::SEPARATE, DecayRate::new(rate), 1.0 / duration, transit);
             let mean = |share: f64, upstream: f64, own: f64| own + share * (upstream - own);
             let growth = mean(
-                step.stored_share(),
+                step.storage_weight(),
                 upstream[mode] - old_upstream[mode],
                 own[mode] - old_own[mode],
             );
@@ -247,7 +276,7 @@ fn balance(run: &Simulation, before: &LineFields, speed: f64, duration: f64) -> 
             // Reaction of the bottom: conduction out of the last cell less what its share of the mass takes up.
             let lowest = basis.modes[(rail.mesh.rows() - 2, mode)];
             let taken_up = held + speed * (own[mode] - upstream[mode]);
-            let lost = mean(step.fed_share(), upstream[mode], own[mode]);
+            let lost = mean(step.source_weight(), upstream[mode], own[mode]);
             let conducted = kappa * basis.bottom_flux[mode] * column.spacing * lost;
             balance.bottom += capacity * (conducted - bottom_cell / 6.0 * lowest * taken_up);
         }

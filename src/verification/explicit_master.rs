@@ -9,7 +9,7 @@ use crate::signals::Inputs;
 use crate::simulation::Simulation;
 
 const SOURCE: &str = "stability: the swing on the contact's spring dies down";
-/// Of a driven wheelset's wheel, `kg m²`.
+/// Moment of inertia of a driven wheelset's wheel, `kg m²`.
 const INERTIA: f64 = 60.0;
 const STEP: f64 = 1e-3;
 const STEPS: usize = 400;

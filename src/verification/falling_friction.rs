@@ -20,13 +20,13 @@ use crate::wheel_rail::Model;
 use std::sync::Arc;
 
 const MODELS: [(ContactModel, &str); 2] = [(ContactModel::Line, "line"), (ContactModel::Patch, "patch")];
-/// Of full slip: what elasticity adds at the leading edge, on less than a cell.
+/// Tolerance of full slip: what elasticity adds at the leading edge, on less than a cell.
 const SLIDING_TOLERANCE: f64 = 0.003;
-/// Of the coefficient along the contact: the leading edge falls between two nodes.
+/// Tolerance of the coefficient along the contact: the leading edge falls between two nodes.
 const MEMORY_TOLERANCE: f64 = 0.01;
 /// The answers of different starts, steps and iterations: their tolerances.
 const UNIQUE: f64 = 1e-6;
-/// What is called different.
+/// Relative difference above which two values are called different.
 const DIFFERENT: f64 = 1e-4;
 
 /// A = 0.3 and B, with d_c.
@@ -58,8 +58,11 @@ fn fading(kappa: f64) -> f64 {
     (-kappa).exp() * sum
 }
 
-/// T/N over μ₀ that different starts, steps and iterations lead to; none for those that lead nowhere.
-fn answers(parameters: &Parameters, (speed, creepage): (f64, f64)) -> Result<Vec<Option<f64>>> {
+/// Speed at which answers are compared, `m/s`.
+const SPEED: f64 = 40.0;
+
+/// T/N over μ₀ at [`SPEED`] that different starts, steps and iterations lead to; none for those that lead nowhere.
+fn answers(parameters: &Parameters, creepage: f64) -> Result<Vec<Option<f64>>> {
     let mut plain = Settings::default();
     plain.split.accelerate_after = usize::MAX;
     let mut answers = Vec::new();
@@ -68,9 +71,9 @@ fn answers(parameters: &Parameters, (speed, creepage): (f64, f64)) -> Result<Vec
         for (step, steps) in [(0.1, 5), (2e-3, 50)] {
             for start in [creepage, 0.2, 1e-4] {
                 let end = || -> Result<f64> {
-                    let mut run = Simulation::of(model.clone(), &inputs(speed, start))?;
-                    run.hold(&inputs(speed, start), step, steps)?;
-                    let outputs = run.hold(&inputs(speed, creepage), step, steps)?;
+                    let mut run = Simulation::of(model.clone(), &inputs(SPEED, start))?;
+                    run.hold(&inputs(SPEED, start), step, steps)?;
+                    let outputs = run.hold(&inputs(SPEED, creepage), step, steps)?;
                     Ok(outputs.traction_coefficient / parameters.friction_cold)
                 };
                 answers.push(end().ok());
@@ -135,9 +138,9 @@ pub fn rows() -> Result<Vec<Row>> {
     }
     // Twelve answers each: cold, from slip and from stick, by two steps, with and without acceleration.
     for (contact_model, name) in MODELS {
-        for at in [(40.0, 0.001), (40.0, 0.003)] {
-            let case = format!("{name}: B = 20 s/m at {} m/s, creepage {}", at.0, at.1);
-            let with = answers(&parameters(contact_model, 20.0, 1e-6), at)?;
+        for creepage in [0.001, 0.003] {
+            let case = format!("{name}: B = 20 s/m at {SPEED} m/s, creepage {creepage}");
+            let with = answers(&parameters(contact_model, 20.0, 1e-6), creepage)?;
             rows.push(Row::at_most(
                 format!("{case}, memory of 1 um: spread of 12 answers"),
                 "1",
@@ -146,13 +149,13 @@ pub fn rows() -> Result<Vec<Row>> {
                 "unique",
             ));
         }
-        let (at, case) = match contact_model {
-            ContactModel::Line => ((40.0, 0.003), "0.003"),
-            ContactModel::Patch => ((40.0, 0.001), "0.001"),
+        let creepage = match contact_model {
+            ContactModel::Line => 0.003,
+            ContactModel::Patch => 0.001,
         };
-        let without = answers(&parameters(contact_model, 20.0, 0.0), at)?;
+        let without = answers(&parameters(contact_model, 20.0, 0.0), creepage)?;
         rows.push(Row::at_least(
-            format!("{name}: the same at creepage {case} without memory: answers that differ or fail, of 12"),
+            format!("{name}: the same at creepage {creepage} without memory: answers that differ or fail, of 12"),
             "1",
             1.0,
             others(&without),
@@ -172,7 +175,7 @@ pub fn rows() -> Result<Vec<Row>> {
                 format!("{name}: mu falls by 0.35 within 0.5 K, {memory}: spread of 12 answers"),
                 "1",
                 UNIQUE,
-                spread(&answers(&steep(distance), (40.0, 0.01))?),
+                spread(&answers(&steep(distance), 0.01)?),
                 "unique",
             ));
         }

@@ -92,7 +92,7 @@ pub fn curve() -> Result<Vec<Vec<f64>>> {
     let points = march(&parameters, 0.0)?;
     Ok(points
         .into_iter()
-        .map(|Point { x, rise, .. }| vec![x, rise, scale * flash_integral(x / half_length)])
+        .map(|SurfaceNode { x, rise, .. }| vec![x, rise, scale * flash_integral(x / half_length)])
         .collect())
 }
 
@@ -123,7 +123,7 @@ fn mean_temperature_error(contact_nodes: usize) -> Result<f64> {
 }
 
 /// A surface node of the contact window.
-struct Point {
+struct SurfaceNode {
     /// Position, `m`.
     x: f64,
     /// Temperature rise, `K`.
@@ -133,7 +133,7 @@ struct Point {
 }
 
 /// Steady march over the mesh of the parameters under a source that stands at `centre` `m`.
-fn march(parameters: &Parameters, centre: f64) -> Result<Vec<Point>> {
+fn march(parameters: &Parameters, centre: f64) -> Result<Vec<SurfaceNode>> {
     let mesh = Mesh::new(parameters);
     let basis = DepthBasis::new(&mesh.depth)?;
     let half_length = parameters.hertz_half_length(LOAD);
@@ -174,14 +174,14 @@ fn march(parameters: &Parameters, centre: f64) -> Result<Vec<Point>> {
         &cold,
         &exchange,
         &mut Heated {
-            temperature: &mut heated,
+            amplitudes: &mut heated,
             surface: &mut surface,
             flux: &mut flux,
         },
         &mut CellFactors::new(&basis, &mesh.x),
     )?;
     Ok((0..mesh.contact_nodes)
-        .map(|node| Point {
+        .map(|node| SurfaceNode {
             x: mesh.contact_position(node),
             rise: surface[mesh.contact_column(node)],
             flux: flux[node],
@@ -195,8 +195,8 @@ fn ellipse_area(x: f64) -> f64 {
     0.5 * (x * (1.0 - x * x).sqrt() + x.asin())
 }
 
-/// With X = x/a and material entering at X = 1, θ(X) = μ p₀ s √(a/V) / (ρc √(πκ)) F(X), F(X) = ∫ √(1 − Y²)/√(Y − X) dY
-/// from the greater of X and −1 to 1. This is the factor of F.
+/// Factor μ p₀ s √(a/V) / (ρc √(πκ)) on F in θ(X) = factor · F(X), F(X) = ∫ √(1 − Y²)/√(Y − X) dY from the greater of X
+/// and −1 to 1, with X = x/a and material entering at X = 1.
 fn flash_scale(parameters: &Parameters) -> f64 {
     parameters.friction_cold
         * parameters.hertz_peak_pressure(LOAD)

@@ -14,7 +14,7 @@ use crate::signals::Inputs;
 use crate::simulation::Simulation;
 
 const SOURCE: &str = "Archard's law and a groove of the wheel's radius";
-/// Of the wheel's surface, `m/s`.
+/// Slip velocity of the wheel's surface, `m/s`.
 const SLIP_VELOCITY: f64 = 1.0;
 /// Slip in a step, `m`.
 const STRIDE: f64 = 1e-3;
@@ -27,7 +27,7 @@ const SOFT: f64 = 1e-11;
 struct Spinning {
     run: Simulation,
     load: f64,
-    /// So far, `m`.
+    /// Slip so far, `m`.
     slip: f64,
 }
 

@@ -20,7 +20,7 @@ const PRESSURE_TOLERANCE: f64 = 0.002;
 /// same force and without the shift at 1 m from it, in 2/(πE*) times the force: an independent program's linear triangles,
 /// extrapolated from 7 503 and 29 403 nodes.
 const STRIP: f64 = -0.5215;
-/// What a remainder on a thousand nodes leaves.
+/// Tolerance of the penetration: what a remainder on a thousand nodes leaves.
 const PENETRATION_TOLERANCE: f64 = 0.001;
 
 /// Half-length and peak pressure over 10–100 % of the largest load.
@@ -57,7 +57,7 @@ fn rigid() -> Parameters {
     }
 }
 
-/// Without friction, heat and wear.
+/// Parameters without friction, heat and wear.
 fn smooth(parameters: Parameters) -> Parameters {
     Parameters {
         friction_law: FrictionLaw::Constant,

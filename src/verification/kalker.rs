@@ -13,11 +13,11 @@
 const POISSON_RATIOS: [f64; 3] = [0.0, 0.25, 0.5];
 
 /// C₁₁, C₂₂, C₂₃ and C₃₃, each at the three Poisson's ratios.
-type Row = [[f64; 3]; 4];
+type CoefficientRow = [[f64; 3]; 4];
 
 /// a/b = 0.1, 0.2 to 1.
 #[allow(clippy::approx_constant)] // Entries of 3.14 are Kalker's.
-const SHORT: [Row; 10] = [
+const SHORT: [CoefficientRow; 10] = [
     [
         [2.51, 3.31, 4.85],
         [2.51, 2.52, 2.53],
@@ -81,7 +81,7 @@ const SHORT: [Row; 10] = [
 ];
 
 /// b/a = 0.1, 0.2 to 1.
-const LONG: [Row; 10] = [
+const LONG: [CoefficientRow; 10] = [
     [
         [10.7, 11.7, 12.9],
         [10.7, 12.8, 16.0],
@@ -211,7 +211,7 @@ mod tests {
         }
     }
 
-    /// At the entries the interpolation is the entry.
+    /// Interpolation at the entries of the table: it is the entry.
     #[test]
     fn table_at_its_entries() {
         for (tenths, (short, long)) in (1..).zip(SHORT.iter().zip(&LONG)) {
@@ -230,7 +230,8 @@ mod tests {
         assert_near(values(1.0 / 0.15, 0.5), [10.86, 12.895, 12.945, 0.2845], 1e-12);
     }
 
-    /// Without Poisson's effect the two directions are alike in their tangential compliance; the two halves meet in the circle.
+    /// Symmetry without Poisson's effect: the two directions are alike in their tangential compliance; the two halves
+    /// meet in the circle.
     #[test]
     fn alike_where_theory_says_so() {
         for row in SHORT.iter().chain(&LONG) {
@@ -242,7 +243,7 @@ mod tests {
     /// Coefficients grow with a/b, and C33 falls: a digit that was set wrong would break it.
     #[test]
     fn rising_along_the_table() {
-        let upward: Vec<&Row> = SHORT.iter().chain(LONG[..9].iter().rev()).collect();
+        let upward: Vec<&CoefficientRow> = SHORT.iter().chain(LONG[..9].iter().rev()).collect();
         for pair in upward.windows(2) {
             assert!(pair[0][3].iter().zip(&pair[1][3]).all(|(before, after)| after < before));
             for (coefficient, at) in (0..3).flat_map(|coefficient| (0..3).map(move |at| (coefficient, at))) {

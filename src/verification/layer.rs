@@ -19,11 +19,11 @@ use std::f64::consts::{FRAC_PI_2, PI};
 const BRISTLES: f64 = 4e-12;
 /// The layer of CONTACT's user guide, 1.25 mm of 8.2 GPa.
 const LAYER: f64 = 1.25e-3 / 8.2e9;
-/// From nearly all stick to nearly all slip.
+/// Creepages from nearly all stick to nearly all slip.
 const CREEPAGES: [f64; 5] = [0.01, 0.05, 0.1, 0.2, 0.4];
-/// What the bodies add, 1 % of the layer's displacement, and the cell at the leading edge.
+/// Tolerance: what the bodies add, 1 % of the layer's displacement, and the cell at the leading edge.
 const TOLERANCE: f64 = 0.006;
-/// For the slopes: what the rule itself is good for.
+/// Tolerance of the slopes: what the rule itself is good for.
 const SLOPE_TOLERANCE: f64 = 0.05;
 /// A creepage at which nearly all sticks.
 const SMALL: f64 = 1e-5;

@@ -104,7 +104,7 @@ fn pair(pair: &str, parameters: &Parameters) -> Result<Vec<Row>> {
     ])
 }
 
-/// From rolling into a slide of 8 %, in the given direction.
+/// Simulation from rolling into a slide of 8 %, in the given direction.
 fn braking(parameters: &Parameters, direction: f64) -> Result<Simulation> {
     let inputs = |slide: f64| Inputs {
         vehicle_speed: 10.0 * direction,

@@ -45,7 +45,7 @@ pub mod yielding_layer;
 use crate::error::Result;
 pub use row::Row;
 
-/// What a figure draws: the model beside its closed form, point by point, in SI units.
+/// Curve of a figure: the model beside its closed form, point by point, in SI units.
 pub struct Curve {
     /// Name of the figure.
     pub name: &'static str,

@@ -55,7 +55,7 @@ pub struct Rolling {
 }
 
 impl Rolling {
-    /// Of the given parameters.
+    /// Rolling of a patch with the given parameters.
     ///
     /// # Errors
     /// Parameters that do not go together.
@@ -70,7 +70,7 @@ impl Rolling {
         self.model.parameters()
     }
 
-    /// Under ξ, η and φ: the state at the start is steady rolling.
+    /// Simulation under ξ, η and φ: the state at the start is steady rolling.
     ///
     /// # Errors
     /// A solver that did not converge.
@@ -78,7 +78,7 @@ impl Rolling {
         Simulation::of(self.model.clone(), &inputs(self.parameters(), creepages))
     }
 
-    /// Its outputs.
+    /// Outputs of steady rolling under ξ, η and φ.
     ///
     /// # Errors
     /// As of [`Rolling::at`].

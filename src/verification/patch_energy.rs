@@ -13,8 +13,8 @@ use crate::contact::patch::fields::PatchFields;
 use crate::contact::patch::operators::PatchOperators;
 use crate::contact::rim;
 use crate::error::Result;
-use crate::heat::step::ModeStep;
-use crate::numerics::dense::Arithmetic;
+use crate::heat::step::{DecayRate, ModeStep, Transit};
+use crate::numerics::dense::MultiplyAdd;
 use crate::parameters::{ContactModel, FrictionLaw, Parameters, SlipSource, WheelHeating};
 use crate::signals::Inputs;
 use crate::simulation::Simulation;
@@ -36,9 +36,9 @@ struct Balance {
     debris: f64,
     /// ᾱ of the friction power.
     friction: f64,
-    /// What flows into the wheel or is stored in the rim and given to the ambient.
+    /// Heat that flows into the wheel or is stored in the rim and given to the ambient.
     rim: f64,
-    /// All of the friction power.
+    /// Friction power, all of it.
     power: f64,
     /// Wear that is stored, and that is carried away less what came in.
     worn: [f64; 2],
@@ -113,7 +113,7 @@ pub fn rows() -> Result<Vec<Row>> {
         ),
         ("-0.02 m/s, shallow rail", &shallow, -0.02, 5.0, (340.0, 1e-7), true),
     ] {
-        let (defects, shares) = largest(parameters, speed, duration, incoming)?;
+        let (defects, shares) = largest(parameters, speed, duration, incoming.0, incoming.1)?;
         for (what, defect) in ["heat of the rail", "heat of rail, wheel and debris", "wear"]
             .into_iter()
             .zip(defects)
@@ -146,7 +146,8 @@ fn largest(
     parameters: &Parameters,
     speed: f64,
     duration: f64,
-    (incoming_temperature, incoming_wear_depth): (f64, f64),
+    incoming_temperature: f64,
+    incoming_wear_depth: f64,
 ) -> Result<([f64; 3], [f64; 9])> {
     let inputs = |step: u32| {
         let wave = (0.7 * f64::from(step)).sin();
@@ -181,7 +182,7 @@ fn largest(
     Ok((defects, shares))
 }
 
-/// Where a part of the rail has its values: the window, or a side of it.
+/// Part of the rail: the window, or a side of it.
 #[derive(Clone, Copy)]
 enum Part {
     Window,
@@ -233,15 +234,15 @@ fn balance(run: &Simulation, before: &PatchFields, duration: f64) -> Result<Bala
     let (ahead, behind) = rail.strips.ends(speed);
     for part in [Part::Outer(ahead), Part::Window, Part::Outer(behind)] {
         for column in part.march(rail, speed).columns() {
-            let passage = (column.spacing / speed.abs(), speed.abs() / column.spacing);
+            let transit = Transit::new(column.spacing, speed.abs());
             for mode in 0..basis.len() {
                 let at = |fields, index| part.heat(rail, fields, breadth, index, mode);
                 let (upstream, own) = (at(after, column.upstream), at(after, column.index));
                 let rate = kappa * basis.eigenvalues[mode];
-                let step = ModeStep::at(Arithmetic::SEPARATE, (rate, 1.0 / rate), 1.0 / duration, passage);
+                let step = ModeStep::at(MultiplyAdd::SEPARATE, DecayRate::new(rate), 1.0 / duration, transit);
                 let mean = |share: f64, upstream: f64, own: f64| own + share * (upstream - own);
                 let growth = mean(
-                    step.stored_share(),
+                    step.storage_weight(),
                     upstream - at(before, column.upstream),
                     own - at(before, column.index),
                 );
@@ -250,7 +251,7 @@ fn balance(run: &Simulation, before: &PatchFields, duration: f64) -> Result<Bala
                 // Reaction of the bottom: conduction out of the last cell less what its share of the mass takes up.
                 let lowest = basis.modes[(rows - 2, mode)];
                 let taken_up = held + speed.abs() * (own - upstream);
-                let lost = mean(step.fed_share(), upstream, own);
+                let lost = mean(step.source_weight(), upstream, own);
                 let conducted = kappa * basis.bottom_flux[mode] * column.spacing * lost;
                 balance.bottom += capacity * (conducted - bottom_cell / 6.0 * lowest * taken_up);
             }

@@ -18,13 +18,13 @@ use std::sync::Arc;
 const SOURCE: &str = "Johnson, Contact Mechanics, 4.24-4.26";
 /// Half a cell is 4 % of a semi-axis along and 7 % across; the ends are interpolated between cells.
 const TOLERANCE: f64 = 0.01;
-/// What remains of an error with twice as many cells each way; of the first order it would be a half, less or more as
-/// the ends lie.
+/// Factor that remains of an error with twice as many cells each way; of the first order it would be a half, less or
+/// more as the ends lie.
 const FALLING: f64 = 0.8;
 /// Loads in per cent of the one that the cells are counted for.
 const PERCENTS: std::ops::RangeInclusive<u8> = 60..=110;
 
-/// What is compared.
+/// Quantities that are compared.
 const QUANTITIES: [&str; 5] = [
     "semi-axis a along the rail",
     "semi-axis b across the rail",

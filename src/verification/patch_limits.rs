@@ -3,15 +3,15 @@
 //!
 //! Piecewise constant tractions on n × n elements over the ellipse's box, the strain by the difference over one element, Coulomb's
 //! law exactly, the pressure by the same influence functions: the discrete problem of CONTACT, whose 32 forces and 8 moments in
-//! [`super::contact_points`] it gives to 1e-5. The limits are extrapolated from n = 40 and 80 as [`Point::limit`]
+//! [`super::contact_points`] it gives to 1e-5. The limits are extrapolated from n = 40 and 80 as [`CreepForce::limit`]
 //! does; the steps from n = 20 to 40 to 80 let expect them to be known to some 0.002.
 //!
-//! [`Point::limit`]: super::contact_points::Point::limit
+//! [`CreepForce::limit`]: super::contact_points::CreepForce::limit
 
 /// Creepages and forces of one case, with wheelrail's signs.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Limit {
-    /// Which of [`super::contact_points::ELLIPSES`].
+    /// Index into [`super::contact_points::ELLIPSES`].
     pub ellipse: usize,
     /// ξ, η, and φ √(ab).
     pub creepages: [f64; 3],
@@ -27,7 +27,7 @@ const fn limit(ellipse: usize, creepages: [f64; 3], forces: [f64; 3]) -> Limit {
     }
 }
 
-/// All of them: ξ, η and φ alone, then combined.
+/// Limits at all creepages: ξ, η and φ alone, then combined.
 pub const LIMITS: [Limit; 48] = [
     limit(0, [0.0005, 0.0, 0.0], [0.309, 0.0, 0.0]),
     limit(0, [0.001, 0.0, 0.0], [0.5538, 0.0, 0.0]),
@@ -84,7 +84,7 @@ mod tests {
     use super::super::contact_points::{LATERAL, LONGITUDINAL};
     use super::*;
 
-    /// Where both have a value.
+    /// Limits against those of CONTACT, where both have a value.
     #[test]
     fn limits_are_those_of_contact() {
         for (axis, curve) in [LONGITUDINAL, LATERAL].into_iter().enumerate() {

@@ -19,7 +19,8 @@ const SOURCE: &str = "line engine at the same load per width";
 const TOLERANCE: f64 = 0.01;
 /// Transverse curvature, `1/m`: b = 26 a.
 const CURVATURE: f64 = 0.012;
-/// With the rigid wheel, b = 250 a: strain by pressure is b/(a + b) of the line's, that of a uniformly loaded ellipse.
+/// Curvature with the rigid wheel, b = 250 a: strain by pressure is b/(a + b) of the line's, that of a uniformly loaded
+/// ellipse.
 const RIGID_CURVATURE: f64 = 2.2e-4;
 /// a/(a + b) = 0.004 more, and the slip within a cell, which only the line engine corrects.
 const RIGID_TOLERANCE: f64 = 0.014;
@@ -28,7 +29,7 @@ const SPEED: f64 = 20.0;
 /// Longer than the rail is in the strip.
 const PASSAGE: f64 = 0.5;
 
-/// What is compared.
+/// Fields in the middle of the contact, which are compared.
 struct Middle {
     /// T/N.
     traction: f64,
@@ -42,7 +43,7 @@ struct Middle {
     load: f64,
 }
 
-/// The same parameters for the line engine at the middle of the ellipse.
+/// Parameters of the line engine at the middle of the patch's ellipse.
 fn line(patch: &Parameters) -> Parameters {
     let ellipse = patch.hertz_ellipse(LOAD);
     Parameters {

@@ -50,7 +50,7 @@ pub fn rows() -> Result<Vec<Row>> {
     Ok(rows)
 }
 
-/// From rolling into a slide of 8 % and a drift with spin, mirrored.
+/// Simulation from rolling into a slide of 8 % and a drift with spin, mirrored.
 fn braking(parameters: &Parameters, [x, y]: Mirror) -> Result<Simulation> {
     let inputs = |slide: f64| Inputs {
         vehicle_speed: 10.0 * x,

@@ -27,7 +27,7 @@ const CREEPAGES: [[f64; 3]; 6] = [
     [0.01, 0.0, 0.0],
 ];
 
-/// All of it.
+/// Rows of all powers.
 ///
 /// # Errors
 /// A solver that did not converge.

@@ -3,13 +3,13 @@
 /// One compared quantity.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Row {
-    /// What is compared, with the conditions.
+    /// Quantity that is compared, with the conditions.
     pub quantity: String,
     /// Unit of reference and computed value.
     pub unit: &'static str,
-    /// What it should be; of a bound, the bound.
+    /// Value that it should have; of a bound, the bound.
     pub reference: f64,
-    /// What the model gives.
+    /// Value that the model gives.
     pub computed: f64,
     /// Distance of the two as the kind of row measures it: relative, absolute, or beyond a bound.
     pub deviation: f64,
@@ -17,7 +17,7 @@ pub struct Row {
     pub tolerance: f64,
     /// Whether the deviation is a number not above the tolerance.
     pub pass: bool,
-    /// Where the reference comes from.
+    /// Source of the reference.
     pub source: &'static str,
 }
 

@@ -26,19 +26,19 @@ const MASS: f64 = 6e3;
 const INERTIA: f64 = 90.0;
 const GRAVITY: f64 = 9.81;
 const GRADIENT: f64 = 0.03;
-/// At which it begins to brake, `m/s`.
+/// Speed at which it begins to brake, `m/s`.
 const SPEED: f64 = 5.0;
 /// Torques, `N m`: half of what friction can carry, and enough to climb.
 const BRAKE: f64 = 6e3;
 const DRIVE: f64 = 3e3;
 /// Time in which the torques rise and fall, `s`.
 const RAMP: f64 = 0.3;
-/// From standstill to where the brake lets go, the drive being on, and from there to the end, `s`.
+/// Time from standstill to where the brake lets go, the drive being on, and from there to the end, `s`.
 const HELD: f64 = 60.0;
 const AFTER: f64 = 2.0;
-/// After which the swing on the spring is over, `s`: at 1 ms a step takes 1 − 1/√(1 + k h²/m), 2.4 %, off it.
+/// Time after which the swing on the spring is over, `s`: at 1 ms a step takes 1 − 1/√(1 + k h²/m), 2.4 %, off it.
 const SETTLED: f64 = 1.0;
-/// To which the speeds of a step must agree, `m/s` (and rad/s): of the force of a mass of 6 t that is 6 mN at 1 ms.
+/// Tolerance of the speeds of a step, `m/s` (and rad/s): of the force of a mass of 6 t that is 6 mN at 1 ms.
 const TOLERANCE: f64 = 1e-9;
 /// Most tries of a step; four are enough.
 const TRIES: usize = 10;
@@ -50,7 +50,7 @@ type Pair = [f64; 2];
 struct Wheelset {
     run: Simulation,
     time: f64,
-    /// Where it stands, `m`.
+    /// Place of the wheelset, `m`.
     place: f64,
     /// ω and V.
     speeds: Pair,
@@ -189,19 +189,19 @@ fn inputs([wheel_speed, vehicle_speed]: Pair) -> Inputs {
     }
 }
 
-/// From 0 to 1 over the ramp.
+/// Ramp from 0 to 1.
 fn ramp(since: f64) -> f64 {
     (since / RAMP).clamp(0.0, 1.0)
 }
 
-/// What is seen while the wheel is held.
+/// Measurements while the wheel is held.
 struct Held {
     /// Least and largest place, of all the time and of what comes after the swing, `m`.
     places: [Pair; 2],
-    /// After the swing: largest speed, `m/s`, and the traction farthest from what the gradient asks for, `N`.
+    /// Largest speed after the swing, `m/s`, and the traction farthest from what the gradient asks for, `N`.
     speed: f64,
     traction: f64,
-    /// Of the contact under a step that sticks, `N/m`.
+    /// Stiffness of the contact under a step that sticks, `N/m`.
     stiffness: f64,
 }
 

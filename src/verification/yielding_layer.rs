@@ -24,15 +24,15 @@ use std::f64::consts::{FRAC_2_PI, PI};
 const MODELS: [(ContactModel, &str); 2] = [(ContactModel::Line, "line"), (ContactModel::Patch, "patch")];
 /// τ_c0/(μp₀).
 const SHARES: [f64; 4] = [0.2, 0.5, 0.8, 1.2];
-/// What elasticity adds at the leading edge, and the corners between two nodes; of a patch besides the share of the edge's cells in its area, on
-/// which the shear is uniform.
+/// Tolerances of full slip, line and patch: what elasticity adds at the leading edge, and the corners between two
+/// nodes; of a patch besides the share of the edge's cells in its area, on which the shear is uniform.
 const SLIDING_TOLERANCES: [f64; 2] = [0.002, 0.006];
 /// c over the compliance of the bodies is some 100.
 const BRISTLES: f64 = 4e-12;
 /// k c of a layer that does not harden, one that hardens by a third of its elastic stiffness, and one that hardly flows.
 const HARDENING: [f64; 3] = [0.0, 0.3, 3.0];
 const CREEPAGES: [f64; 3] = [0.05, 0.1, 0.3];
-/// What the bodies add, 1 % of the layer's displacement, and the cell at the leading edge.
+/// Tolerance as bristles: what the bodies add, 1 % of the layer's displacement, and the cell at the leading edge.
 const BRISTLE_TOLERANCE: f64 = 0.006;
 /// A march of steps against steady rolling: the exponential of the rolled way.
 const MARCH_TOLERANCE: f64 = 1e-6;

@@ -4,23 +4,23 @@
 //! as the wear rate changes; [`StripWearMarch::finish`] is the rail behind, which does not act back. What strips have in
 //! common with the rail ahead and behind is in [`crate::transport::strips`].
 
-use super::{WearMarch, WearSteps};
+use super::{WearChange, WearMarch, WearSteps};
 use crate::numerics::dense::LANES;
-use crate::transport::CellStep;
 use crate::transport::strips::{Side, Strips};
+use crate::transport::{CellEnds, CellStep};
 use serde::{Deserialize, Serialize};
 
 /// Wear depth of the strips and of the rail ahead and behind, `m`, or a change of it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct StripWear {
-    /// Of the strips, blocks × columns × [`LANES`]: the strips, after them the rail beside the contact.
+    /// Depths of the strips, blocks × columns × [`LANES`]: the strips, after them the rail beside the contact.
     pub window: Vec<f64>,
-    /// Of the rail on either side: at the column next to the window the mean.
+    /// Depths of the rail on either side of the window; at the column next to the window the mean.
     pub outer: [Vec<f64>; 2],
-    /// Of the cells, strip by strip.
+    /// Depths at the cells, strip by strip.
     pub depth: Vec<f64>,
-    /// What stood before the step in the strips' inflow column, blocks × [`LANES`], where rail entered, and as the mean at the
-    /// outflow column. The derivatives of the step need it.
+    /// Depths that the step has overwritten: those in the strips' inflow column, blocks × [`LANES`], where rail
+    /// entered, and the mean at the outflow column. The derivatives of the step need them.
     pub replaced: Vec<f64>,
     /// B of the last step with a contact, `m`.
     pub breadth: f64,
@@ -66,7 +66,7 @@ pub struct StripWearSteps {
 }
 
 impl StripWearSteps {
-    /// Of the given strips.
+    /// Steps for the cells of the given strips.
     pub fn new(strips: &Strips) -> StripWearSteps {
         StripWearSteps {
             outer: [Side::Left, Side::Right].map(|side| WearSteps::new(strips.outer_positions(side))),
@@ -85,11 +85,11 @@ pub struct StripWearMarch<'a> {
 }
 
 /// A value of each strip of a block.
-type Block = [f64; LANES];
+type Lanes = [f64; LANES];
 
 impl StripWearMarch<'_> {
-    /// From `before`, with rail entering at the depth `incoming` `m`, under the wear rate at the cells, strip by strip, `m/s`: the rail
-    /// ahead and the strips.
+    /// Advances the rail ahead and the strips from `before`, with rail entering at the depth `incoming` `m`, under the
+    /// wear rate at the cells, strip by strip, `m/s`.
     pub fn advance(
         &self,
         rate: &[f64],
@@ -115,8 +115,8 @@ impl StripWearMarch<'_> {
                 let mut own_source = self.at(rate, block, column.index);
                 for lane in 0..LANES {
                     own_source[lane] += storage * before[column.index][lane];
-                    let fed = step.upstream * source[lane] + step.own * own_source[lane];
-                    depth[lane] = fed + step.keep * depth[lane];
+                    let fed = step.upstream * source[lane] + step.diagonal * own_source[lane];
+                    depth[lane] = fed + step.courant_weight * depth[lane];
                 }
                 source = own_source;
                 after[column.index] = depth;
@@ -153,46 +153,47 @@ impl StripWearMarch<'_> {
         field.outer[behind as usize][self.strips.outer(behind, self.speed).outflow()]
     }
 
-    /// The change of [`StripWearMarch::advance`]'s part of the result `after` with that of the wear rate, of |V| by `speed_change`
-    /// `m/s` and of the depth that enters.
-    pub fn advance_tangent(
-        &self,
-        (rate_change, speed_change): (&[f64], f64),
-        incoming: f64,
-        after: &StripWear,
-        tangent: &mut StripWear,
-    ) {
+    /// Computes the change of [`StripWearMarch::advance`]'s part of the result `after` with `change` and with the change
+    /// `incoming` `m` of the depth that enters.
+    pub fn advance_tangent(&self, change: WearChange, incoming: f64, after: &StripWear, tangent: &mut StripWear) {
         let lanes = self.strips.blocks() * LANES;
+        let outer_change = WearChange { rate: &[], ..change };
         let entering = self.enter(incoming, tangent, |march, side, outer| {
-            march.advance_tangent((&[], speed_change), after.replaced[lanes], &after.outer[side], outer);
+            march.advance_tangent(outer_change, after.replaced[lanes], &after.outer[side], outer);
         });
         let step = self.step();
         let storage = 1.0 / self.duration;
-        let cell = (self.strips.spacing(), self.speed.abs());
+        let (spacing, speed) = (self.strips.spacing(), self.speed.abs());
         let window = self.strips.window(self.speed);
         for block in 0..self.strips.blocks() {
             let own = self.block(block);
             let after_block = after.window[own.clone()].as_chunks::<LANES>().0;
             let tangent = tangent.window[own].as_chunks_mut::<LANES>().0;
-            let mut change = [entering; LANES];
-            tangent[window.inflow()] = change;
-            // The sources that the step was made from follow from its result.
-            let mut source: Block = std::array::from_fn(|lane| storage * after.replaced[block * LANES + lane]);
+            let mut depth_change = [entering; LANES];
+            tangent[window.inflow()] = depth_change;
+            // The sources of the step follow from its result.
+            let mut source: Lanes = std::array::from_fn(|lane| storage * after.replaced[block * LANES + lane]);
             let mut source_change = [0.0; LANES];
             for column in window.columns() {
-                let own_change = self.at(rate_change, block, column.index);
+                let own_change = self.at(change.rate, block, column.index);
                 for lane in 0..LANES {
-                    let values = (after_block[column.upstream][lane], after_block[column.index][lane]);
-                    let own_source = step.own_source(values, source[lane]);
-                    let carried = CellStep::speed_tangent(storage, cell, values, (source[lane], own_source));
-                    change[lane] = step.keep * change[lane]
+                    let values = CellEnds {
+                        upstream: after_block[column.upstream][lane],
+                        column: after_block[column.index][lane],
+                    };
+                    let sources = CellEnds {
+                        upstream: source[lane],
+                        column: step.source(values, source[lane]),
+                    };
+                    let by_speed = CellStep::speed_tangent(storage, spacing, speed, values, sources);
+                    depth_change[lane] = step.courant_weight * depth_change[lane]
                         + step.upstream * source_change[lane]
-                        + step.own * own_change[lane]
-                        + speed_change * carried;
-                    source[lane] = own_source;
+                        + step.diagonal * own_change[lane]
+                        + change.speed * by_speed;
+                    source[lane] = sources.column;
                 }
                 source_change = own_change;
-                tangent[column.index] = change;
+                tangent[column.index] = depth_change;
             }
         }
         self.read_cells(tangent);
@@ -200,12 +201,7 @@ impl StripWearMarch<'_> {
 
     /// The change of [`StripWearMarch::finish`], with those of |V|, by `speed_change` `m/s`, and of B, by `breadth_change` `m`, 0
     /// without a contact.
-    pub fn finish_tangent(
-        &self,
-        (speed_change, breadth_change): (f64, f64),
-        after: &StripWear,
-        tangent: &mut StripWear,
-    ) {
+    pub fn finish_tangent(&self, speed_change: f64, breadth_change: f64, after: &StripWear, tangent: &mut StripWear) {
         let (_, behind) = self.strips.ends(self.speed);
         let outflow = self.strips.window(self.speed).outflow();
         let at = |field: &StripWear, strip: usize| field.window[self.place(strip, outflow)];
@@ -217,7 +213,10 @@ impl StripWearMarch<'_> {
         let replaced = after.replaced[self.strips.blocks() * LANES + 1];
         tangent.outer[side][march.transport.inflow()] = leaving;
         march.advance_tangent(
-            (&[], speed_change),
+            WearChange {
+                rate: &[],
+                speed: speed_change,
+            },
             replaced,
             &after.outer[side],
             &mut tangent.outer[side],
@@ -254,19 +253,19 @@ impl StripWearMarch<'_> {
         CellStep::new(1.0 / self.duration, self.strips.spacing(), self.speed.abs())
     }
 
-    /// Where a block has its depths.
+    /// Range of a block's depths.
     fn block(&self, block: usize) -> std::ops::Range<usize> {
         let size = self.strips.columns() * LANES;
         block * size..(block + 1) * size
     }
 
-    /// Where a strip has its depth.
+    /// Index of a strip's depth in a column.
     fn place(&self, strip: usize, column: usize) -> usize {
         (strip / LANES * self.strips.columns() + column) * LANES + strip % LANES
     }
 
     /// The wear rate of a block's strips in a column.
-    fn at(&self, rate: &[f64], block: usize, column: usize) -> Block {
+    fn at(&self, rate: &[f64], block: usize, column: usize) -> Lanes {
         let (cells, mut found) = (self.strips.cells, [0.0; LANES]);
         let cell = column.wrapping_sub(1);
         if cell < cells {
@@ -288,158 +287,4 @@ impl StripWearMarch<'_> {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::transport::Upwind;
-    use proptest::prelude::*;
-
-    const CELLS: usize = 6;
-    const STRIPS: usize = 9;
-    /// Cells 2 to 7 and the columns next to them are evenly spaced.
-    const X: [f64; 12] = [-4.0, -1.5, -0.7, -0.5, -0.3, -0.1, 0.1, 0.3, 0.5, 0.7, 1.5, 4.0];
-    const FIRST: usize = 3;
-    const BREADTH: f64 = 0.4;
-
-    fn strips() -> Strips {
-        Strips::new(&X, (FIRST, CELLS), STRIPS, BREADTH)
-    }
-
-    fn march(strips: &Strips, speed: f64, duration: f64) -> StripWearMarch<'_> {
-        StripWearMarch {
-            strips,
-            speed,
-            duration,
-        }
-    }
-
-    fn advance(march: &StripWearMarch, rate: &[f64], incoming: f64, breadth: f64, before: &StripWear) -> StripWear {
-        let (mut after, mut steps) = (before.clone(), StripWearSteps::new(march.strips));
-        march.advance(rate, incoming, before, &mut after, &mut steps);
-        march.finish(breadth, before, &mut after, &mut steps);
-        after
-    }
-
-    /// B a_beside + Σ b (a_j − a_beside) at a column of all, `m²`.
-    fn section(march: &StripWearMarch, field: &StripWear, column: usize) -> f64 {
-        let first = FIRST - 1;
-        if column < first {
-            field.breadth * field.outer[0][column]
-        } else if column < first + CELLS + 2 {
-            let strips = march.strips;
-            field.breadth * strips.mean(field.breadth, |strip| field.window[march.place(strip, column - first)])
-        } else {
-            field.breadth * field.outer[1][column - first - CELLS - 1]
-        }
-    }
-
-    proptest! {
-        /// Each strip, and the rail beside them.
-        #[test]
-        fn each_strip_is_the_march_of_one(
-            rate in prop::collection::vec(0.0..3.0, STRIPS * CELLS),
-            speed in prop_oneof![Just(0.0), -5.0..5.0_f64],
-            log_duration in -3.0..2.0,
-            incoming in 0.0..1.0,
-        ) {
-            let (strips, duration) = (strips(), 10.0_f64.powf(log_duration));
-            let march = march(&strips, speed, duration);
-            let mut before = StripWear::new(&strips);
-            let mut line = vec![vec![0.0; X.len()]; STRIPS + 1];
-            for _ in 0..3 {
-                let after = advance(&march, &rate, incoming, 1.0, &before);
-                for (strip, line) in line.iter_mut().enumerate() {
-                    let single = WearMarch { transport: Upwind::new(&X, speed), duration, first_contact: FIRST };
-                    let mut next = vec![0.0; X.len()];
-                    next[single.transport.inflow()] = incoming;
-                    let own = rate.chunks_exact(CELLS).nth(strip).unwrap_or(&[]);
-                    single.advance(own, line, &mut next, &mut WearSteps::new(&X));
-                    for column in 0..strips.columns() {
-                        let (found, expected) = (after.window[march.place(strip, column)], next[FIRST - 1 + column]);
-                        prop_assert!((found - expected).abs() <= 1e-13 * (1.0 + expected), "{strip} {column}: {found} {expected}");
-                    }
-                    for (cell, expected) in next[FIRST..FIRST + CELLS].iter().enumerate().filter(|_| strip < STRIPS) {
-                        prop_assert!((after.depth[strip * CELLS + cell] - expected).abs() <= 1e-13 * (1.0 + expected));
-                    }
-                    *line = next;
-                }
-                before = after;
-            }
-        }
-
-        /// What is worn lies on the rail or has left it, over a contact of one breadth: to and fro, with a worn rail coming in.
-        #[test]
-        fn worn_volume_is_the_depth_on_the_rail_and_what_left_it(
-            rate in prop::collection::vec(0.0..3.0, STRIPS * CELLS),
-            speeds in prop::array::uniform5(-5.0..5.0_f64),
-            log_duration in -2.0..1.0,
-            incoming in 0.0..1.0,
-            strips_in_contact in 1_usize..STRIPS,
-        ) {
-            let (strips, duration) = (strips(), 10.0_f64.powf(log_duration));
-            let breadth = BREADTH * strips_in_contact as f64;
-            let mut before = StripWear::new(&strips);
-            before.breadth = breadth;
-            for (number, speed) in speeds.into_iter().enumerate() {
-                let march = march(&strips, speed, duration);
-                // Without a contact the breadth stays, and nothing wears.
-                let lifted = number == 3;
-                let rate = if lifted { vec![0.0; rate.len()] } else { rate.clone() };
-                let after = advance(&march, &rate, incoming, if lifted { 0.0 } else { breadth }, &before);
-                let (mut stored, mut worn) = (0.0, 0.0);
-                let transport = Upwind::new(&X, speed);
-                for column in transport.columns() {
-                    let step = CellStep::new(1.0 / duration, column.spacing, speed.abs());
-                    let mean = |at: &dyn Fn(usize) -> f64| column.spacing * step.mean(at(column.upstream), at(column.index));
-                    stored += mean(&|c| section(&march, &after, c) - section(&march, &before, c));
-                    worn += duration * mean(&|c| {
-                        let cell = c.wrapping_sub(FIRST);
-                        let strips = rate.chunks_exact(CELLS);
-                        strips.map(|strip| BREADTH * strip.get(cell).unwrap_or(&0.0)).sum()
-                    });
-                }
-                let left = speed.abs() * duration * breadth * (march.leaving(&after) - incoming);
-                let size = stored.abs().max(worn).max(left.abs()).max(breadth);
-                prop_assert!((stored + left - worn).abs() <= 1e-12 * size, "{stored} {left} {worn}");
-                before = after;
-            }
-        }
-
-        #[test]
-        fn the_tangent_is_the_derivative(
-            rate in prop::collection::vec(0.0..3.0, STRIPS * CELLS),
-            rate_change in prop::collection::vec(-1.0..1.0, STRIPS * CELLS),
-            speed in 0.5..5.0_f64,
-            log_duration in -2.5..2.0,
-            directions in prop::array::uniform2(any::<bool>()),
-            changes in prop::array::uniform3(-1.0..1.0_f64),
-        ) {
-            let strips = strips();
-            let duration = 10.0_f64.powf(log_duration);
-            let [first, sign] = directions.map(|forward| if forward { 1.0 } else { -1.0 });
-            let [speed_change, incoming_change, breadth_change] = changes;
-            let mut before = StripWear::new(&strips);
-            for breadth in [1.0, 2.0] {
-                before = advance(&march(&strips, first * speed, 0.3), &rate, 0.5, breadth, &before);
-            }
-            let at = |h: f64| {
-                let march = march(&strips, sign * (speed + h * speed_change), duration);
-                let rate: Vec<f64> = rate.iter().zip(&rate_change).map(|(r, d)| r + h * d).collect();
-                advance(&march, &rate, 0.3 + h * incoming_change, 1.5 + h * breadth_change, &before)
-            };
-            let h = 1e-5;
-            let (here, ahead, behind) = (at(0.0), at(h), at(-h));
-            let march = march(&strips, sign * speed, duration);
-            let mut tangent = StripWear::new(&strips);
-            march.advance_tangent((&rate_change, speed_change), incoming_change, &here, &mut tangent);
-            march.finish_tangent((speed_change, breadth_change), &here, &mut tangent);
-            let vectors = tangent.vectors().into_iter().zip(ahead.vectors()).zip(behind.vectors());
-            for (number, ((exact, ahead), behind)) in vectors.enumerate().take(4) {
-                for (k, exact) in exact.iter().enumerate() {
-                    let difference = (ahead[k] - behind[k]) / (2.0 * h);
-                    // Truncation h², round-off 1e-16/h, of depths and their changes up to some 10.
-                    prop_assert!((exact - difference).abs() < 1e-6, "{number} {k}: {exact} {difference}");
-                }
-            }
-        }
-    }
-}
+mod tests;

@@ -26,7 +26,7 @@ const fn platform(name: &'static str, format: BinaryFormat, processors: &'static
 
 const DARWIN: &[Architecture] = &[Architecture::X86_64, Architecture::Aarch64];
 
-/// Those of FMI 2.0.
+/// Platforms of FMI 2.0.
 const FMI2: &[Platform] = &[
     platform("darwin64", BinaryFormat::MachO, DARWIN),
     platform("linux32", BinaryFormat::Elf, &[Architecture::I386]),
@@ -35,7 +35,7 @@ const FMI2: &[Platform] = &[
     platform("win64", BinaryFormat::Pe, &[Architecture::X86_64]),
 ];
 
-/// Those of FMI 3.0 that there are compilers for.
+/// Platforms of FMI 3.0 that there are compilers for.
 const FMI3: &[Platform] = &[
     platform("aarch64-darwin", BinaryFormat::MachO, &[Architecture::Aarch64]),
     platform("aarch64-linux", BinaryFormat::Elf, &[Architecture::Aarch64]),
@@ -60,7 +60,7 @@ impl Platform {
         })
     }
 
-    /// What a shared library's name ends with there.
+    /// Extension of a shared library's name on the platform.
     pub fn extension(&self) -> &'static str {
         match self.format {
             BinaryFormat::MachO => "dylib",
@@ -70,7 +70,7 @@ impl Platform {
     }
 }
 
-/// What a shared library says of itself.
+/// Format, processors and symbols that a shared library declares.
 pub struct Binary {
     format: BinaryFormat,
     processors: Vec<Architecture>,
@@ -102,7 +102,7 @@ impl Binary {
         self.format == platform.format && self.processors.iter().any(|p| platform.processors.contains(p))
     }
 
-    /// What it is instead, for a message.
+    /// Description of the binary as it is, for a message.
     pub fn description(&self) -> String {
         let processors: Vec<_> = self.processors.iter().map(|p| format!("{p:?}")).collect();
         format!("{:?} for {}", self.format, processors.join(" and "))

@@ -26,7 +26,7 @@ pub struct Describe {
     all: bool,
 }
 
-/// Why nothing could be described.
+/// Reason why nothing could be described.
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
     /// The XML serializer.
@@ -75,14 +75,14 @@ impl Describe {
 }
 
 const HEADINGS: [&str; 5] = ["name", "unit", "start", "range", "description"];
-type Row = [String; 5];
+type DescriptionRow = [String; 5];
 
-/// Of a profile only the first point.
+/// Returns whether a variable is listed: of a profile only the first point is.
 fn is_listed(variable: &Variable) -> bool {
     variable.causality != Causality::Local || !variable.name.contains('[') || variable.name.ends_with("[1]")
 }
 
-fn row(variable: &Variable) -> Row {
+fn row(variable: &Variable) -> DescriptionRow {
     let tunable = if variable.variability == Variability::Tunable {
         " t"
     } else {
@@ -135,7 +135,7 @@ fn range(minimum: Option<String>, maximum: Option<String>) -> String {
     }
 }
 
-fn text(out: &mut impl Write, title: &str, rows: &[Row]) -> io::Result<()> {
+fn text(out: &mut impl Write, title: &str, rows: &[DescriptionRow]) -> io::Result<()> {
     let width = |column: usize| {
         let cells = rows.iter().map(|row| row[column].chars().count());
         cells.chain([HEADINGS[column].len()]).max().unwrap_or_default()
@@ -151,7 +151,7 @@ fn text(out: &mut impl Write, title: &str, rows: &[Row]) -> io::Result<()> {
     writeln!(out)
 }
 
-fn markdown(out: &mut impl Write, title: &str, rows: &[Row]) -> io::Result<()> {
+fn markdown(out: &mut impl Write, title: &str, rows: &[DescriptionRow]) -> io::Result<()> {
     writeln!(
         out,
         "### {title}\n\n| {} |\n|---|---|---|---|---|",

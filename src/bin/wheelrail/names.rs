@@ -24,7 +24,7 @@ fn likeness(name: &str, known: &str) -> f64 {
     }
 }
 
-/// Which of the known names may be meant, as the end of a message; empty where none is like it.
+/// Suggests, as the end of a message, the known names that may be meant; empty where none is like the given one.
 pub fn did_you_mean<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> String {
     let mut near: Vec<_> = known.into_iter().map(|known| (likeness(name, known), known)).collect();
     near.sort_by(|a, b| b.0.total_cmp(&a.0));
@@ -58,7 +58,8 @@ pub fn parameters() -> impl Iterator<Item = &'static str> {
     reals.chain(INTEGER_PARAMETERS.iter().map(|row| row.name))
 }
 
-/// What helps after a refusal of a parameter's name or value, as the end of the message; empty where the refusal says all.
+/// Returns what helps after a refusal of a parameter's name or value, as the end of the message; empty where the
+/// refusal says all.
 pub fn hint(error: &ModelError) -> String {
     match error {
         ModelError::UnknownParameter { name } if is_input(name) => {

@@ -1,5 +1,7 @@
 //! `wheelrail pack`: the archive WheelRailContact.fmu, or that of FMI 3.0, from `modelDescription/` and the shared library.
 
+mod error;
+
 use crate::binary::{Binary, Platform};
 use crate::standard::Standard;
 use clap::Args;
@@ -10,6 +12,8 @@ use std::path::{Path, PathBuf};
 use wheelrail::fmi3::terminals::terminals_and_icons;
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, DateTime, ZipArchive, ZipWriter};
+
+pub use error::Error;
 
 /// Options of `pack`.
 #[derive(Args)]
@@ -29,100 +33,12 @@ pub struct Pack {
     /// Another WheelRailContact.fmu of the same sources: its platforms are merged in.
     #[arg(long, value_name = "FMU")]
     merge: Vec<PathBuf>,
-    /// Where the archive goes; target/WheelRailContact.fmu, or -fmi3.fmu, if not told.
+    /// File of the archive; target/WheelRailContact.fmu, or -fmi3.fmu, if not told.
     #[arg(short, long, value_name = "FMU")]
     output: Option<PathBuf>,
 }
 
-/// Why there is no archive.
-#[derive(Debug, thiserror::Error)]
-pub enum Error {
-    /// The XML serializer.
-    #[error("the model description could not be written as XML: {0}")]
-    Xml(#[from] quick_xml::SeError),
-    /// A file that cannot be read or written.
-    #[error("{path}: {source}")]
-    File {
-        /// The file.
-        path: PathBuf,
-        /// What the system says.
-        source: io::Error,
-    },
-    /// An archive that cannot be read or written.
-    #[error("{path}: {source}")]
-    Archive {
-        /// The archive.
-        path: PathBuf,
-        /// What is wrong.
-        source: zip::result::ZipError,
-    },
-    /// The checked-in description is not what the variable table says.
-    #[error("{path} is stale: run `make description` and build the library again")]
-    StaleDescription {
-        /// The description.
-        path: PathBuf,
-    },
-    /// The library was built with another description.
-    #[error(
-        "{path} was not built with this model description (GUID {guid}): build it again with `cargo build --release --lib --no-default-features --features fmi`"
-    )]
-    StaleLibrary {
-        /// The library.
-        path: PathBuf,
-        /// The description's GUID.
-        guid: String,
-    },
-    /// A file that is no library of any platform.
-    #[error("{path} cannot be read as a shared library: {source}")]
-    NoLibrary {
-        /// The file.
-        path: PathBuf,
-        /// What is wrong with it.
-        source: object::Error,
-    },
-    /// A library of another platform than it is given for.
-    #[error("{path} is {found}, which is no library of {platform}")]
-    OtherPlatform {
-        /// The library.
-        path: PathBuf,
-        /// Its format and processors.
-        found: String,
-        /// The platform that it is given for.
-        platform: &'static str,
-    },
-    /// A library without some of the functions.
-    #[error("{path} does not export {}", .missing.join(", "))]
-    MissingFunctions {
-        /// The library.
-        path: PathBuf,
-        /// The functions' names.
-        missing: Vec<String>,
-    },
-    /// A platform in an archive that the standard has no name for.
-    #[error("{path}: {reason}")]
-    UnknownPlatform {
-        /// The archive.
-        path: PathBuf,
-        /// The name, and those that there are.
-        reason: String,
-    },
-    /// An archive to merge that has another description.
-    #[error("{path} has another modelDescription.xml: only archives of the same sources can be merged")]
-    OtherDescription {
-        /// The archive.
-        path: PathBuf,
-    },
-    /// Two libraries for one platform.
-    #[error("{name} is there twice with different content; the second is from {path}")]
-    TwoLibraries {
-        /// The name in the archive.
-        name: String,
-        /// Where the second one came from.
-        path: PathBuf,
-    },
-}
-
-/// Where the archive says what compiled each library.
+/// Entry of the archive that says what compiled each library.
 const BUILD: &str = "documentation/build.txt";
 const NOT_RECORDED: &str = "not recorded";
 
@@ -206,7 +122,7 @@ struct Libraries {
     entries: Entries,
     /// The functions that the first one exports, and every other has to.
     functions: BTreeSet<String>,
-    /// By platform, what compiled its library.
+    /// Compiler of each library, by platform.
     builds: BTreeMap<String, String>,
 }
 
@@ -297,7 +213,7 @@ impl Libraries {
     }
 }
 
-/// What compiled a library, which the build writes beside it.
+/// Returns what compiled a library, which the build writes beside it.
 fn build_of(library: &Path) -> Result<String, Error> {
     let mut path = library.as_os_str().to_owned();
     path.push(".build.txt");
@@ -341,7 +257,8 @@ fn add_folder(entries: &mut Entries, folder: &Path, prefix: &str) -> Result<(), 
     Ok(())
 }
 
-/// The same entries give the same bytes: sorted names, a fixed date, fixed permissions, one compression.
+/// Writes the archive; the same entries give the same bytes: sorted names, a fixed date, fixed permissions, one
+/// compression.
 fn write_archive(output: impl Write + io::Seek, entries: &Entries) -> zip::result::ZipResult<()> {
     let mut archive = ZipWriter::new(output);
     let options = SimpleFileOptions::default()
@@ -386,7 +303,7 @@ fn archive_error(path: &Path, source: zip::result::ZipError) -> Error {
     }
 }
 
-/// Where `cargo build --release --lib --no-default-features --features fmi` leaves the library.
+/// Path where `cargo build --release --lib --no-default-features --features fmi` leaves the library.
 fn default_library() -> PathBuf {
     let name = format!(
         "{}wheelrail{}",

@@ -25,17 +25,17 @@ pub struct Presets {
     name: Option<String>,
 }
 
-/// Why a set of parameters does not serve.
+/// Reason why a set of parameters does not serve.
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
-    /// Neither a name nor a file.
+    /// Name of a preset that is neither known nor that of a file.
     #[error(
         "preset {name:?}: there is none of this name ({known}), and the name of a file ends with .toml{meant}",
         known = names().join(", "),
         meant = did_you_mean(name, names())
     )]
     Unknown {
-        /// What was given.
+        /// Name that was given.
         name: String,
     },
     /// A file that cannot be read.
@@ -51,7 +51,7 @@ pub enum Error {
     Text {
         /// Name or file.
         name: String,
-        /// Where, and the reason.
+        /// Place in the file, and the reason.
         source: Box<toml::de::Error>,
     },
     /// A value that is neither a number nor the name of a choice.
@@ -61,7 +61,7 @@ pub enum Error {
         name: String,
         /// The parameter.
         parameter: String,
-        /// What TOML calls what was given.
+        /// Kind of the value, as TOML calls it.
         kind: &'static str,
     },
     /// A parameter that cannot be.
@@ -69,7 +69,7 @@ pub enum Error {
     Parameter {
         /// Name or file.
         name: String,
-        /// Which, and why.
+        /// Parameter that is refused, and the reason.
         source: ModelError,
     },
     /// Standard output.

@@ -10,20 +10,20 @@ pub struct Progress {
     begun: Instant,
 }
 
-/// Which lines are written where there is no terminal.
+/// Lines that are written where there is no terminal.
 struct Lines {
     steps: u64,
     /// Tenths of the steps that were done at the last one.
     tenths: u64,
-    /// When the last one was written.
+    /// Time at which the last line was written.
     written: Duration,
 }
 
-/// Between two lines at least; a run that is over before writes none.
+/// Least time between two lines; a run that is over before writes none.
 const PAUSE: Duration = Duration::from_secs(1);
 
 impl Progress {
-    /// Of a run of so many steps.
+    /// Progress of a run of so many steps.
     pub fn new(steps: u64) -> Progress {
         // The template is a constant: without it the bar would only look plainer.
         let style = ProgressStyle::with_template("{bar:40} {pos}/{len} steps, {eta} left")
@@ -39,7 +39,7 @@ impl Progress {
         }
     }
 
-    /// After each step.
+    /// Counts a step; to be called after each.
     pub fn step(&mut self) {
         self.bar.inc(1);
         if self.bar.is_hidden()
@@ -49,7 +49,7 @@ impl Progress {
         }
     }
 
-    /// At the end: the bar goes, and stays where the run was interrupted.
+    /// Ends the display: the bar goes, and stays where the run was interrupted.
     pub fn end(self, interrupted: bool) {
         if interrupted {
             self.bar.abandon();

@@ -1,179 +1,19 @@
 //! A scenario: a table of inputs over time as CSV, its headings with or without units, read into a schedule.
 
+mod error;
+
 use crate::names;
 use crate::table;
 use std::fs::File;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use wheelrail::fmi::units::{DisplayUnit, Unit};
 use wheelrail::signals::InputSignal;
 use wheelrail::simulation::{self, Point, Schedule};
 use wheelrail::{Error as ModelError, INPUTS, Inputs, Parameters};
 
-/// Why a file does not serve as a scenario.
-#[derive(Debug, thiserror::Error)]
-pub enum Error {
-    /// A file that does not serve as a table.
-    #[error(transparent)]
-    Table(#[from] table::Error),
-    /// No heading.
-    #[error("{path}: the file is empty; a scenario has a heading, time and inputs, and rows of numbers")]
-    Empty {
-        /// The file.
-        path: PathBuf,
-    },
-    /// Columns that are separated by something else.
-    #[error(
-        "{path}: one column {heading:?}: commas separate the columns of a scenario, and a point stands before decimals"
-    )]
-    Separator {
-        /// The file.
-        path: PathBuf,
-        /// The heading.
-        heading: String,
-    },
-    /// A column that is no input.
-    #[error("{path}: column {column:?} is not an input{is}; a scenario has time and any of {allowed}{meant}")]
-    UnknownColumn {
-        /// The file.
-        path: PathBuf,
-        /// The heading.
-        column: String,
-        /// What it is instead.
-        is: String,
-        /// What a column may be.
-        allowed: String,
-        /// Which of these may be meant.
-        meant: String,
-    },
-    /// A unit that is none of the column's.
-    #[error("{path}: column {column:?}: {unit:?} is not a unit of {name}, which has {allowed}")]
-    UnknownUnit {
-        /// The file.
-        path: PathBuf,
-        /// The heading.
-        column: String,
-        /// The unit in it.
-        unit: String,
-        /// The name in it.
-        name: String,
-        /// What the unit may be.
-        allowed: String,
-    },
-    /// A heading that is there twice.
-    #[error("{path}: column {column:?} is there twice")]
-    TwoColumns {
-        /// The file.
-        path: PathBuf,
-        /// The name in the heading.
-        column: String,
-    },
-    /// No column `time`.
-    #[error("{path}: there is no column \"time\"")]
-    NoTime {
-        /// The file.
-        path: PathBuf,
-    },
-    /// A row with more or fewer cells than there are headings.
-    #[error(
-        "{path}, line {line}: {cells} cells under {columns} headings; commas separate cells, a point stands before decimals"
-    )]
-    Ragged {
-        /// The file.
-        path: PathBuf,
-        /// The line.
-        line: u64,
-        /// Cells of the row.
-        cells: usize,
-        /// Headings.
-        columns: usize,
-    },
-    /// A cell that is not a number.
-    #[error("{path}, line {line}, column {column:?}: {text:?} is not a number")]
-    NotANumber {
-        /// The file.
-        path: PathBuf,
-        /// The line.
-        line: u64,
-        /// The heading.
-        column: String,
-        /// The cell.
-        text: String,
-    },
-    /// A time that is not finite.
-    #[error("{path}, line {line}, column {column:?}: {value} is not a time")]
-    TimeNotFinite {
-        /// The file.
-        path: PathBuf,
-        /// The line.
-        line: u64,
-        /// The heading.
-        column: String,
-        /// The time.
-        value: f64,
-    },
-    /// A time that does not lie after the one before it.
-    #[error("{path}, line {line}, column {column:?}: {value} s is not after {before} s, the time of the row before")]
-    TimeNotAscending {
-        /// The file.
-        path: PathBuf,
-        /// The line.
-        line: u64,
-        /// The heading.
-        column: String,
-        /// The time, `s`.
-        value: f64,
-        /// The time of the row before, `s`.
-        before: f64,
-    },
-    /// A value that the model refuses.
-    #[error("{path}, line {line}, column {column:?}: {source}")]
-    Value {
-        /// The file.
-        path: PathBuf,
-        /// The line.
-        line: u64,
-        /// The heading.
-        column: String,
-        /// Why.
-        source: Box<ModelError>,
-    },
-    /// Values that the model refuses together, or that of an input without a column.
-    #[error("{path}, line {line}: {source}")]
-    Row {
-        /// The file.
-        path: PathBuf,
-        /// The line.
-        line: u64,
-        /// Which inputs and why.
-        source: Box<ModelError>,
-    },
-    /// A column without effect.
-    #[error(
-        "{path}, line {line}, column {column:?}: {source}; say --set slip_source={number}, or leave the column out"
-    )]
-    NotUsed {
-        /// The file.
-        path: PathBuf,
-        /// The line of the first value other than the start value.
-        line: u64,
-        /// The heading.
-        column: String,
-        /// Which input, and what uses it.
-        source: Box<ModelError>,
-        /// The choice that uses it.
-        number: i32,
-    },
-    /// Fewer than two rows.
-    #[error("{path}: a scenario needs at least two rows, this one has {rows}")]
-    TooShort {
-        /// The file.
-        path: PathBuf,
-        /// Its rows.
-        rows: usize,
-    },
-}
+pub use error::Error;
 
-/// What a column holds.
+/// Quantity that a column holds.
 enum Quantity {
     Time,
     Input(&'static InputSignal),
@@ -181,7 +21,7 @@ enum Quantity {
 
 /// A column of the file.
 struct Column {
-    /// As the file has it.
+    /// Heading as the file has it.
     heading: String,
     quantity: Quantity,
     /// The unit of its cells.
@@ -189,15 +29,16 @@ struct Column {
 }
 
 /// A row of the file.
-struct Row {
+struct ScenarioRow {
     line: u64,
     time: f64,
     inputs: Inputs,
 }
 
-/// Where `largest_load` follows the loads of a scenario it is larger than all of them by this factor.
+/// Factor of `largest_load` over the largest load of a scenario, where it follows them.
 const HEADROOM: f64 = 1.05;
-/// It follows them up to the load of a wheel under an axle of 40 t, `N`: a larger one is more likely a slip of the pen.
+/// Largest load that `largest_load` follows, that of a wheel under an axle of 40 t, `N`: a larger one is more likely a
+/// slip of the pen.
 const HEAVIEST_WHEEL: f64 = 200e3;
 
 /// Reads the table and checks each value against the parameters, whose `largest_load` follows the loads if asked for.
@@ -216,7 +57,7 @@ pub fn read(path: &Path, parameters: &mut Parameters, load_follows: bool) -> Res
     let headings = reader.headers().map_err(&csv_error)?.clone();
     let columns = columns(path, &headings)?;
 
-    let mut rows: Vec<Row> = Vec::new();
+    let mut rows: Vec<ScenarioRow> = Vec::new();
     for record in reader.records() {
         let record = record.map_err(&csv_error)?;
         let row = row(path, &columns, &record)?;
@@ -319,7 +160,8 @@ fn columns(path: &Path, headings: &csv::StringRecord) -> Result<Vec<Column>, Err
     }
 }
 
-/// What a column that is no input is instead, and which one may be meant; either is empty where nothing is known.
+/// Returns what a column that is no input is instead, and which one may be meant; either is empty where nothing is
+/// known.
 fn hints(name: &str) -> (String, String) {
     if names::is_output(name) {
         return (" but an output, which is computed".to_owned(), String::new());
@@ -341,7 +183,7 @@ fn hints(name: &str) -> (String, String) {
 }
 
 /// A row, each value in the unit of its variable.
-fn row(path: &Path, columns: &[Column], record: &csv::StringRecord) -> Result<Row, Error> {
+fn row(path: &Path, columns: &[Column], record: &csv::StringRecord) -> Result<ScenarioRow, Error> {
     let path = || path.to_owned();
     let line = record.position().map_or(0, csv::Position::line);
     if record.len() != columns.len() {
@@ -376,11 +218,11 @@ fn row(path: &Path, columns: &[Column], record: &csv::StringRecord) -> Result<Ro
             Quantity::Input(signal) => (signal.set)(&mut inputs, value),
         }
     }
-    Ok(Row { line, time, inputs })
+    Ok(ScenarioRow { line, time, inputs })
 }
 
 /// Refuses inputs that the model does not take under the parameters.
-fn check(path: &Path, columns: &[Column], row: &Row, parameters: &Parameters) -> Result<(), Error> {
+fn check(path: &Path, columns: &[Column], row: &ScenarioRow, parameters: &Parameters) -> Result<(), Error> {
     for column in columns {
         if let Quantity::Input(signal) = column.quantity {
             let checked = signal.check((signal.get)(&row.inputs), parameters);
@@ -401,7 +243,7 @@ fn check(path: &Path, columns: &[Column], row: &Row, parameters: &Parameters) ->
 
 /// Refuses a column without effect: a column that is given is meant. One that is everywhere at the input's start value says
 /// nothing, and passes: tables that have a column for each input, as `wheelrail simulate` writes them, can be read.
-fn check_used(path: &Path, columns: &[Column], rows: &[Row], parameters: &Parameters) -> Result<(), Error> {
+fn check_used(path: &Path, columns: &[Column], rows: &[ScenarioRow], parameters: &Parameters) -> Result<(), Error> {
     for column in columns {
         let Quantity::Input(signal) = column.quantity else {
             continue;

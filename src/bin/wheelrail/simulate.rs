@@ -19,10 +19,10 @@ pub struct Simulate {
     /// The scenario: time and inputs, linear between the rows.
     #[arg(value_name = "SCENARIO.csv")]
     scenario: PathBuf,
-    /// Where time, all inputs and all outputs go.
+    /// CSV file for time, all inputs and all outputs
     #[arg(short, long, value_name = "OUT.csv")]
     output: PathBuf,
-    /// Where the fields at the end go: a row for each node of a line contact or cell of a patch.
+    /// CSV file for the fields at the end: a row for each node of a line contact or cell of a patch
     #[arg(long, value_name = "FIELDS.csv")]
     fields: Option<PathBuf>,
     /// Communication step, `s`.
@@ -38,7 +38,7 @@ pub struct Simulate {
     set: Vec<String>,
 }
 
-/// Why a simulation stopped.
+/// Reason why a simulation stopped.
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
     /// A file of results that cannot be written.
@@ -54,13 +54,13 @@ pub enum Error {
         option: &'static str,
         /// The file.
         path: PathBuf,
-        /// What else it is for.
+        /// Other purpose that the file serves.
         other: &'static str,
     },
     /// A communication step that cannot be.
     #[error("--step {step}: the communication step is a positive, finite number of seconds")]
     Step {
-        /// What was given.
+        /// Step that was given.
         step: f64,
     },
     /// More steps than can be meant.
@@ -68,11 +68,11 @@ pub enum Error {
         "--step {step:e}: from {start} s to {end} s these are {count:e} steps, more than {MOST_STEPS:e}; the default is 1e-3 s"
     )]
     TooManySteps {
-        /// What was given.
+        /// Step that was given.
         step: f64,
         /// Start of the scenario, `s`.
         start: f64,
-        /// Its end, `s`.
+        /// End of the scenario, `s`.
         end: f64,
         /// Steps that it would take.
         count: f64,
@@ -80,7 +80,7 @@ pub enum Error {
     /// A `--set` without an equals sign.
     #[error("--set {text:?}: expected name=value")]
     NotAnAssignment {
-        /// What was given.
+        /// Text that was given.
         text: String,
     },
     /// A named set of parameters that does not serve.
@@ -97,7 +97,7 @@ pub enum Error {
     Interrupted {
         /// The results.
         output: PathBuf,
-        /// Which step, and why.
+        /// Step that failed, and the reason.
         source: Box<simulation::Error>,
     },
 }

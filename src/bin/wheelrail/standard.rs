@@ -60,7 +60,7 @@ impl Standard {
         }
     }
 
-    /// Where the archive goes if not told otherwise.
+    /// Path of the archive if not told otherwise.
     pub fn default_output(self) -> PathBuf {
         PathBuf::from(match self {
             Standard::Fmi2 => "target/WheelRailContact.fmu",

@@ -13,7 +13,7 @@ pub enum Error {
     File {
         /// The file.
         path: PathBuf,
-        /// What the system says.
+        /// Error of the system.
         source: io::Error,
     },
     /// A table that is not CSV.
@@ -21,13 +21,13 @@ pub enum Error {
     Csv {
         /// The file.
         path: PathBuf,
-        /// What is wrong.
+        /// Error of the table.
         source: csv::Error,
     },
 }
 
 impl Error {
-    /// Of a file at the given path.
+    /// Wraps an error of the file at the given path.
     pub fn file(path: &Path) -> impl FnOnce(io::Error) -> Error {
         |source| Error::File {
             path: path.to_owned(),
@@ -35,7 +35,7 @@ impl Error {
         }
     }
 
-    /// Of the content of the file at the given path.
+    /// Wraps an error of the content of the file at the given path.
     pub fn csv(path: &Path) -> impl Fn(csv::Error) -> Error {
         |source| Error::Csv {
             path: path.to_owned(),
@@ -76,7 +76,7 @@ impl Table {
         self.writer.write_record(cells).map_err(Error::csv(&self.path))
     }
 
-    /// To be called at the end: what is left in the buffer is written.
+    /// Finishes the table: what is left in the buffer is written. To be called at the end.
     pub fn finish(&mut self) -> Result<(), Error> {
         self.writer.flush().map_err(Error::file(&self.path))
     }

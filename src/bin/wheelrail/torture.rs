@@ -47,7 +47,8 @@ enum ContactModels {
     Both,
 }
 
-/// So many times as many of the slowest steps are timed again: what interrupted a step made it slow once.
+/// Number of candidates timed again for each of the slowest steps that are listed: what interrupted a step made it slow
+/// once.
 const CANDIDATES: usize = 3;
 
 fn window(text: &str) -> Result<f64, String> {
@@ -57,7 +58,7 @@ fn window(text: &str) -> Result<f64, String> {
     }
 }
 
-/// Why the torture did not pass.
+/// Reason why the torture did not pass.
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
     /// Runs that did not come to their end.
@@ -73,7 +74,7 @@ pub enum Error {
     Output(#[from] io::Error),
 }
 
-/// What is left of the runs once they are over.
+/// Summary of the runs once they are over.
 #[derive(Default)]
 struct Summary {
     times: Vec<f64>,

@@ -18,7 +18,7 @@ pub struct Verify {
     curves: Option<PathBuf>,
 }
 
-/// Why the verification did not pass.
+/// Reason why the verification did not pass.
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
     /// Rows out of their tolerance, or checks that could not be computed.
@@ -32,7 +32,7 @@ pub enum Error {
     /// No check's heading contains the text.
     #[error("no check is named {only:?}; there are: {names}")]
     NoSuchCheck {
-        /// What was asked for.
+        /// Text that was asked for.
         only: String,
         /// The headings.
         names: String,
@@ -45,15 +45,15 @@ pub enum Error {
     File {
         /// The file or folder.
         path: PathBuf,
-        /// What the system says.
+        /// Error of the system.
         source: io::Error,
     },
     /// A curve that could not be computed.
     #[error("{name}: {source}")]
     Curve {
-        /// Its name.
+        /// Name of the check.
         name: &'static str,
-        /// What the model says.
+        /// Error of the model.
         source: ModelError,
     },
 }

@@ -88,7 +88,7 @@ pub fn march_heat(
     problem.exchange(now, wheel_rise, &mut solvers.exchange);
     let march = problem.heat_march();
     let mut after = Heated {
-        temperature: &mut now.temperature,
+        amplitudes: &mut now.temperature,
         surface: &mut now.surface_temperature,
         flux: &mut now.heat_flux,
     };

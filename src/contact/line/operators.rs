@@ -72,9 +72,4 @@ impl LineOperators {
     pub fn node_area(&self, parameters: &Parameters) -> f64 {
         parameters.contact_width * self.mesh.contact_spacing()
     }
-
-    /// Scaled pressure sum Σp of a normal load `N`.
-    pub fn scaled_load(&self, parameters: &Parameters, load: f64) -> f64 {
-        load / (parameters.contact_width * self.mesh.contact_spacing() * self.scales.pressure)
-    }
 }

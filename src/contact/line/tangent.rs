@@ -11,6 +11,7 @@ use crate::heat::surface::{CommonChange, ExchangeChange, ExchangeTangent, Surfac
 use crate::mechanics::problem::{ProblemTangent, Tractions};
 use crate::mechanics::transient::Transient;
 use crate::parameters::WheelHeating;
+use crate::wear::WearChange;
 
 /// Buffers of a linearised step; n contact nodes.
 pub struct LineTangent {
@@ -123,7 +124,10 @@ pub fn wear(at: &mut Linearised<LineOperators>, along: &Along, change: &mut Line
     let march = problem.wear_march();
     change.wear[march.transport.inflow()] = direction.inputs.incoming_wear_depth;
     let replaced = fields.replaced_inflow[problem.operators.heat.basis.len()];
-    let rate = (&at.tangent.wear_rate[..], direction.speed);
+    let rate = WearChange {
+        rate: &at.tangent.wear_rate,
+        speed: direction.speed,
+    };
     march.advance_tangent(rate, replaced, &fields.wear, &mut change.wear);
 }
 
@@ -148,7 +152,7 @@ pub fn heat(at: &mut Linearised<LineOperators>, along: &Along, change: &mut Line
         let (slip, saturation) = (fields.slip[node], fields.saturation[node]);
         let node_change = ExchangeChange {
             pressure: change.pressure[node] * scale,
-            sliding: Sliding::tangent((slip, saturation), (change.slip[node], change.saturation[node])),
+            sliding: Sliding::tangent(slip, saturation, change.slip[node], change.saturation[node]),
             wheel_rise: wheel_rise_change,
             coefficient: if of_slip && fields.pressure[node] > 0.0 {
                 change.friction[node] - fields.memory.share_at(node) * change.memory.now.resting[node]
@@ -160,12 +164,12 @@ pub fn heat(at: &mut Linearised<LineOperators>, along: &Along, change: &mut Line
         *exchange_change = SurfaceExchange::tangent(parameters, pressure, sliding, wheel_rise, &node_change);
     }
     let solution = Heated {
-        temperature: &mut fields.temperature,
+        amplitudes: &mut fields.temperature,
         surface: &mut fields.surface_temperature,
         flux: &mut fields.heat_flux,
     };
     let mut heated = Heated {
-        temperature: &mut change.temperature,
+        amplitudes: &mut change.temperature,
         surface: &mut change.surface_temperature,
         flux: &mut change.heat_flux,
     };

@@ -2,7 +2,7 @@
 
 use super::fields::LineFields;
 use crate::numerics::dense;
-use crate::parameters::{Control, NormalSolver, SlipSource, Wheel};
+use crate::parameters::{Control, NormalSolver, Parameters, SlipSource, Wheel};
 use crate::signals::Inputs;
 use crate::simulation::Simulation as Run;
 use crate::transport::{CellStep, Upwind};
@@ -76,7 +76,7 @@ fn worn_volume_is_the_depth_on_the_rail_and_what_left_it() {
     }
 }
 
-fn assert_signs(fields: &Fields) {
+fn assert_signs(fields: &LineFields) {
     let power: f64 = fields
         .shear
         .iter()
@@ -137,14 +137,8 @@ mod solvers {
         for start in [&mut fields.shear, &mut fields.slip, &mut fields.saturation] {
             start.fill(0.0);
         }
-        let trend = &mut run.state.contact.line_mut().trend;
-        for trend in [
-            &mut trend.shear,
-            &mut trend.surface_temperature,
-            &mut trend.thermal_displacement,
-            &mut trend.wear,
-        ] {
-            trend.fill(0.0);
+        for rates in &mut run.state.contact.line_mut().rates {
+            rates.fill(0.0);
         }
     }
 

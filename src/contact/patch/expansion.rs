@@ -30,7 +30,7 @@ pub struct Scratch {
     pub displacement: [Vec<f64>; 2],
     content: Vec<f64>,
     nothing: Vec<f64>,
-    products: influence::Scratch<f64>,
+    products: influence::ProductScratch<f64>,
 }
 
 impl Scratch {
@@ -58,8 +58,8 @@ impl Expansion {
         };
         let place = |(along, across): (isize, isize)| (along as f64 * grid.length, across as f64 * grid.breadth);
         let cells = transform.tables(
-            |lag| pull * cell.pull_along(place(lag).0, place(lag).1),
-            |lag| pull * cell.pull_across(place(lag).0, place(lag).1),
+            |lag| pull * cell.x_over_r3(place(lag).0, place(lag).1),
+            |lag| pull * cell.y_over_r3(place(lag).0, place(lag).1),
             |_| 0.0,
         );
         let beyond = Rectangle {
@@ -80,7 +80,7 @@ impl Expansion {
             bulge: 2.0 * swelling,
             cells,
             outside: [-middle, middle]
-                .map(|middle| [Rectangle::pull_along, Rectangle::pull_across].map(|kernel| rows(middle, kernel))),
+                .map(|middle| [Rectangle::x_over_r3, Rectangle::y_over_r3].map(|kernel| rows(middle, kernel))),
         }
     }
 

@@ -114,7 +114,7 @@ mod tests {
     /// One strip, then two, then the root: the area has no gap.
     #[test]
     fn the_area_of_few_strips() {
-        let operators = PatchOperators::new(&Parameters {
+        let operators = PatchOperators::build(&Parameters {
             contact_model: ContactModel::Patch,
             ..Parameters::default()
         })

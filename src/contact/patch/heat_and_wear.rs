@@ -18,7 +18,7 @@ fn slip_speed(fields: &PatchFields, place: usize) -> f64 {
 /// Wear of the step per scaled pressure at a slip of 1 m/s, scaled.
 fn wear_compliance_per_slip(problem: &Problem) -> f64 {
     let (operators, speed) = (problem.operators, problem.conditions.motion.rolling_speed.abs());
-    let own = CellStep::new(1.0 / problem.conditions.duration, operators.grid.length, speed).own;
+    let own = CellStep::new(1.0 / problem.conditions.duration, operators.grid.length, speed).diagonal;
     problem.wear_per_slip() * (own / operators.scales.displacement)
 }
 

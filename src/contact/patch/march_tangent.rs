@@ -12,6 +12,7 @@ use crate::heat::strips::{CarriageChange, StripHeatChange};
 use crate::heat::surface::{CommonChange, ExchangeChange, SurfaceExchange};
 use crate::numerics::dense::largest;
 use crate::parameters::WheelHeating;
+use crate::wear::WearChange;
 
 /// Begins a direction: no change yet, but that of the rail without a change of the heat flux.
 pub fn begin(
@@ -43,7 +44,10 @@ pub fn wear(at: &mut Linearised<PatchOperators>, direction: &Direction, change: 
         }
     }
     problem.wear_march().advance_tangent(
-        (wear_rate, direction.speed),
+        WearChange {
+            rate: wear_rate,
+            speed: direction.speed,
+        },
         direction.inputs.incoming_wear_depth,
         &fields.wear,
         &mut change.wear,
@@ -115,7 +119,7 @@ pub fn finalise(at: &mut Linearised<PatchOperators>, direction: &Direction, chan
     let (heat, wear) = (problem.heat_march(), problem.wear_march());
     let carriage = carriage(direction, breadth);
     heat.finish_tangent(&fields.heat, &carriage, &mut change.heat, &mut at.tangent.heat);
-    wear.finish_tangent((direction.speed, breadth), &fields.wear, &mut change.wear);
+    wear.finish_tangent(direction.speed, breadth, &fields.wear, &mut change.wear);
 }
 
 /// The change of what carries heat through the strips.

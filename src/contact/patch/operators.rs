@@ -95,28 +95,28 @@ impl PatchOperators {
         let unit = scales.compliance(1.0);
         let normal = |lag| {
             let (x, y) = place(lag);
-            unit * pair.normal() * rectangle.inverse(x, y)
+            unit * pair.normal() * rectangle.one_over_r(x, y)
         };
         // A cell's own shear alone moves the layer over it.
         let layer = unit * parameters.layer_compliance;
         let own_layer = |lag| if lag == (0, 0) { layer } else { 0.0 };
         let along = |lag| {
             let (x, y) = place(lag);
-            normal(lag) + unit * pair.lateral * rectangle.xx(x, y) + own_layer(lag)
+            normal(lag) + unit * pair.lateral * rectangle.xx_over_r3(x, y) + own_layer(lag)
         };
         let across = |lag| {
             let (x, y) = place(lag);
-            normal(lag) + unit * pair.lateral * rectangle.yy(x, y) + own_layer(lag)
+            normal(lag) + unit * pair.lateral * rectangle.yy_over_r3(x, y) + own_layer(lag)
         };
         let mixed = |lag| {
             let (x, y) = place(lag);
-            unit * pair.lateral * rectangle.xy(x, y)
+            unit * pair.lateral * rectangle.xy_over_r3(x, y)
         };
         let coupling = (pair.coupling != 0.0).then(|| {
             let factor = -unit * pair.coupling;
             transform.tables(
-                |lag| factor * rectangle.away_along(place(lag).0, place(lag).1),
-                |lag| factor * rectangle.away_across(place(lag).0, place(lag).1),
+                |lag| factor * rectangle.x_over_r2(place(lag).0, place(lag).1),
+                |lag| factor * rectangle.y_over_r2(place(lag).0, place(lag).1),
                 |_| 0.0,
             )
         });
@@ -173,7 +173,7 @@ impl PatchOperators {
                 [1.0 + edge, pair.direct / pair.normal() + edge]
             },
             gap,
-            strips: Strips::new(&mesh.x, (mesh.first_contact, grid.cells), grid.strips, grid.breadth),
+            strips: Strips::new(&mesh.x, mesh.window(), grid.strips, grid.breadth),
             incoming: Incoming::new(&mesh.depth, &basis, parameters.skin_depth),
             depth: mesh.depth,
             basis,
@@ -244,7 +244,7 @@ mod tests {
         for &(x, y) in &points {
             for &(from_x, from_y) in &points {
                 let (x, y) = (x - from_x, y - from_y);
-                let kernel = pair.normal() * square.inverse(x, y) + pair.lateral * square.xx(x, y);
+                let kernel = pair.normal() * square.one_over_r(x, y) + pair.lateral * square.xx_over_r3(x, y);
                 sum += kernel * shear((from_x, from_y));
             }
         }

@@ -135,7 +135,7 @@ impl<'a> Problem<'a> {
                 0.0
             }
         });
-        Sliding::vector_tangent((slip, share), (slip_change, share_change))
+        Sliding::vector_tangent(slip, share, slip_change, share_change)
     }
 
     /// What heats and cools the surface of the cells, strip by strip, with the wheel at θ_w.

@@ -3,6 +3,7 @@
 
 use super::operators::PatchOperators;
 use super::problem::{Problem, SlipWeights};
+use crate::body::influence::ShiftedKernels;
 use crate::mechanics::patch::friction::SlipResponse;
 
 /// No response yet.
@@ -26,7 +27,11 @@ pub fn adapt(problem: &Problem, weights: &SlipWeights, strips: usize, response: 
     let (transform, displacement) = operators.transform_for(strips);
     displacement.combine(
         transform,
-        (own, next, ahead),
+        ShiftedKernels {
+            here: own,
+            ahead: next,
+            shift: ahead,
+        },
         &mut response.double,
         &mut response.single,
     );

@@ -25,7 +25,7 @@ pub struct PatchSolvers {
     pub(super) weights: Option<(SlipWeights, bool, usize)>,
     /// Strips that its transform serves.
     pub(super) strips: usize,
-    pub(super) products: influence::Scratch<f64>,
+    pub(super) products: influence::ProductScratch<f64>,
     pub(super) exchange: Vec<SurfaceExchange>,
     pub(super) heat: StripHeatScratch,
     pub(super) wear_rate: Vec<f64>,

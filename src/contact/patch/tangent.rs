@@ -35,7 +35,7 @@ pub struct PatchTangent {
     normal: Normal,
     friction: Friction,
     response: SlipResponse,
-    products: influence::Scratch<f64>,
+    products: influence::ProductScratch<f64>,
     weights: SlipWeights,
     /// What the friction law of all cells has in common: r, w, ε.
     scheme: [f64; 3],

@@ -6,7 +6,7 @@ use crate::fmi2::instance::Instance;
 use crate::fmi2::states::Function;
 use crate::fmi2::types::{Component, Status};
 
-/// As [`call::call`], of this version.
+/// Runs [`call::call`] with the types of this version.
 ///
 /// # Safety
 /// `component` must be null or an instance that fmi2Instantiate returned, not freed, and not used by another thread.

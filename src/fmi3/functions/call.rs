@@ -6,7 +6,7 @@ use crate::fmi3::instance::Instance;
 use crate::fmi3::states::Function;
 use crate::fmi3::types::{self, Status};
 
-/// As [`call::call`], of this version.
+/// Runs [`call::call`] with the types of this version.
 ///
 /// # Safety
 /// `instance` must be null or what fmi3InstantiateCoSimulation returned, not freed, and not used by another thread.

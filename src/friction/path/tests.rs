@@ -8,7 +8,7 @@ const NODES: usize = 11;
 /// Two contacts, the second entered by what has left the first.
 const TOUCHES: [bool; NODES] = [false, true, true, true, false, false, true, true, true, true, false];
 const SPACING: f64 = 2e-4;
-/// What pressures are scaled with, `Pa`.
+/// Scale of pressures, `Pa`.
 const PRESSURE: f64 = 1e9;
 
 fn parameters(distance: f64) -> Parameters {
@@ -56,7 +56,7 @@ fn before() -> Brought {
     }
 }
 
-/// The same with a layer that yields at some 60 % of the surfaces' bound.
+/// Parameters with a layer that yields at some 60 % of the surfaces' bound.
 fn with_layer(parameters: Parameters) -> Parameters {
     Parameters {
         layer_yield_stress: 0.08 * PRESSURE,
@@ -75,8 +75,8 @@ fn pressure() -> Vec<f64> {
     })
 }
 
-/// What the rail has at these μ(θ), slip velocities and pressures, from the law of the nodes in contact and then the others; and their
-/// coefficients.
+/// Solution at these μ(θ), slip velocities and pressures, from the law of the nodes in contact and then the others:
+/// their coefficients, and the history that they leave.
 fn solve(law: &PathLaw, resting: &[f64], speed: &[f64], pressure: &[f64]) -> (Vec<f64>, Brought) {
     let brought = before();
     let path = brought.path(0..NODES);
@@ -117,8 +117,8 @@ fn resting() -> Vec<f64> {
 }
 
 proptest! {
-    /// With speed, μ(θ) and pressure of all nodes at once, over parts of a cell and over many, along and against x₁, at any d_c, with a layer
-    /// that flows and without.
+    /// Tangent with speed, μ(θ) and pressure of all nodes at once, over parts of a cell and over many, along and
+    /// against x₁, at any d_c, with a layer that flows and without.
     #[test]
     fn the_tangent_is_the_derivative(
         cells in prop_oneof![0.05..0.9_f64, 1.1..20.0_f64, Just(f64::INFINITY)],
@@ -208,8 +208,8 @@ fn the_share_is_that_of_the_temperature() {
     }
 }
 
-/// Without a memory, and with one that is much shorter than the way of slip in a cell, it is the law of temperature and slip; with one
-/// that is much longer, what has entered.
+/// Limits of the memory: without one, or with one that is much shorter than the way of slip in a cell, the law of
+/// temperature and slip; with one that is much longer, the μ that has entered.
 #[test]
 fn the_limits_of_the_memory_are_the_steady_law_and_none_of_it() {
     let speeds = values(|i| if TOUCHES[i] { 0.5 } else { 0.0 });
@@ -235,7 +235,7 @@ fn the_limits_of_the_memory_are_the_steady_law_and_none_of_it() {
     assert!(PathLaw::new(&constant, &step(1e-3, 10.0)).is_none());
 }
 
-/// At standstill nothing comes from elsewhere: every node by itself, exponentially in time, in one step as in a hundred.
+/// Standstill: nothing comes from elsewhere, and every node relaxes exponentially in time, in one step as in a hundred.
 #[test]
 fn at_standstill_each_node_relaxes_in_time() {
     let (distance, slides) = (3e-6, 0.01);
@@ -303,7 +303,7 @@ fn a_layer_hardens_along_the_path_up_to_the_bound_of_the_surfaces() {
     }
 }
 
-/// At standstill the way of flow is all that has been slipped since the contact closed, in any number of steps.
+/// Standstill: the way of flow is all that has been slipped since the contact closed, in any number of steps.
 #[test]
 fn at_standstill_a_layer_flows_in_time() {
     let parameters = with_layer(Parameters::default());

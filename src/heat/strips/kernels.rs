@@ -1,29 +1,28 @@
 //! The loops over the columns of a block of strips.
 
-use crate::error::Result;
-use crate::heat::step::{Crossing, Ends, ModeStep};
-use crate::numerics::dense::{Arithmetic, LANES};
+use crate::heat::step::{Crossing, ModeEnds, ModeStep};
+use crate::numerics::dense::{LANES, MultiplyAdd};
 use std::ops::Range;
 
 /// A value of each strip of a block.
-pub type Block = [f64; LANES];
+pub type Lanes = [f64; LANES];
 
-/// What a mode is made of in a column of the window.
+/// Factors and heat content of a mode in a column of the window.
 #[derive(Debug, Clone, Copy)]
 pub struct Mode {
-    /// r, `1/s`.
+    /// Rate of decay r, `1/s`.
     pub rate: f64,
-    /// But for the flux.
+    /// Factors of the mode but those on the flux.
     pub step: ModeStep,
-    /// f per heat flux, `K m^½/s / (W/m²)`.
-    pub heating: f64,
+    /// Source f per heat flux, `K m^½/s / (W/m²)`.
+    pub source_per_flux: f64,
     /// Amplitude per flux upstream.
-    pub passed_on: f64,
-    /// Amplitude per own flux.
-    pub taken: f64,
-    /// φ(0), `m^-½`.
+    pub upstream_response: f64,
+    /// Amplitude per flux of the column itself.
+    pub diagonal_response: f64,
+    /// Value φ(0) at the surface, `m^-½`.
     pub surface: f64,
-    /// ∫φ, `m^½`.
+    /// Integral ∫φ over the depth, `m^½`.
     pub content: f64,
 }
 
@@ -32,19 +31,27 @@ impl Default for Mode {
         Mode {
             rate: 0.0,
             step: ModeStep {
-                arriving: 0.0,
+                advected: 0.0,
                 old_upstream: 0.0,
                 old: 0.0,
-                fed_upstream: 0.0,
-                fed: 0.0,
+                source_upstream: 0.0,
+                source: 0.0,
             },
-            heating: 0.0,
-            passed_on: 0.0,
-            taken: 0.0,
+            source_per_flux: 0.0,
+            upstream_response: 0.0,
+            diagonal_response: 0.0,
             surface: 0.0,
             content: 0.0,
         }
     }
+}
+
+/// Surface temperature and heat content of the columns of a block.
+pub struct ColumnSums<'a> {
+    /// Temperature rise at the surface, `K`.
+    pub surface: &'a mut [Lanes],
+    /// Heat content, `K m`.
+    pub content: &'a mut [Lanes],
 }
 
 /// The order in which rail crosses the columns of a block.
@@ -52,17 +59,17 @@ impl Default for Mode {
 pub struct Order {
     /// Number of columns.
     pub columns: usize,
-    /// Towards −x₁.
+    /// Direction of the rail: true towards −x₁.
     pub forward: bool,
 }
 
 impl Order {
-    /// Where a block has its columns.
+    /// Range of a block's columns.
     pub fn columns(&self, block: usize) -> Range<usize> {
         block * self.columns..(block + 1) * self.columns
     }
 
-    /// Where a block has its amplitudes of m modes.
+    /// Range of a block's amplitudes, m modes a column.
     pub fn amplitudes(&self, block: usize, m: usize) -> Range<usize> {
         let size = self.columns * m * LANES;
         block * size..(block + 1) * size
@@ -79,58 +86,17 @@ impl Order {
     }
 }
 
-/// What a flux does to the columns from its own on, with the number of columns between: R and the same of the heat content.
-#[derive(Debug, Clone)]
-pub struct Responses {
-    /// R, `K/(W/m²)`.
-    pub surface: Vec<f64>,
-    /// Of the heat content, `K m/(W/m²)`.
-    pub content: Vec<f64>,
-    /// Of the modes, at one distance.
-    amplitudes: Vec<f64>,
-}
-
-impl Responses {
-    /// Over the given number of cells, of as many modes.
-    pub fn new(cells: usize, modes: usize) -> Responses {
-        Responses {
-            surface: vec![0.0; cells],
-            content: vec![0.0; cells],
-            amplitudes: vec![0.0; modes],
-        }
-    }
-
-    /// Of the given modes.
-    #[inline(always)]
-    pub fn compute(&mut self, arithmetic: Arithmetic, modes: &[Mode]) {
-        let places = self.surface.iter_mut().zip(&mut self.content).enumerate();
-        for (distance, (surface, content)) in places {
-            let mut sums = [0.0; 2];
-            for (amplitude, mode) in self.amplitudes.iter_mut().zip(modes) {
-                *amplitude = match distance {
-                    0 => mode.taken,
-                    1 => arithmetic.multiply_add(mode.step.arriving, *amplitude, mode.passed_on),
-                    _ => mode.step.arriving * *amplitude,
-                };
-                sums[0] = arithmetic.multiply_add(mode.surface, *amplitude, sums[0]);
-                sums[1] = arithmetic.multiply_add(mode.content, *amplitude, sums[1]);
-            }
-            [*surface, *content] = sums;
-        }
-    }
-}
-
 /// The amplitudes of a column, of that upstream, and of both before the step.
 struct Columns<'a> {
-    own: &'a mut [Block],
-    upstream: &'a [Block],
-    old: &'a [Block],
-    old_upstream: &'a [Block],
+    own: &'a mut [Lanes],
+    upstream: &'a [Lanes],
+    old: &'a [Lanes],
+    old_upstream: &'a [Lanes],
 }
 
 impl<'a> Columns<'a> {
     #[inline(always)]
-    fn of((before, after): (&'a [f64], &'a mut [f64]), (own, upstream): (usize, usize), modes: usize) -> Columns<'a> {
+    fn of(before: &'a [f64], after: &'a mut [f64], own: usize, upstream: usize, modes: usize) -> Columns<'a> {
         let before = before.as_chunks().0;
         let after = after.as_chunks_mut().0;
         let (own_after, upstream_after) = if own < upstream {
@@ -158,23 +124,23 @@ impl<'a> Columns<'a> {
 }
 
 #[inline(always)]
-fn is_zero(block: &Block) -> bool {
+pub fn is_zero(block: &Lanes) -> bool {
     block.iter().all(|&value| value == 0.0)
 }
 
 /// The march without heat flux, with the surface temperature and the heat content of the columns.
 #[inline(always)]
 pub fn unheated(
-    arithmetic: Arithmetic,
+    fma: MultiplyAdd,
     order: Order,
     modes: &[Mode],
     before: &[f64],
     after: &mut [f64],
-    (surface, content): (&mut [Block], &mut [Block]),
+    sums_of: ColumnSums,
 ) {
-    let fma = |a, b, c| arithmetic.multiply_add(a, b, c);
+    let fma = |a, b, c| fma.multiply_add(a, b, c);
     for (own, upstream) in order.pairs() {
-        let columns = Columns::of((before, after), (own, upstream), modes.len());
+        let columns = Columns::of(before, after, own, upstream, modes.len());
         let mut sums = [[0.0; LANES]; 2];
         if columns.is_cold() {
             columns.own.fill([0.0; LANES]);
@@ -184,7 +150,7 @@ pub fn unheated(
                 let mut values = [0.0; LANES];
                 for lane in 0..LANES {
                     let stored = fma(mode.step.old, old[lane], mode.step.old_upstream * old_upstream[lane]);
-                    values[lane] = fma(mode.step.arriving, upstream[lane], stored);
+                    values[lane] = fma(mode.step.advected, upstream[lane], stored);
                 }
                 *own = values;
                 for lane in 0..LANES {
@@ -193,18 +159,18 @@ pub fn unheated(
                 }
             }
         }
-        [surface[own], content[own]] = sums;
+        [sums_of.surface[own], sums_of.content[own]] = sums;
     }
 }
 
 /// The march under the heat flux of the columns.
 #[inline(always)]
-pub fn heated(arithmetic: Arithmetic, order: Order, modes: &[Mode], before: &[f64], after: &mut [f64], flux: &[Block]) {
-    let fma = |a, b, c| arithmetic.multiply_add(a, b, c);
+pub fn heated(fma: MultiplyAdd, order: Order, modes: &[Mode], before: &[f64], after: &mut [f64], flux: &[Lanes]) {
+    let fma = |a, b, c| fma.multiply_add(a, b, c);
     for (own, upstream) in order.pairs() {
-        let columns = Columns::of((before, after), (own, upstream), modes.len());
-        let (passed_on, taken) = (flux[upstream], flux[own]);
-        if is_zero(&passed_on) && is_zero(&taken) && columns.is_cold() {
+        let columns = Columns::of(before, after, own, upstream, modes.len());
+        let (flux_upstream, flux_own) = (flux[upstream], flux[own]);
+        if is_zero(&flux_upstream) && is_zero(&flux_own) && columns.is_cold() {
             columns.own.fill([0.0; LANES]);
             continue;
         }
@@ -213,8 +179,12 @@ pub fn heated(arithmetic: Arithmetic, order: Order, modes: &[Mode], before: &[f6
             let mut values = [0.0; LANES];
             for lane in 0..LANES {
                 let stored = fma(mode.step.old, old[lane], mode.step.old_upstream * old_upstream[lane]);
-                let carried = fma(mode.step.arriving, upstream[lane], stored);
-                values[lane] = fma(mode.taken, taken[lane], fma(mode.passed_on, passed_on[lane], carried));
+                let advected = fma(mode.step.advected, upstream[lane], stored);
+                values[lane] = fma(
+                    mode.diagonal_response,
+                    flux_own[lane],
+                    fma(mode.upstream_response, flux_upstream[lane], advected),
+                );
             }
             *own = values;
         }
@@ -222,20 +192,21 @@ pub fn heated(arithmetic: Arithmetic, order: Order, modes: &[Mode], before: &[f6
 }
 
 /// A step of a block's strips, whose change with |V| is asked for.
-pub struct Carried<'a> {
+pub struct SolvedStrips<'a> {
     /// Amplitudes after it.
     pub amplitudes: &'a [f64],
-    /// Those that stood in the inflow column before it.
+    /// Amplitudes that stood in the inflow column before the step.
     pub replaced: &'a [f64],
     /// Heat flux of the columns, `W/m²`.
-    pub flux: &'a [Block],
-    /// What the modes cross but for their rate.
+    pub flux: &'a [Lanes],
+    /// Cell that the modes cross; their rate r is not in it.
     pub crossing: Crossing,
 }
 
-impl Carried<'_> {
-    /// What a change of |V| by `change` `m/s` adds to the amplitudes of each column where it acts; `old` holds m blocks.
-    pub fn speed_sources(&self, order: Order, modes: &[Mode], change: f64, old: &mut [Block], sources: &mut [f64]) {
+impl SolvedStrips<'_> {
+    /// Computes the sources that a change of |V| by `change` `m/s` adds to the amplitudes of each column; `old` holds m
+    /// blocks.
+    pub fn speed_sources(&self, order: Order, modes: &[Mode], change: f64, old: &mut [Lanes], sources: &mut [f64]) {
         let m = modes.len();
         let amplitudes = self.amplitudes.as_chunks::<LANES>().0;
         let sources = sources.as_chunks_mut::<LANES>().0;
@@ -249,12 +220,12 @@ impl Carried<'_> {
                 };
                 let values = [&amplitudes[upstream * m + index], &amplitudes[own * m + index]];
                 for lane in 0..LANES {
-                    let mut ends = Ends {
+                    let mut ends = ModeEnds {
                         value: values.map(|block| block[lane]),
                         old: [old[index][lane], 0.0],
-                        feed: [upstream, own].map(|column| mode.heating * self.flux[column][lane]),
+                        source: [upstream, own].map(|column| mode.source_per_flux * self.flux[column][lane]),
                     };
-                    ends.old[1] = mode.step.own_old(&ends);
+                    ends.old[1] = mode.step.previous(&ends);
                     old[index][lane] = ends.old[1];
                     sources[own * m + index][lane] = change * mode.step.speed_tangent(&crossing, &ends);
                 }
@@ -263,119 +234,44 @@ impl Carried<'_> {
     }
 }
 
-/// The change of the amplitudes with the inflow column of `tangent`, with the heat flux, by `flux`, and with what else there is,
-/// `sources`; and with it the changes of surface temperature and heat content, if asked for.
+/// Computes the change of the amplitudes with that of the inflow column of `tangent`, of the heat flux, `flux`, and of the
+/// other sources, `sources`; with it, in `sums_of`, the changes of surface temperature and heat content, if asked for.
 #[inline(always)]
 pub fn tangent(
-    arithmetic: Arithmetic,
+    fma: MultiplyAdd,
     order: Order,
     modes: &[Mode],
-    (sources, flux): (Option<&[f64]>, &[Block]),
+    sources: Option<&[f64]>,
+    flux: &[Lanes],
     tangent: &mut [f64],
-    mut sums_of: Option<(&mut [Block], &mut [Block])>,
+    mut sums_of: Option<ColumnSums>,
 ) {
     let m = modes.len();
-    let fma = |a, b, c| arithmetic.multiply_add(a, b, c);
+    let fma = |a, b, c| fma.multiply_add(a, b, c);
     let tangent = tangent.as_chunks_mut::<LANES>().0;
     for (own, upstream) in order.pairs() {
         let mut sums = [[0.0; LANES]; 2];
         for (index, mode) in modes.iter().enumerate() {
-            let arrived = tangent[upstream * m + index];
+            let before = tangent[upstream * m + index];
             let source = match sources {
                 Some(sources) => sources.as_chunks::<LANES>().0[own * m + index],
                 None => [0.0; LANES],
             };
             let mut values = [0.0; LANES];
             for lane in 0..LANES {
-                let fed = fma(mode.passed_on, flux[upstream][lane], mode.taken * flux[own][lane]);
-                values[lane] = fma(mode.step.arriving, arrived[lane], fed + source[lane]);
+                let heated = fma(
+                    mode.upstream_response,
+                    flux[upstream][lane],
+                    mode.diagonal_response * flux[own][lane],
+                );
+                values[lane] = fma(mode.step.advected, before[lane], heated + source[lane]);
                 sums[0][lane] = fma(mode.surface, values[lane], sums[0][lane]);
                 sums[1][lane] = fma(mode.content, values[lane], sums[1][lane]);
             }
             tangent[own * m + index] = values;
         }
-        if let Some((surface, content)) = &mut sums_of {
-            [surface[own], content[own]] = sums;
+        if let Some(sums_of) = &mut sums_of {
+            [sums_of.surface[own], sums_of.content[own]] = sums;
         }
     }
-}
-
-/// Fields of the cells of a block's strips, strip by strip.
-pub struct Cells<'a> {
-    /// `W/m²`.
-    pub flux: &'a mut [f64],
-    /// `K`.
-    pub surface: &'a mut [f64],
-    /// `K m`.
-    pub content: &'a mut [f64],
-    /// How many of the block are strips of the patch.
-    pub strips: usize,
-}
-
-/// The flux of the cells, one after the other along the way of the rail, from the temperature that their surface has without
-/// it, at a place among `cells` and a cell, and a guess of that with it; and surface temperature and heat content.
-#[inline(always)]
-pub fn respond(
-    arithmetic: Arithmetic,
-    order: Order,
-    responses: &Responses,
-    (unheated, unheated_content): (&[Block], &[Block]),
-    flux: &mut [Block],
-    cells: &mut Cells,
-    mut flux_at: impl FnMut(usize, usize, f64, f64) -> Result<f64>,
-) -> Result<()> {
-    let count = order.columns - 2;
-    // The columns upstream that have a flux are those from the first one with any.
-    let mut first = None;
-    for (column, upstream) in order.pairs().take(count) {
-        let cell = column - 1;
-        let heated = match (first, order.forward) {
-            (None, _) => 0..0,
-            (Some(first), true) => upstream..first + 1,
-            (Some(first), false) => first..column,
-        };
-        let sources = &flux[heated];
-        let later = (&responses.surface[1..], &responses.content[1..]);
-        let start = [unheated[column], unheated_content[column]];
-        let rise = if order.forward {
-            add_responses(arithmetic, sources.iter(), later, start)
-        } else {
-            add_responses(arithmetic, sources.iter().rev(), later, start)
-        };
-        let mut taken = [0.0; LANES];
-        for strip in 0..cells.strips {
-            let place = strip * count + cell;
-            taken[strip] = flux_at(place, cell, rise[0][strip], cells.surface[place])?;
-            cells.flux[place] = taken[strip];
-        }
-        if !is_zero(&taken) && first.is_none() {
-            first = Some(column);
-        }
-        flux[column] = taken;
-        let (surface, content) = (responses.surface[0], responses.content[0]);
-        for strip in 0..cells.strips {
-            let place = strip * count + cell;
-            cells.surface[place] = rise[0][strip] + surface * taken[strip];
-            cells.content[place] = rise[1][strip] + content * taken[strip];
-        }
-    }
-    Ok(())
-}
-
-/// What the sources add, the next one upstream first, to surface temperature and heat content.
-#[inline(always)]
-fn add_responses<'a>(
-    arithmetic: Arithmetic,
-    sources: impl Iterator<Item = &'a Block>,
-    (surface, content): (&[f64], &[f64]),
-    start: [Block; 2],
-) -> [Block; 2] {
-    let [mut rise, mut heat] = start;
-    for ((flux, surface), content) in sources.zip(surface).zip(content) {
-        for lane in 0..LANES {
-            rise[lane] = arithmetic.multiply_add(*surface, flux[lane], rise[lane]);
-            heat[lane] = arithmetic.multiply_add(*content, flux[lane], heat[lane]);
-        }
-    }
-    [rise, heat]
 }

@@ -8,8 +8,8 @@
 //!
 //! θ_c = θ⁰_c + Σ_j R_j q_{c−j},  R_0 = φ·h,  R_j = Σ φ E^{j−1} (E h + g),
 //!
-//! θ⁰ without flux, E what arrives of a mode, h what it takes of its column's own flux and g of that upstream, φ its value at the
-//! surface; and with ∫φ for φ the heat content Θ = ∫ θ dz. So the modes are marched twice a step only, whatever the
+//! θ⁰ without flux, E the fraction of a mode that is left at the next column, h its amplitude per flux of the column itself and g that per flux
+//! upstream, φ its value at the surface; and with ∫φ for φ the heat content Θ = ∫ θ dz. So the modes are marched twice a step only, whatever the
 //! number of iterations:
 //!
 //! 1. [`StripHeatMarch::start`]: the rail ahead; θ⁰ and Θ⁰ of the cells.
@@ -22,6 +22,7 @@
 //! Fields of cells are strip by strip: `strip * cells + cell`, cells towards +x₁.
 
 mod kernels;
+mod response;
 mod tangent;
 mod temperature;
 #[cfg(test)]
@@ -31,11 +32,12 @@ use super::basis::DepthBasis;
 use super::factors::{CellFactors, Conditions};
 use super::incoming::Incoming;
 use super::march::{HeatMarch, Heated};
-use super::surface::{SurfaceCondition, SurfaceExchange};
+use super::surface::{SurfaceCondition, SurfaceExchange, SurfaceRise};
 use crate::error::Result;
 use crate::numerics::dense::{self, LANES};
 use crate::transport::strips::{Side, Strips};
-use kernels::{Block, Mode, Order, Responses};
+use kernels::{ColumnSums, Lanes, Mode, Order};
+use response::{CellFields, Responses};
 
 pub use tangent::{CarriageChange, StripHeatChange};
 pub use temperature::StripTemperature;
@@ -56,30 +58,31 @@ pub struct StripHeatMarch<'a> {
     pub surface: SurfaceCondition<'a>,
 }
 
-/// Buffers of a march. What a march makes does not depend on what was in them before its start.
+/// Buffers of a march. Its results do not depend on their contents before its start.
 #[derive(Debug, Clone)]
 pub struct StripHeatScratch {
     /// Factors in the window and on either side of it.
     cells: CellFactors,
     outer_cells: [CellFactors; 2],
-    /// What `modes` and `responses` are of.
+    /// Conditions under which `modes` and `responses` were computed.
     conditions: Option<Conditions>,
     modes: Vec<Mode>,
     responses: Responses,
     /// θ⁰, Θ⁰ and q, or their changes, blocks × columns.
-    unheated: Vec<Block>,
-    unheated_content: Vec<Block>,
-    flux: Vec<Block>,
-    /// What a change of |V| adds to the amplitudes of the strips, and, m blocks, those of a column before the step.
+    unheated: Vec<Lanes>,
+    unheated_content: Vec<Lanes>,
+    flux: Vec<Lanes>,
+    /// Sources that a change of |V| adds to the amplitudes of the strips, and, m blocks, the amplitudes of a column
+    /// before the step.
     sources: Vec<f64>,
-    old: Vec<Block>,
+    old: Vec<Lanes>,
     /// Surface temperature of the columns on one side and its change, and a copy of their amplitudes.
     outer_surface: Vec<f64>,
     outer: Vec<f64>,
 }
 
 impl StripHeatScratch {
-    /// For the given strips.
+    /// Scratch for the given strips.
     pub fn new(basis: &DepthBasis, strips: &Strips) -> StripHeatScratch {
         let m = basis.len();
         let cells = |side| CellFactors::new(basis, strips.outer_positions(side));
@@ -104,11 +107,11 @@ impl StripHeatScratch {
 }
 
 impl StripHeatMarch<'_> {
-    /// From `before`, with rail entering at `rise` `K` over the ambient: the rail ahead of the window in `after`, and what the
-    /// strips are without heat flux.
+    /// Starts a step from `before`, with rail entering at `rise` `K` over the ambient: computes the rail ahead of the
+    /// window, in `after`, and the temperature and heat content of the strips without heat flux.
     ///
     /// # Errors
-    /// None that a column without heat flux can have.
+    /// Never: a column without heat flux has no equation to iterate on.
     pub fn start(
         &self,
         before: &StripTemperature,
@@ -130,20 +133,20 @@ impl StripHeatMarch<'_> {
         let (order, scratch) = (self.order(), &mut *scratch);
         dense::vectorised(
             #[inline(always)]
-            |arithmetic| {
+            |fma| {
                 let modes = &scratch.modes[..];
                 for block in 0..self.strips.blocks() {
                     let (own, columns) = (order.amplitudes(block, m), order.columns(block));
                     kernels::unheated(
-                        arithmetic,
+                        fma,
                         order,
                         modes,
                         &before.window[own.clone()],
                         &mut after.window[own],
-                        (
-                            &mut scratch.unheated[columns.clone()],
-                            &mut scratch.unheated_content[columns],
-                        ),
+                        ColumnSums {
+                            surface: &mut scratch.unheated[columns.clone()],
+                            content: &mut scratch.unheated_content[columns],
+                        },
                     );
                 }
             },
@@ -168,8 +171,12 @@ impl StripHeatMarch<'_> {
             if exchange.is_open() {
                 return Ok(0.0);
             }
-            self.surface
-                .flux(exchange, (unheated, response), guess, window.position(cell + 1))
+            self.surface.flux(
+                exchange,
+                SurfaceRise { unheated, response },
+                guess,
+                window.position(cell + 1),
+            )
         })
     }
 
@@ -177,7 +184,7 @@ impl StripHeatMarch<'_> {
     /// contact, at 0, it is that of the last step with one.
     ///
     /// # Errors
-    /// None that a column without heat flux can have.
+    /// Never: a column without heat flux has no equation to iterate on.
     pub fn finish(
         &self,
         before: &StripTemperature,
@@ -190,12 +197,12 @@ impl StripHeatMarch<'_> {
         let order = self.order();
         dense::vectorised(
             #[inline(always)]
-            |arithmetic| {
+            |fma| {
                 let modes = &scratch.modes[..];
                 for block in 0..self.strips.blocks() {
                     let own = order.amplitudes(block, m);
                     kernels::heated(
-                        arithmetic,
+                        fma,
                         order,
                         modes,
                         &before.window[own.clone()],
@@ -235,7 +242,7 @@ impl StripHeatMarch<'_> {
         }
     }
 
-    /// Where a strip has its amplitude.
+    /// Index of a strip's modal amplitude in a column.
     fn place(&self, strip: usize, column: usize, mode: usize) -> usize {
         let row = (strip / LANES * self.strips.columns() + column) * self.basis.len() + mode;
         row * LANES + strip % LANES
@@ -257,25 +264,25 @@ impl StripHeatMarch<'_> {
         scratch.cells.adapt(self.basis, conditions);
         dense::vectorised(
             #[inline(always)]
-            |arithmetic| {
-                let (factors, heat) = scratch.cells.heated_at(arithmetic, self.basis, 0);
+            |fma| {
+                let (factors, heat) = scratch.cells.heated_at(fma, self.basis, 0);
                 for (mode, kept) in scratch.modes.iter_mut().enumerate() {
                     *kept = Mode {
                         rate: conditions.diffusivity * self.basis.eigenvalues[mode],
                         step: factors.step(mode),
-                        heating: heat.heating[mode],
-                        passed_on: heat.passed_on[mode],
-                        taken: heat.taken[mode],
+                        source_per_flux: heat.source_per_flux[mode],
+                        upstream_response: heat.upstream_response[mode],
+                        diagonal_response: heat.diagonal_response[mode],
                         surface: self.basis.surface[mode],
                         content: self.basis.integral[mode],
                     };
                 }
-                scratch.responses.compute(arithmetic, &scratch.modes);
+                scratch.responses.compute(fma, &scratch.modes);
             },
         );
     }
 
-    /// The same amplitudes in all strips of the inflow column.
+    /// Sets the same amplitudes in all strips of the inflow column.
     fn enter_window(&self, entering: &[f64], window: &mut [f64]) {
         let (m, inflow) = (self.basis.len(), self.strips.window(self.speed).inflow());
         for block in 0..self.strips.blocks() {
@@ -314,7 +321,7 @@ impl StripHeatMarch<'_> {
 
     fn march_outer(&self, side: Side, before: &[f64], after: &mut [f64], scratch: &mut StripHeatScratch) -> Result<()> {
         let mut field = Heated {
-            temperature: after,
+            amplitudes: after,
             surface: &mut scratch.outer_surface,
             flux: &mut [],
         };
@@ -333,25 +340,25 @@ impl StripHeatMarch<'_> {
         let (order, cells) = (self.order(), self.strips.cells);
         dense::vectorised(
             #[inline(always)]
-            |arithmetic| {
+            |fma| {
                 for block in 0..self.strips.blocks() {
                     let columns = order.columns(block);
                     let first = block * LANES;
                     let strips = LANES.min(self.strips.strips.saturating_sub(first));
-                    let mut cells_of_block = kernels::Cells {
+                    let mut cells_of_block = CellFields {
                         flux: &mut after.flux[first * cells..][..strips * cells],
                         surface: &mut after.surface[first * cells..][..strips * cells],
                         content: &mut after.content[first * cells..][..strips * cells],
                         strips,
                     };
-                    kernels::respond(
-                        arithmetic,
+                    response::respond(
+                        fma,
                         order,
                         &scratch.responses,
-                        (
-                            &scratch.unheated[columns.clone()],
-                            &scratch.unheated_content[columns.clone()],
-                        ),
+                        &ColumnSums {
+                            surface: &mut scratch.unheated[columns.clone()],
+                            content: &mut scratch.unheated_content[columns.clone()],
+                        },
                         &mut scratch.flux[columns],
                         &mut cells_of_block,
                         |place, cell, unheated, guess| flux(first * cells + place, cell, unheated, guess),

@@ -1,33 +1,33 @@
 //! The change of a step's result with its data, in the three parts of the step.
 
-use super::kernels::{self, Carried};
+use super::kernels::{self, ColumnSums, SolvedStrips};
 use super::{StripHeatMarch, StripHeatScratch, StripTemperature};
 use crate::error::Result;
 use crate::heat::march::{Heated, MarchChange};
 use crate::heat::step::Crossing;
-use crate::heat::surface::{CommonChange, ExchangeTangent, SurfaceExchange};
+use crate::heat::surface::{CommonChange, ExchangeTangent, SurfaceExchange, SurfaceRise};
 use crate::numerics::dense::{self, LANES};
 use crate::transport::strips::Side;
 
 /// The exchange at the cells, not changed, and its change.
 #[derive(Debug, Clone, Copy)]
 pub struct StripHeatChange<'a> {
-    /// What all cells have in common.
+    /// Change of what all cells have in common.
     pub common: CommonChange,
     /// The exchange.
     pub exchange: &'a [SurfaceExchange],
-    /// Its change.
+    /// Change of the exchange.
     pub exchange_tangent: &'a [ExchangeTangent],
 }
 
 /// Change of what carries heat through the strips.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CarriageChange {
-    /// Of |V|, `m/s`.
+    /// Change of |V|, `m/s`.
     pub speed: f64,
-    /// Of the entering temperature rise, `K`.
+    /// Change of the entering temperature rise, `K`.
     pub rise: f64,
-    /// Of the contact's breadth B, `m`; 0 without a contact.
+    /// Change of the contact's breadth B, `m`; 0 without a contact.
     pub breadth: f64,
 }
 
@@ -84,7 +84,8 @@ impl StripHeatMarch<'_> {
                 exchange,
                 &change.exchange_tangent[place],
                 &change.common,
-                (solution.surface[place], unheated, response),
+                solution.surface[place],
+                SurfaceRise { unheated, response },
             ))
         })
     }
@@ -120,7 +121,7 @@ impl StripHeatMarch<'_> {
         tangent.breadth = change.breadth;
     }
 
-    /// What the change of |V| adds to the amplitudes of the strips, into `scratch`.
+    /// Computes the sources that the change of |V| adds to the amplitudes of the strips, into `scratch`.
     fn speed_sources(&self, solution: &StripTemperature, speed: f64, scratch: &mut StripHeatScratch) {
         let (m, order) = (self.basis.len(), self.order());
         let cells = self.strips.cells;
@@ -139,13 +140,13 @@ impl StripHeatMarch<'_> {
                     flux[lane] = *solved;
                 }
             }
-            let carried = Carried {
+            let solved = SolvedStrips {
                 amplitudes: &solution.window[own.clone()],
                 replaced: &solution.replaced[block * m * LANES..][..m * LANES],
                 flux,
                 crossing,
             };
-            carried.speed_sources(
+            solved.speed_sources(
                 order,
                 &scratch.modes,
                 speed,
@@ -170,19 +171,20 @@ impl StripHeatMarch<'_> {
         }
         dense::vectorised(
             #[inline(always)]
-            |arithmetic| {
+            |fma| {
                 for block in 0..self.strips.blocks() {
                     let (own, columns) = (order.amplitudes(block, m), order.columns(block));
                     let sources = (speed != 0.0).then_some(&scratch.sources[own.clone()]);
-                    let unheated = (
-                        &mut scratch.unheated[columns.clone()],
-                        &mut scratch.unheated_content[columns.clone()],
-                    );
+                    let unheated = ColumnSums {
+                        surface: &mut scratch.unheated[columns.clone()],
+                        content: &mut scratch.unheated_content[columns.clone()],
+                    };
                     kernels::tangent(
-                        arithmetic,
+                        fma,
                         order,
                         &scratch.modes,
-                        (sources, &scratch.flux[columns]),
+                        sources,
+                        &scratch.flux[columns],
                         &mut tangent.window[own],
                         (!with_flux).then_some(unheated),
                     );
@@ -208,7 +210,7 @@ impl StripHeatMarch<'_> {
         // The surface temperature acts where there is an exchange.
         let (surface, surface_change) = scratch.outer_surface.split_at_mut(outer.len() / m);
         let solved = Heated {
-            temperature: held,
+            amplitudes: held,
             surface,
             flux: &mut [],
         };
@@ -224,7 +226,7 @@ impl StripHeatMarch<'_> {
             replaced_inflow: &replaced[if side == ahead { 0 } else { m }..][..m],
         };
         let mut changed = Heated {
-            temperature: tangent,
+            amplitudes: tangent,
             surface: surface_change,
             flux: &mut [],
         };

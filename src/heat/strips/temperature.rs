@@ -17,8 +17,8 @@ pub struct StripTemperature {
     pub flux: Vec<f64>,
     /// Heat content Θ = ∫ θ dz of the cells, `K m`.
     pub content: Vec<f64>,
-    /// What stood before the step in the strips' inflow column, blocks × m × [`LANES`], where rail entered, m, and as the mean at
-    /// the outflow column, m. The derivatives of the step need it.
+    /// Amplitudes that the step has overwritten: those in the strips' inflow column, blocks × m × [`LANES`], where rail
+    /// entered, m, and the mean at the outflow column, m. The derivatives of the step need them.
     pub replaced: Vec<f64>,
     /// B of the last step with a contact, `m`.
     pub breadth: f64,

@@ -1,10 +1,14 @@
 //! Against the march of one strip, and the balance of the whole.
 
+mod tangent;
+
 use super::*;
 use crate::body::mesh::Mesh;
 use crate::friction::FrictionState;
 use crate::friction::coulomb::Sliding;
+use crate::heat::step::{DecayRate, ModeStep, Transit};
 use crate::heat::surface::{CommonChange, ExchangeChange, ExchangeTangent};
+use crate::numerics::dense::MultiplyAdd;
 use crate::parameters::{FrictionLaw, Parameters};
 use crate::settings::HeatSettings;
 use crate::transport::Upwind;
@@ -26,7 +30,7 @@ fn rail_of(cells: usize, strips: usize, outer: usize, depth: usize) -> Rail {
     let basis = DepthBasis::new(&mesh.depth).unwrap();
     Rail {
         incoming: Incoming::new(&mesh.depth, &basis, 5e-3),
-        strips: Strips::new(&mesh.x, (mesh.first_contact, cells), strips, BREADTH),
+        strips: Strips::new(&mesh.x, mesh.first_contact..mesh.first_contact + cells, strips, BREADTH),
         basis,
         mesh,
     }
@@ -84,7 +88,7 @@ fn condition(parameters: &Parameters) -> SurfaceCondition<'_> {
     }
 }
 
-/// In some strips, where `loads` (strips × cells) is positive.
+/// Exchange at the cells: friction in some strips, where `loads` (strips × cells) is positive.
 fn exchange(parameters: &Parameters, loads: &[f64], wheel_rise: f64) -> Vec<SurfaceExchange> {
     loads
         .iter()
@@ -116,7 +120,7 @@ fn step(
 
 /// A strip as the march of the line contact sees it: all its columns, those outside the window as they are for all strips.
 struct Single {
-    temperature: Vec<f64>,
+    amplitudes: Vec<f64>,
     surface: Vec<f64>,
     flux: Vec<f64>,
 }
@@ -180,19 +184,19 @@ proptest! {
                     surface: condition(&parameters),
                 };
                 let mut single = Single {
-                    temperature: vec![0.0; line.len()],
+                    amplitudes: vec![0.0; line.len()],
                     surface: vec![0.0; rail.mesh.columns()],
                     flux: vec![0.0; CELLS],
                 };
                 let inflow = heat_march.transport.inflow();
-                rail.incoming.enter(rise, &mut single.temperature[inflow * m..][..m], &mut 0.0);
+                rail.incoming.enter(rise, &mut single.amplitudes[inflow * m..][..m], &mut 0.0);
                 // After a turn a strip's own heat stands where rail enters, and the mean ahead of it: what enters is that of the
                 // patch then.
                 let turned = number == 1 && directions[0] != directions[1];
                 let none = vec![SurfaceExchange::default(); CELLS];
                 let own = exchange.chunks_exact(CELLS).nth(strip).unwrap_or(&none);
                 let mut field = Heated {
-                    temperature: &mut single.temperature,
+                    amplitudes: &mut single.amplitudes,
                     surface: &mut single.surface,
                     flux: &mut single.flux,
                 };
@@ -205,12 +209,12 @@ proptest! {
                     let offset = (rail.mesh.first_contact - 1) * m;
                     let columns = offset..offset + strips.columns() * m;
                     for mode in 0..m {
-                        field.temperature[offset + entering.start + mode] =
+                        field.amplitudes[offset + entering.start + mode] =
                             after.window[march.place(strip, window.inflow(), mode)];
                     }
                     let march = HeatMarch { transport: window, first_contact: 1, ..heat_march };
                     let mut field = Heated {
-                        temperature: &mut field.temperature[columns.clone()],
+                        amplitudes: &mut field.amplitudes[columns.clone()],
                         surface: &mut field.surface[rail.mesh.first_contact - 1..],
                         flux: field.flux,
                     };
@@ -222,12 +226,12 @@ proptest! {
                 // The flux is what conduction leaves of the heat, with the round-off of the whole.
                 let loss = own.iter().map(|exchange| exchange.debris + exchange.conduction).fold(0.0, f64::max);
                 let tolerance = 1e-13 * (1.0 + 0.5 * scratch.responses.surface[0] * loss);
-                let size = dense::largest(&single.temperature);
+                let size = dense::largest(&single.amplitudes);
                 for column in 0..strips.columns() {
                     for mode in 0..m {
                         let (found, expected) = (
                             after.window[march.place(strip, column, mode)],
-                            single.temperature[(rail.mesh.first_contact - 1 + column) * m + mode],
+                            single.amplitudes[(rail.mesh.first_contact - 1 + column) * m + mode],
                         );
                         prop_assert!((found - expected).abs() <= tolerance * size, "{strip} {column} {mode}: {found:e} {expected:e}");
                     }
@@ -237,7 +241,7 @@ proptest! {
                 }
                 // Round-off of the sums over the modes.
                 let sum = |weights: &[f64]| {
-                    let columns = single.temperature.chunks_exact(m);
+                    let columns = single.amplitudes.chunks_exact(m);
                     let sums = columns.map(|column| column.iter().zip(weights).map(|(a, w)| (a * w).abs()).sum());
                     sums.fold(0.0, |most: f64, sum: f64| most.max(sum))
                 };
@@ -249,7 +253,7 @@ proptest! {
                     for (found, expected, size) in [
                         (after.surface[place], single.surface[column], surface),
                         (after.flux[place], single.flux[cell], flux),
-                        (after.content[place], rail.basis.content(&single.temperature[column * m..][..m]), content),
+                        (after.content[place], rail.basis.content(&single.amplitudes[column * m..][..m]), content),
                     ] {
                         prop_assert!((found - expected).abs() <= tolerance * size, "{strip} {cell}: {found:e} {expected:e}");
                     }
@@ -259,7 +263,7 @@ proptest! {
         }
     }
 
-    /// Every mode: what all cells store, lose and hand on is what the flux feeds, over several steps of a contact of one breadth,
+    /// Balance of every mode: all cells store, lose and hand on what the flux supplies, over several steps of a contact of one breadth,
     /// with rail that comes in warm.
     #[test]
     fn the_heat_of_each_mode_is_balanced(
@@ -291,7 +295,7 @@ proptest! {
                     c => outer(Side::Right, c - first - strips.columns() + 1),
                 }
             };
-            let fed = |column: usize| -> f64 {
+            let source = |column: usize| -> f64 {
                 let cell = column.wrapping_sub(rail.mesh.first_contact);
                 if cell >= CELLS {
                     return 0.0;
@@ -306,18 +310,17 @@ proptest! {
                 let [own, upstream] = [column.index, column.upstream].map(|c| (columns(&after, c), columns(&before, c)));
                 for mode in 0..m {
                     let rate = parameters.thermal_diffusivity * rail.basis.eigenvalues[mode];
-                    let passage = (column.spacing / speed.abs(), speed.abs() / column.spacing);
-                    let cell = crate::heat::step::ModeStep::at(
-                        crate::numerics::dense::Arithmetic::SEPARATE, (rate, 1.0 / rate), 1.0 / duration, passage);
-                    let fed_share = cell.fed_upstream / (cell.fed_upstream + cell.fed);
-                    let stored_share = cell.old_upstream / (cell.old_upstream + cell.old);
+                    let transit = Transit::new(column.spacing, speed.abs());
+                    let cell = ModeStep::at(MultiplyAdd::SEPARATE, DecayRate::new(rate), 1.0 / duration, transit);
+                    let source_weight = cell.source_upstream / (cell.source_upstream + cell.source);
+                    let storage_weight = cell.old_upstream / (cell.old_upstream + cell.old);
                     let mean = |share: f64, up: f64, own: f64| share * up + (1.0 - share) * own;
                     let phi = rail.basis.surface[mode];
                     let terms = [
-                        column.spacing / duration * mean(stored_share, upstream.0[mode] - upstream.1[mode], own.0[mode] - own.1[mode]),
+                        column.spacing / duration * mean(storage_weight, upstream.0[mode] - upstream.1[mode], own.0[mode] - own.1[mode]),
                         speed.abs() * (own.0[mode] - upstream.0[mode]),
-                        column.spacing * rate * mean(fed_share, upstream.0[mode], own.0[mode]),
-                        -column.spacing * phi * mean(fed_share, fed(column.upstream), fed(column.index)),
+                        column.spacing * rate * mean(source_weight, upstream.0[mode], own.0[mode]),
+                        -column.spacing * phi * mean(source_weight, source(column.upstream), source(column.index)),
                     ];
                     balance[mode] += terms.iter().sum::<f64>();
                     scales[mode] = terms.iter().fold(scales[mode], |s, t| s.max(t.abs()));
@@ -343,142 +346,5 @@ fn what_enters_leaves() {
         let after = step(&march, &rail.cold(), &none, 40.0, breadth, &mut scratch);
         let leaving = rail.incoming.equivalent_rise(&rail.basis, march.leaving(&after));
         assert!((leaving / 40.0 - 1.0).abs() < 1e-3, "{leaving}");
-    }
-}
-
-/// Speed, breadth, ambient, friction scale, pressure, slip, wheel and what comes in all change at once: at speed, so slow that no cell
-/// is crossed in a step, after a turn, in the steady field, and at standstill, where the derivative is that to positive speeds.
-#[test]
-fn the_tangent_is_the_derivative() {
-    // A law without corners.
-    let parameters = Parameters {
-        friction_law: FrictionLaw::Table,
-        friction_table_points: 2,
-        friction_table_temperature: std::array::from_fn(|i| 200.0 + 4000.0 * i as f64),
-        ..parameters()
-    };
-    let rail = rail();
-    let cells = STRIPS * CELLS;
-    let load = |place: usize, shift: f64| (0.4 + (1.7 * place as f64).sin() + shift).max(0.0);
-    let exchange = |h: f64| -> Vec<SurfaceExchange> {
-        (0..cells)
-            .map(|place| match load(place, 0.0) {
-                0.0 => SurfaceExchange::default(),
-                load => {
-                    let sliding = Sliding {
-                        speed: 0.1 + 0.01 * h,
-                        power: 0.09 + 0.012 * h,
-                    };
-                    SurfaceExchange::new(&parameters, 1e9 * load + 1e8 * h, sliding, 20.0 + 4.0 * h)
-                }
-            })
-            .collect()
-    };
-    let exchange_tangent: Vec<ExchangeTangent> = (0..cells)
-        .map(|place| {
-            let change = ExchangeChange {
-                pressure: 1e8,
-                sliding: Sliding {
-                    speed: 0.01,
-                    power: 0.012,
-                },
-                wheel_rise: 4.0,
-                coefficient: 0.0,
-            };
-            let sliding = Sliding {
-                speed: 0.1,
-                power: 0.09,
-            };
-            SurfaceExchange::tangent(&parameters, 1e9 * load(place, 0.0), sliding, 20.0, &change)
-        })
-        .collect();
-    for (first, start, duration, speed_change, rise_change) in [
-        (10.0, 10.0, 1e-3, 0.7, 3.0),
-        (10.0, 10.0, 1e-3, 0.0, 3.0),
-        (10.0, 10.0, 1e-3, 0.0, 0.0),
-        (-10.0, -10.0, 1e-3, 0.7, 3.0),
-        (0.1, 0.1, 1e-3, 0.7, 3.0),
-        (10.0, -10.0, 1e-4, 0.7, 3.0),
-        (10.0, 10.0, f64::INFINITY, 0.7, 3.0),
-        (10.0, 0.0, 1e-3, 0.7, 3.0),
-    ] {
-        let mut scratch = StripHeatScratch::new(&rail.basis, &rail.strips);
-        let mut before = rail.cold();
-        for number in 0..4 {
-            let breadth = 5e-3 + 1e-3 * f64::from(number);
-            let march = rail.march(&parameters, first, 1e-3);
-            before = step(
-                &march,
-                &before,
-                &exchange(0.3 * f64::from(number)),
-                12.0,
-                breadth,
-                &mut scratch,
-            );
-        }
-        let march = |h: f64| {
-            let mut march = rail.march(
-                &parameters,
-                start + speed_change * 1.0_f64.copysign(start) * h,
-                duration,
-            );
-            march.surface.friction.ambient = 293.0 + 5.0 * h;
-            march.surface.friction.scale = 0.9 + 0.1 * h;
-            march
-        };
-        let mut scratch = StripHeatScratch::new(&rail.basis, &rail.strips);
-        let mut solve = |h: f64| {
-            step(
-                &march(h),
-                &before,
-                &exchange(h),
-                10.0 + rise_change * h,
-                6e-3 + 1e-3 * h,
-                &mut scratch,
-            )
-        };
-        let still = start == 0.0;
-        // At standstill the slowest mode decays over a cell even at the speed of 0.7 h.
-        let h = if still { 1e-7 } else { 1e-5 };
-        let (here, ahead, behind) = (solve(0.0), solve(h), solve(if still { 0.0 } else { -h }));
-        let mut tangent = rail.cold();
-        let carriage = CarriageChange {
-            speed: speed_change,
-            rise: rise_change,
-            breadth: 1e-3,
-        };
-        let mut change = StripHeatChange {
-            common: CommonChange {
-                ambient: 5.0,
-                friction_scale: 0.1,
-            },
-            exchange: &exchange(0.0),
-            exchange_tangent: &vec![ExchangeTangent::default(); cells],
-        };
-        let march = march(0.0);
-        march.start_tangent(&here, &carriage, &mut tangent, &mut scratch);
-        // Another change before it leaves nothing behind.
-        march.heat_tangent(&here, &change, &mut tangent, &mut scratch).unwrap();
-        march.finish_tangent(&here, &carriage, &mut tangent, &mut scratch);
-        change.exchange_tangent = &exchange_tangent;
-        march.heat_tangent(&here, &change, &mut tangent, &mut scratch).unwrap();
-        march.finish_tangent(&here, &carriage, &mut tangent, &mut scratch);
-        let vectors = tangent.vectors().into_iter().zip(ahead.vectors()).zip(behind.vectors());
-        for (number, ((exact, ahead), behind)) in vectors.enumerate().take(6) {
-            let size = dense::largest(exact);
-            for (k, exact) in exact.iter().enumerate() {
-                let difference = (ahead[k] - behind[k]) / if still { h } else { 2.0 * h };
-                // Truncation h², round-off and the tolerance of the surface condition over h; at standstill, h.
-                let tolerance = if still { 1e-4 } else { 1e-6 };
-                assert!(
-                    (exact - difference).abs() <= tolerance * size,
-                    "{first} {start} {duration} {number} {k}: {exact} {difference} of {size}"
-                );
-            }
-            // Without a change there, nothing changes ahead, on the right for V > 0.
-            let still_ahead = speed_change == 0.0 && rise_change == 0.0 && number == 2;
-            assert_eq!(size > 0.0, !still_ahead);
-        }
-        assert_eq!(tangent.breadth, 1e-3);
     }
 }

@@ -80,8 +80,8 @@ pub struct Friction {
     correction: [Vec<f64>; 2],
     load_single: [Vec<f32>; 2],
     response_single: [Vec<f32>; 2],
-    scratch: influence::Scratch<f64>,
-    scratch_single: influence::Scratch<f32>,
+    scratch: influence::ProductScratch<f64>,
+    scratch_single: influence::ProductScratch<f32>,
     /// Of the cells.
     rows: Vec<Row>,
     step: Vec<f32>,

@@ -102,7 +102,7 @@ pub struct Normal {
     direction_image: Vec<f64>,
     nothing: Vec<f64>,
     ignored: Vec<f64>,
-    scratch: influence::Scratch<f64>,
+    scratch: influence::ProductScratch<f64>,
     /// Values of the cells.
     residual: Vec<f64>,
     direction: Vec<f64>,
@@ -382,7 +382,7 @@ mod tests {
             contact_model: ContactModel::Patch,
             ..Parameters::default()
         };
-        let rail = PatchOperators::new(&parameters).unwrap();
+        let rail = PatchOperators::build(&parameters).unwrap();
         let grid = &rail.grid;
         let mut normal = Normal::new(grid, &rail.transform, Settings::default().patch);
         let mut contact = Contact::new(grid);
@@ -425,7 +425,7 @@ mod tests {
             contact_model: ContactModel::Patch,
             ..Parameters::default()
         };
-        let rail = PatchOperators::new(&parameters).unwrap();
+        let rail = PatchOperators::build(&parameters).unwrap();
         let grid = &rail.grid;
         let mut settings = Settings::default().patch;
         settings.normal_passes = 0;

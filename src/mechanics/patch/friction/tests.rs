@@ -34,10 +34,10 @@ fn slip_kernel(grid: &Grid, forward: bool, (along, across): (isize, isize)) -> [
     };
     let displacement = |along: isize| {
         let (x, y) = (along as f64 * grid.length, across as f64 * grid.breadth);
-        let (direct, mixed) = (0.7 * rectangle.inverse(x, y), 0.3 * rectangle.xy(x, y));
+        let (direct, mixed) = (0.7 * rectangle.one_over_r(x, y), 0.3 * rectangle.xy_over_r3(x, y));
         [
-            [direct + 0.3 * rectangle.xx(x, y), mixed],
-            [mixed, direct + 0.3 * rectangle.yy(x, y)],
+            [direct + 0.3 * rectangle.xx_over_r3(x, y), mixed],
+            [mixed, direct + 0.3 * rectangle.yy_over_r3(x, y)],
         ]
     };
     let (here, next) = (displacement(along), displacement(along + ahead(forward)));
