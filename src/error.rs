@@ -1,4 +1,4 @@
-//! What can go wrong, one enum, each variant carrying the values that made it.
+//! Errors of the model, one enum, each variant carrying the values that made it.
 
 use thiserror::Error;
 

@@ -1,4 +1,4 @@
-//! What goes into a step and what comes out of it, each declared once: field, start value and row of the table.
+//! Inputs and outputs of a step, each declared once: field, start value and row of the table.
 //!
 //! A row reads
 //!

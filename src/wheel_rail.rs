@@ -111,7 +111,8 @@ impl Model {
         &self.parameters
     }
 
-    /// Sizes of the line engine's compressed map from temperature to displacement: moments a column, effects, gains.
+    /// Sizes of the line engine's compressed map from temperature to displacement: moments a column, far moments, values of
+    /// all responses.
     ///
     /// # Errors
     /// [`Error::OtherContactModel`].

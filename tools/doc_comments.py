@@ -30,10 +30,10 @@ TO_DO = ["contact", "mechanics", "torture", "wheel_rail"]
 
 
 def openings(text):
-    """Yield line number and text of the first line of each doc comment of an item."""
+    """Yield line number and text of the first line of each doc comment, of items and of modules."""
     before = False
     for number, line in enumerate(text.splitlines(), 1):
-        found = re.match(r"\s*/// ?(.*)", line)
+        found = re.match(r"\s*//[/!] ?(.*)", line)
         if found and not before:
             yield number, found[1]
         before = found is not None

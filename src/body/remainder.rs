@@ -1,4 +1,4 @@
-//! What the strip adds to the half-plane (singularity subtraction).
+//! Remainder of the strip over the half-plane (singularity subtraction).
 //!
 //! The displacement by a force on the strip's surface is that on the half-plane ([`super::half_plane`]) and a remainder, which
 //! has no load on the surface, and on Γ₀ the half-plane's displacement with the opposite sign. It is as smooth as Γ₀ is

@@ -1,4 +1,4 @@
-//! What functions do that every version of FMI exports with the same arguments, under its own names.
+//! Functions that every version of FMI exports with the same arguments, under its own names.
 
 #![allow(unsafe_code)]
 

@@ -1,4 +1,4 @@
-//! What can go wrong in a call, and who is to blame: that decides the status which each version of FMI returns.
+//! Failures of a call, and who is to blame: that decides the status which each version of FMI returns.
 
 use super::serialized::Corruption;
 use crate::error::Error;

@@ -1,4 +1,4 @@
-//! What every version of FMI shares: an instance of the component, without a C type or a function of a standard.
+//! Parts that every version of FMI shares: an instance of the component, without a C type or a function of a standard.
 //!
 //! Read in this order: [`variables`] (the one table, arrays as arrays) and [`units`]; [`modes`] (the states of an
 //! instance); [`component`] (what an instance holds, its way through the states), `values`, `stepping`, `derivatives`

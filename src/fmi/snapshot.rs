@@ -1,4 +1,4 @@
-//! What a saved state holds.
+//! Contents of a saved state.
 
 use super::modes::Mode;
 use crate::parameters::Parameters;

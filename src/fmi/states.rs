@@ -1,4 +1,4 @@
-//! How a standard's table, functions × states, is written.
+//! Notation of a standard's table, functions × states.
 
 /// Declares `Function`, the functions of a standard that work on an instance and are bound to states, from a table with a
 /// column for each of its `STATES`; `column` gives that of a mode, `NEVER` the words for a function that no state allows.

@@ -1,4 +1,4 @@
-//! The one table of variables: inputs, outputs, parameters and locals, in the order of a model description. An array is one
+//! Table of the variables, the only one: inputs, outputs, parameters and locals, in the order of a model description. An array is one
 //! variable; FMI 2.0, which has no arrays, lists its elements ([`crate::fmi2::variables`]).
 
 mod list;

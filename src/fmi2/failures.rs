@@ -1,4 +1,4 @@
-//! What can go wrong in a call of FMI 2.0, and who is to blame.
+//! Failures of a call of FMI 2.0, and who is to blame.
 
 use crate::fmi::call::Refusal;
 use crate::fmi::failures::{self, Blame};

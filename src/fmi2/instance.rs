@@ -1,4 +1,4 @@
-//! What a fmi2Component points to: the component and the importer's logger.
+//! Target of a fmi2Component pointer: the component and the importer's logger.
 
 use super::GUID;
 use super::failures::Failure;

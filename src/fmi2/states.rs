@@ -1,4 +1,4 @@
-//! Which call the standard allows in which state, as one table: functions × states.
+//! Calls that the standard allows in each state, as one table: functions × states.
 
 use crate::fmi::modes::Mode;
 use crate::fmi::states::functions;

@@ -1,4 +1,4 @@
-//! What can go wrong in a call of FMI 3.0, and who is to blame.
+//! Failures of a call of FMI 3.0, and who is to blame.
 
 use crate::error::Error;
 use crate::fmi::call::Refusal;

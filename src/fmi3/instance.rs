@@ -1,4 +1,4 @@
-//! What a fmi3Instance points to: the component and the importer's logger.
+//! Target of a fmi3Instance pointer: the component and the importer's logger.
 
 use super::INSTANTIATION_TOKEN;
 use super::failures::Failure;

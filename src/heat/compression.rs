@@ -1,4 +1,4 @@
-//! How the map from temperature to displacement is compressed: the two steps that [`super::thermal_map`] describes.
+//! Compression of the map from temperature to displacement: the two steps that [`super::thermal_map`] describes.
 
 use super::basis::DepthBasis;
 use crate::body::compliance::ThermalDisplacement;

@@ -1,4 +1,4 @@
-//! What follows from the parameters by a formula.
+//! Quantities that follow from the parameters by a formula.
 
 use super::choices::Wheel;
 use super::table::Parameters;

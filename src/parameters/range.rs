@@ -1,4 +1,4 @@
-//! The one check of a value against its range.
+//! Check of a value against its range.
 
 use crate::error::{Error, Result};
 

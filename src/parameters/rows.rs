@@ -1,4 +1,4 @@
-//! How a declaration in `table` becomes a field, its start value and a row: macros, because a row reads and writes its field.
+//! Macros that turn a declaration in `table` into a field, its start value and a row; macros, because a row reads and writes its field.
 //!
 //! Each kind of parameter has three arms: `start`, the field's start value; `unit`, for the field's documentation; `row`.
 //! `parameters!` puts them together. The names that they use are those of `table`.

@@ -1,4 +1,4 @@
-//! Why a simulation cannot start, go on or be resumed.
+//! Reasons why a simulation cannot start, go on or be resumed.
 
 use crate::error;
 use thiserror::Error;

@@ -1,4 +1,4 @@
-//! What a node is worth: the creep curve T/(μN) with Coulomb's law and constant μ, over creepages from −0.5 % to 0.5 %,
+//! Accuracy by the number of nodes: the creep curve T/(μN) with Coulomb's law and constant μ, over creepages from −0.5 % to 0.5 %,
 //! against the limit of fine nodes, for both kinds of wheel; the creepage at which a rigid wheel rolls freely; and friction that
 //! depends on temperature, in partial slip, against the same limit.
 

@@ -1,4 +1,4 @@
-//! How long the steps of an explicit master may be at low speed: wheel and contact take turns, each with the other's newest
+//! Longest steps of an explicit master at low speed: wheel and contact take turns, each with the other's newest
 //! value. Contact and wheel are a spring and a mass in series with a damper, so that the limit is that of the spring, at any speed:
 //! an explicit master must be able to take steps of a millisecond.
 

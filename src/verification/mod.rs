@@ -1,4 +1,4 @@
-//! What the model must reproduce, check by check, as rows that a test asserts and `wheelrail verify` prints.
+//! Checks of the results that the model must reproduce, as rows that a test asserts and `wheelrail verify` prints.
 //!
 //! Each file holds one check: the claim, its formula and source, and the function that computes it. References are
 //! closed forms evaluated here, published figures, or identities of the discrete equations; a row says which.

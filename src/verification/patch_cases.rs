@@ -1,4 +1,4 @@
-//! What the checks of the patch share: steady rolling on the ellipses of [`super::contact_points`], like bodies, constant friction, no
+//! Parts that the checks of the patch share: steady rolling on the ellipses of [`super::contact_points`], like bodies, constant friction, no
 //! heat and no wear.
 
 use super::contact_points::{ELLIPSES, FRICTION, LAME_LAMBDA, LOAD, SHEAR_MODULUS, WHEEL_RADIUS};

@@ -1,4 +1,4 @@
-//! How far a run is: a bar on a terminal, and lines where standard error goes elsewhere, into a log for example.
+//! Progress of a run: a bar on a terminal, and lines where standard error goes elsewhere, into a log for example.
 
 use indicatif::{ProgressBar, ProgressStyle};
 use std::time::{Duration, Instant};

@@ -1,4 +1,4 @@
-//! What the library is, and the life of an instance.
+//! Identity of the library, and the life of an instance.
 
 use super::call::call;
 use crate::fmi::component::Component;

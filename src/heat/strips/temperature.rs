@@ -1,4 +1,4 @@
-//! What a step of the strips' heat changes.
+//! Temperature of the strips: the state that a step of their heat changes.
 
 use crate::numerics::dense::LANES;
 use crate::transport::strips::{Side, Strips};

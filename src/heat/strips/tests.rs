@@ -1,4 +1,4 @@
-//! Against the march of one strip, and the balance of the whole.
+//! Tests of the strips against the march of one, and of the balance of the whole.
 
 mod tangent;
 
