@@ -43,7 +43,7 @@ impl<'a> Upwind<'a> {
         Upwind { x, speed }
     }
 
-    /// |V|, `m/s`.
+    /// Speed |V|, `m/s`.
     pub fn speed(&self) -> f64 {
         self.speed.abs()
     }

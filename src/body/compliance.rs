@@ -41,22 +41,22 @@ impl Scales {
 /// the displacement (normal is upward), the second the traction on the rail.
 #[derive(Debug, Clone)]
 pub struct Compliance {
-    /// C_nn.
+    /// Compliance C_nn: normal displacement by pressure.
     pub normal_normal: DMatrix<f64>,
-    /// C_nt.
+    /// Compliance C_nt: normal displacement by shear.
     pub normal_tangential: DMatrix<f64>,
-    /// C_tn = C_ntᵀ.
+    /// Compliance C_tn = C_ntᵀ: tangential displacement by pressure.
     pub tangential_normal: DMatrix<f64>,
-    /// C_tt.
+    /// Compliance C_tt: tangential displacement by shear.
     pub tangential_tangential: DMatrix<f64>,
 }
 
 /// The compliance at rest and its derivative with respect to ρV², `1/Pa`.
 #[derive(Debug, Clone)]
 pub struct RollingCompliance {
-    /// C(0).
+    /// Compliance at rest, C(0).
     pub at_rest: Compliance,
-    /// dC/d(ρV²), `1/Pa`.
+    /// Derivative dC/d(ρV²) of the compliance, `1/Pa`.
     pub inertia: Compliance,
 }
 

@@ -47,9 +47,9 @@ impl Sums {
 
 /// One entry of the stiffness between a free and a clamped displacement.
 struct StiffnessEntry {
-    /// `2 * node + direction`.
+    /// Index `2 * node + direction` of the displacement.
     free: usize,
-    /// `2 * node + direction`.
+    /// Index `2 * node + direction` of the displacement.
     clamped: usize,
     stiffness: f64,
 }

@@ -65,7 +65,7 @@ pub fn convective_inertia(mesh: &Mesh, fields: &Fields) -> Fields {
     loads
 }
 
-/// ∫ N_i div u for each node i (row) and field: the work that a unit thermal stress at the node does on the field.
+/// Work ∫ N_i div u for each node i (row) and field: that of a unit thermal stress at the node on the field.
 pub fn thermal_work(mesh: &Mesh, fields: &Fields) -> DMatrix<f64> {
     let mut work = DMatrix::zeros(mesh.nodes(), fields.ncols());
     for element in elements(mesh) {

@@ -24,18 +24,18 @@ use std::f64::consts::PI;
 /// The material of one half-plane.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct HalfPlane {
-    /// ν.
+    /// Poisson's ratio ν.
     pub poisson_ratio: f64,
-    /// γ, `Pa`.
+    /// Shear modulus γ, `Pa`.
     pub shear_modulus: f64,
 }
 
 /// Surface displacement of a pair of half-planes, rail against wheel, or of one body.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct HalfPlanes {
-    /// Σ (1 − ν)/γ over the bodies, `1/Pa`: 2/E*.
+    /// Sum of (1 − ν)/γ over the bodies, `1/Pa`: 2/E*.
     pub direct: f64,
-    /// (1 − 2ν)/(2γ) of the rail less that of the wheel, `1/Pa`; 0 where normal and tangential problem are not coupled.
+    /// Difference of (1 − 2ν)/(2γ) of the rail and of the wheel, `1/Pa`; 0 where normal and tangential problem are not coupled.
     pub coupling: f64,
 }
 
@@ -131,12 +131,12 @@ impl HalfPlanes {
         }
     }
 
-    /// C(d): displacement along a uniform unit traction on a cell of length `h`, at the distance `d` from its middle, `m/Pa`.
+    /// Displacement C(d) along a uniform unit traction on a cell of length `h`, at the distance `d` from its middle, `m/Pa`.
     pub fn along(&self, d: f64, h: f64) -> f64 {
         -self.direct / PI * (times_logarithm(d + 0.5 * h) - times_logarithm(d - 0.5 * h) - h)
     }
 
-    /// M(d): displacement along x₁ by a uniform upward unit traction on a cell; that along x₂ by a traction along x₁ is
+    /// Displacement M(d) along x₁ by a uniform upward unit traction on a cell; that along x₂ by a traction along x₁ is
     /// −M(d), `m/Pa`.
     pub fn across(&self, d: f64, h: f64) -> f64 {
         self.coupling * d.clamp(-0.5 * h, 0.5 * h)

@@ -30,9 +30,9 @@ type Lag = (isize, isize);
 /// The harmonics of the three kernels of a product: row by row over the harmonics, each with the lags along x.
 #[derive(Debug, Clone)]
 pub struct Tables<T> {
-    /// A and C.
+    /// Kernels A and C.
     even: [Vec<T>; 2],
-    /// B.
+    /// Kernel B.
     odd: Vec<T>,
     /// Whether only A is not 0.
     scalar: bool,

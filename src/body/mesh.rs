@@ -57,7 +57,7 @@ impl Mesh {
         }
     }
 
-    /// `contact_nodes` evenly spaced over ±`half_width`, `outer` growing cells on each side to ±`length`, and
+    /// Mesh of `contact_nodes` evenly spaced over ±`half_width`, `outer` growing cells on each side to ±`length`, and
     /// `cells` growing cells over the `height`, the first of them `first_cell` thick (lengths in `m`).
     pub fn graded(
         half_width: f64,

@@ -144,7 +144,7 @@ mod tests {
         Remainder::on(mesh, parameters.lame_lambda, parameters.shear_modulus).unwrap()
     }
 
-    /// (1−ν)/(πγ): what a factor e in the distance is worth.
+    /// Displacement (1−ν)/(πγ) that a factor e in the distance is worth.
     fn unit(parameters: &Parameters) -> f64 {
         let material = HalfPlane::new(parameters.lame_lambda, parameters.shear_modulus);
         (1.0 - material.poisson_ratio) / (PI * material.shear_modulus)

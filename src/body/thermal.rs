@@ -59,7 +59,7 @@ pub fn displacement(mesh: &Mesh, material: &HalfPlane, remainder: &Remainder) ->
     map
 }
 
-/// ∫ N_j div u of the remainder's forces for each node j: nodes × 6.
+/// Work ∫ N_j div u on the fields of the remainder's forces for each node j: nodes × 6.
 fn remainder_work(mesh: &Mesh, remainder: &Remainder) -> DMatrix<f64> {
     let share = |points: &[f64], i: usize| 0.5 * (points[(i + 1).min(points.len() - 1)] - points[i.saturating_sub(1)]);
     let mut work = remainder.dilatation(mesh);
@@ -74,7 +74,7 @@ fn remainder_work(mesh: &Mesh, remainder: &Remainder) -> DMatrix<f64> {
     work
 }
 
-/// `[F₁, F₂]` at a distance along x₁ and a depth.
+/// Functions `[F₁, F₂]` at a distance along x₁ and a depth.
 fn functions(t: f64, z: f64) -> [f64; 2] {
     let square = t * t + z * z;
     if square == 0.0 {
@@ -88,7 +88,7 @@ fn functions(t: f64, z: f64) -> [f64; 2] {
     ]
 }
 
-/// `[∂F₁/∂t, ∂F₂/∂t]`.
+/// Slopes `[∂F₁/∂t, ∂F₂/∂t]` of the functions.
 fn slopes(t: f64, z: f64) -> [f64; 2] {
     let (logarithm, angle) = ((t * t + z * z).ln(), arctangent(t / z));
     [
@@ -136,7 +136,7 @@ impl WindowTable {
     }
 }
 
-/// ∂F/∂t on the left and on the right of a column, row by row, and their difference.
+/// Slopes ∂F/∂t on the left and on the right of a column, row by row, and their difference.
 struct Bends {
     left: Vec<f64>,
     right: Vec<f64>,

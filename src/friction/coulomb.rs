@@ -4,13 +4,14 @@ use crate::numerics::arctangent::arctangent;
 use crate::numerics::dense;
 use std::f64::consts::FRAC_2_PI;
 
-/// φ(s) = (2/π) arctan(s/ε): τ = −μ p φ(s). The factor 2/π, which (30) lacks, keeps |τ| within Coulomb's bound.
+/// Traction utilisation φ(s) = (2/π) arctan(s/ε): τ = −μ p φ(s). The factor 2/π, which (30) lacks, keeps |τ| within Coulomb's
+/// bound.
 #[inline(always)]
 pub fn saturation(slip: f64, regularisation: f64) -> f64 {
     FRAC_2_PI * arctangent(slip / regularisation)
 }
 
-/// φ of each slip.
+/// Computes φ of each slip.
 pub fn saturations(slip: &[f64], regularisation: f64, out: &mut [f64]) {
     dense::vectorised(
         #[inline(always)]
@@ -22,7 +23,7 @@ pub fn saturations(slip: &[f64], regularisation: f64, out: &mut [f64]) {
     );
 }
 
-/// dφ/ds, `s/m`.
+/// Derivative dφ/ds, `s/m`.
 pub fn saturation_slope(slip: f64, regularisation: f64) -> f64 {
     FRAC_2_PI * regularisation / (regularisation * regularisation + slip * slip)
 }
@@ -35,8 +36,8 @@ pub fn sticks(saturation: f64, regularisation: f64) -> bool {
     saturation.abs() < if regularisation > 0.0 { STICK_SATURATION } else { 1.0 }
 }
 
-/// −τ s where it is positive. Friction takes power; the slip of a node is a mean over its two cells, and where it changes
-/// sign between them, the mean may have the sign of the other one by a round-off of the scheme.
+/// Friction power −τ s where it is positive. Friction takes power; the slip of a node is a mean over its two cells, and
+/// where it changes sign between them, the mean may have the sign of the other one by a round-off of the scheme.
 pub fn power(shear: f64, slip: f64) -> f64 {
     (-shear * slip).max(0.0)
 }
@@ -88,9 +89,9 @@ pub fn power_tangent(shear: f64, slip: f64, shear_change: f64, slip_change: f64)
 /// Sliding of a surface: speed, and power per friction coefficient and pressure.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Sliding {
-    /// |s|, `m/s`.
+    /// Slip speed |s|, `m/s`.
     pub speed: f64,
-    /// φ s, `m/s`.
+    /// Power φ s per friction coefficient and pressure, `m/s`.
     pub power: f64,
 }
 

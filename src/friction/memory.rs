@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 /// History that the particles bring along, values at nodes, or a change of it.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Brought {
-    /// μ of the surfaces.
+    /// Coefficient μ of the surfaces.
     pub friction: Vec<f64>,
     /// Slip velocity s, the magnitude of the law's slip velocity, `m/s`, 0 outside the contact.
     pub speed: Vec<f64>,
@@ -94,7 +94,7 @@ impl Memory {
         self.cap.copy_from_slice(&other.cap);
     }
 
-    /// μ of a node in contact as a function of its temperature.
+    /// Law of μ of a node in contact as a function of its temperature.
     pub fn point_law(&self, node: usize) -> PointLaw {
         let share = self.share[node];
         PointLaw {
@@ -147,7 +147,7 @@ impl Memory {
 /// History of the particles on one path: the nodes of a window, or of one of its strips.
 #[derive(Debug, Clone, Copy)]
 pub struct ParticlePath<'a> {
-    /// μ of the surfaces.
+    /// Coefficient μ of the surfaces.
     pub friction: &'a [f64],
     /// Slip velocity s, `m/s`.
     pub speed: &'a [f64],

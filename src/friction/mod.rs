@@ -12,7 +12,7 @@ use crate::parameters::{FrictionLaw, Parameters};
 /// Strength of cold rail steel in section 3 of the paper, `Pa`.
 const COLD_FLOW_STRESS: f64 = 925.7e6;
 
-/// μ at an absolute temperature `K` and its derivative `1/K`.
+/// Coefficient μ at an absolute temperature `K` and its derivative `1/K`.
 pub fn coefficient(law: &Parameters, temperature: f64) -> (f64, f64) {
     match law.friction_law {
         FrictionLaw::Constant => (law.friction_cold, 0.0),
@@ -109,7 +109,7 @@ pub struct FrictionState<'a> {
 }
 
 impl FrictionState<'_> {
-    /// μ at a temperature rise `K`, and dμ/dθ `1/K`.
+    /// Coefficient μ at a temperature rise `K`, and dμ/dθ `1/K`.
     pub fn coefficient(&self, rise: f64) -> (f64, f64) {
         let (mu, slope) = coefficient(self.parameters, self.ambient + rise);
         (self.scale * mu, self.scale * slope)
@@ -122,7 +122,8 @@ impl FrictionState<'_> {
     }
 }
 
-/// μ of a point as a function of its temperature at given slip and history: `base` + `share` μ(θ), but no more than the `cap`.
+/// Law of μ at a point as a function of its temperature at given slip and history: `base` + `share` μ(θ), but no more than the
+/// `cap`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PointLaw {
     /// Part of μ that does not depend on the temperature.
@@ -134,7 +135,7 @@ pub struct PointLaw {
 }
 
 impl PointLaw {
-    /// μ, and its derivative, from those of μ(θ).
+    /// Coefficient and its derivative, from those of μ(θ).
     pub fn of(&self, (mu, slope): (f64, f64)) -> (f64, f64) {
         let surfaces = self.base + self.share * mu;
         if self.caps(surfaces) {
@@ -160,7 +161,7 @@ impl PointLaw {
 }
 
 impl Default for PointLaw {
-    /// μ(θ).
+    /// Law μ(θ) without slip, history and layer.
     fn default() -> PointLaw {
         PointLaw {
             base: 0.0,

@@ -24,7 +24,7 @@ pub struct PathNode {
 /// Values that a particle takes from a node in contact to the next one, or a change of them.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Passed {
-    /// μ of the surfaces.
+    /// Coefficient μ of the surfaces.
     pub friction: f64,
     /// Magnitude of the slip velocity, `m/s`.
     pub speed: f64,
@@ -32,12 +32,12 @@ pub struct Passed {
     pub flow: f64,
 }
 
-/// μ at a node, and its derivatives.
+/// Friction at a node: the coefficient and its derivatives.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct NodeFriction {
     /// The bound on the shear over the pressure: μ of the surfaces where no layer flows.
     pub coefficient: f64,
-    /// μ of the surfaces.
+    /// Coefficient μ of the surfaces.
     pub surfaces: f64,
     /// Derivative of the coefficient by μ(θ) at the node's temperature.
     pub share: f64,

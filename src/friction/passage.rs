@@ -3,11 +3,11 @@
 /// A step as the particles see it.
 #[derive(Debug, Clone, Copy)]
 pub struct PathStep {
-    /// Δt, `s`; infinite or 0 for steady rolling.
+    /// Step Δt, `s`; infinite or 0 for steady rolling.
     pub duration: f64,
-    /// Δ, `m`.
+    /// Distance Δ of the nodes, `m`.
     pub spacing: f64,
-    /// V, `m/s`; 0 counts as forward.
+    /// Speed V, `m/s`; 0 counts as forward.
     pub speed: f64,
     /// Elastic displacement of a cell under a shear of the size of the largest pressure, `m`.
     pub displacement: f64,

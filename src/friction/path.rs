@@ -156,7 +156,7 @@ impl PathLaw {
         self.layer.is_some()
     }
 
-    /// μ at a node with this slip velocity `m/s` and pressure, after a node that passes on the given.
+    /// Friction at a node with this slip velocity `m/s` and pressure, after a node that passes on `before`.
     // Called, it copies its result: 3 % of a step.
     #[inline(always)]
     pub fn friction(&self, node: &PathNode, before: &Passed, speed: f64, pressure: f64) -> NodeFriction {
@@ -204,7 +204,7 @@ impl PathLaw {
         }
     }
 
-    /// μ of a node outside the contact, where nothing slips, after one with the given μ.
+    /// Coefficient of a node outside the contact, where nothing slips, after one with the μ `before`.
     fn idle(&self, node: &PathNode, before: f64) -> f64 {
         node.steady + self.idle_relaxation * (node.advected + node.courant_weight * before - node.steady)
     }
@@ -270,7 +270,7 @@ impl PathLaw {
         }
     }
 
-    /// μ of the nodes outside the contact at the end of the step, where `friction` and `resting` hold all the rest.
+    /// Computes μ of the nodes outside the contact at the end of the step; `friction` and `resting` hold all the others.
     pub fn close(
         &self,
         path: &ParticlePath,

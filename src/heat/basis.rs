@@ -6,7 +6,7 @@ use nalgebra::{Cholesky, DMatrix, SymmetricEigen};
 /// Eigenbasis of the depth operator, m = rows − 1 modes.
 #[derive(Debug, Clone)]
 pub struct DepthBasis {
-    /// λ, ascending, `1/m²`.
+    /// Eigenvalues λ, ascending, `1/m²`.
     pub eigenvalues: Vec<f64>,
     /// Value of each mode at the surface, φ(0), `m^-½`.
     pub surface: Vec<f64>,

@@ -37,13 +37,13 @@ pub struct CellFactors {
 /// Conditions that the factors depend on beside the length of a cell.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Conditions {
-    /// |V|, `m/s`.
+    /// Speed |V|, `m/s`.
     pub speed: f64,
-    /// Δt, `s`.
+    /// Step Δt, `s`.
     pub duration: f64,
-    /// κ, `m²/s`.
+    /// Diffusivity κ, `m²/s`.
     pub diffusivity: f64,
-    /// ρ c_p, `J/(m³ K)`.
+    /// Volumetric heat capacity ρ c_p, `J/(m³ K)`.
     pub capacity: f64,
 }
 

@@ -34,9 +34,9 @@ use std::f64::consts::FRAC_PI_4;
 pub struct Incoming {
     /// Modal amplitudes of g, m.
     amplitudes: Vec<f64>,
-    /// g at the surface, 1 but for the mesh.
+    /// Value of g at the surface, 1 but for the mesh.
     surface: f64,
-    /// d, `m`.
+    /// Skin depth d, `m`.
     skin_depth: f64,
 }
 

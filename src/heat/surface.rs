@@ -18,7 +18,7 @@ pub struct SurfaceExchange {
     pub conduction: f64,
     /// S: heat conducted from a wheel at θ_w into rail at ambient, `W/m²`.
     pub wheel: f64,
-    /// μ(θ) at the column's slip and history.
+    /// Law of μ(θ) at the column's slip and history.
     pub law: PointLaw,
 }
 
@@ -40,9 +40,9 @@ pub struct ExchangeChange {
 pub struct ExchangeTangent {
     /// dP, `W/m²`.
     pub friction: f64,
-    /// d(k ρ c_p |s| p), `W/(m² K)`.
+    /// Change of k ρ c_p |s| p, `W/(m² K)`.
     pub debris: f64,
-    /// d(p / r), `W/(m² K)`.
+    /// Change of p / r, `W/(m² K)`.
     pub conduction: f64,
     /// The two parts of dS: by the conduction, and by the wheel's temperature, `W/m²`.
     pub wheel: [f64; 2],
@@ -95,7 +95,7 @@ impl SurfaceExchange {
         self.conduction == 0.0 && self.friction == 0.0
     }
 
-    /// H, `W/(m² K)`.
+    /// Loss H per temperature rise, `W/(m² K)`.
     fn loss(&self) -> f64 {
         self.debris + self.conduction
     }

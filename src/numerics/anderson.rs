@@ -21,7 +21,7 @@ pub struct Anderson {
     last_residual: Vec<f64>,
     last_image: Vec<f64>,
     residual: Vec<f64>,
-    /// ΔF and ΔG, difference by difference, DEPTH × size.
+    /// Differences ΔF and ΔG, one after the other, DEPTH × size.
     residual_changes: Vec<f64>,
     image_changes: Vec<f64>,
 }

@@ -7,11 +7,11 @@ use std::f64::consts::LOG2_E;
 /// interval, `upstream`/z times its value at the start and `own`/z times that at the end. `keep` + `upstream` + `own` is 1.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Decay {
-    /// E = e⁻ᶻ.
+    /// Decay E = e⁻ᶻ of the value at the start.
     pub keep: f64,
-    /// (1 − E)/z − E.
+    /// Weight (1 − E)/z − E of the source at the start.
     pub upstream: f64,
-    /// 1 − (1 − E)/z.
+    /// Weight 1 − (1 − E)/z of the source at the end.
     pub own: f64,
 }
 

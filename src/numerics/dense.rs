@@ -54,7 +54,7 @@ impl MultiplyAdd {
         if self.fused { a.mul_add(b, c) } else { a * b + c }
     }
 
-    /// `out += factor · x`.
+    /// Adds a multiple: `out += factor · x`.
     #[inline(always)]
     pub fn add_multiple(self, x: &[f64], factor: f64, out: &mut [f64]) {
         for (out, x) in out.iter_mut().zip(x) {
@@ -62,7 +62,7 @@ impl MultiplyAdd {
         }
     }
 
-    /// `out += Σ factors · columns`.
+    /// Adds multiples of columns: `out += Σ factors · columns`.
     #[inline(always)]
     pub fn add_quad(self, columns: [&[f64]; QUAD], [a, b, c, d]: [f64; QUAD], out: &mut [f64]) {
         let [first, second, third, fourth] = columns;
@@ -72,7 +72,7 @@ impl MultiplyAdd {
         }
     }
 
-    /// Σ x y, in [`LANES`] interleaved partial sums.
+    /// Scalar product Σ x y, in [`LANES`] interleaved partial sums.
     #[inline(always)]
     pub fn dot(self, x: &[f64], y: &[f64]) -> f64 {
         let mut sums = [0.0; LANES];
@@ -92,7 +92,7 @@ impl MultiplyAdd {
     }
 }
 
-/// `out += factor · A x`, skipping where `x` is zero.
+/// Adds a multiple of a product: `out += factor · A x`, skipping where `x` is zero.
 pub fn multiply_add(matrix: &DMatrix<f64>, x: &[f64], factor: f64, out: &mut [f64]) {
     let rows = matrix.nrows();
     vectorised(
@@ -113,7 +113,7 @@ fn multiply_add_kernel(fma: MultiplyAdd, matrix: &[f64], x: &[f64], factor: f64,
 /// Columns that are added together: `out` is loaded and stored once for them.
 pub const QUAD: usize = 4;
 
-/// `out += factor · columns · x`, for [`QUAD`] columns or the rest of them.
+/// Adds columns: `out += factor · columns · x`, for [`QUAD`] columns or the rest of them.
 #[inline(always)]
 fn add_columns(fma: MultiplyAdd, columns: &[f64], x: &[f64], factor: f64, out: &mut [f64]) {
     let n = out.len();
@@ -152,7 +152,7 @@ pub fn largest_change(now: &[f64], last: &[f64]) -> f64 {
     now.iter().zip(last).fold(0.0, |m: f64, (a, b)| (a - b).abs().max(m))
 }
 
-/// `out = A x` for the n × n matrix in `a`, skipping where `x` is zero.
+/// Multiplies: `out = A x` for the n × n matrix in `a`, skipping where `x` is zero.
 pub fn multiply(a: &[f64], n: usize, x: &[f64], out: &mut [f64]) {
     vectorised(
         #[inline(always)]
@@ -163,7 +163,7 @@ pub fn multiply(a: &[f64], n: usize, x: &[f64], out: &mut [f64]) {
     );
 }
 
-/// `out += A x` for the matrix in `a` with `rows` rows and a column for each of `x`.
+/// Adds a product: `out += A x` for the matrix in `a` with `rows` rows and a column for each of `x`.
 pub fn multiply_columns(a: &[f64], rows: usize, x: &[f64], out: &mut [f64]) {
     vectorised(
         #[inline(always)]

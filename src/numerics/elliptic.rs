@@ -6,9 +6,9 @@ const MEANS: usize = 40;
 /// Complete elliptic integrals of the modulus k.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Elliptic {
-    /// K(k).
+    /// Complete integral of the first kind, K(k).
     pub first: f64,
-    /// S = (K − E)/(k² K), between ½ at k = 0 and 1 at k = 1: E = K (1 − k² S) without cancellation.
+    /// Ratio S = (K − E)/(k² K), between ½ at k = 0 and 1 at k = 1: E = K (1 − k² S) without cancellation.
     pub share: f64,
 }
 

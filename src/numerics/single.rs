@@ -5,7 +5,7 @@ use super::dense;
 /// Interleaved partial sums: two vector registers of AVX2.
 const LANES: usize = 16;
 
-/// Σ x y.
+/// Scalar product Σ x y.
 pub fn dot(x: &[f32], y: &[f32]) -> f32 {
     dense::vectorised(
         #[inline(always)]
@@ -29,7 +29,7 @@ pub fn norm(x: &[f32]) -> f32 {
     dot(x, x).sqrt()
 }
 
-/// `out += factor · x`.
+/// Adds a multiple: `out += factor · x`.
 pub fn add_multiple(x: &[f32], factor: f32, out: &mut [f32]) {
     dense::vectorised(
         #[inline(always)]

@@ -121,7 +121,7 @@ impl Simulation {
     /// Constant inputs, held in `steps` communication steps of `duration` `s` each. Returns the outputs at the end.
     ///
     /// # Errors
-    /// As of [`Simulation::step`].
+    /// Those of [`Simulation::step`].
     pub fn hold(&mut self, inputs: &Inputs, duration: f64, steps: usize) -> model::Result<&Outputs> {
         for _ in 0..steps {
             self.step(inputs, duration)?;

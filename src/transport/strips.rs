@@ -95,12 +95,12 @@ impl Strips {
         }
     }
 
-    /// ā over the breadth B `m`, of values by strip.
+    /// Mean ā over the breadth B `m`, of values by strip.
     pub fn mean(&self, breadth: f64, value: impl Fn(usize) -> f64) -> f64 {
         value(self.strips) + self.breadth / breadth * self.excess(value)
     }
 
-    /// Σ (a_j − a_beside).
+    /// Excess Σ (a_j − a_beside) of the strips over the rail beside them.
     pub fn excess(&self, value: impl Fn(usize) -> f64) -> f64 {
         let beside = value(self.strips);
         (0..self.strips).map(|strip| value(strip) - beside).sum()

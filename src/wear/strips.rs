@@ -78,7 +78,7 @@ impl StripWearSteps {
 pub struct StripWearMarch<'a> {
     /// The strips.
     pub strips: &'a Strips,
-    /// V, `m/s`; 0 counts as forward.
+    /// Speed V, `m/s`; 0 counts as forward.
     pub speed: f64,
     /// Step Δt, `s`; infinite for the steady depth.
     pub duration: f64,

@@ -50,7 +50,7 @@ pub struct StripHeatMarch<'a> {
     pub incoming: &'a Incoming,
     /// The strips.
     pub strips: &'a Strips,
-    /// V, `m/s`; 0 counts as forward.
+    /// Speed V, `m/s`; 0 counts as forward.
     pub speed: f64,
     /// Step Δt, `s`; infinite for the steady field.
     pub duration: f64,
@@ -68,7 +68,7 @@ pub struct StripHeatScratch {
     conditions: Option<Conditions>,
     modes: Vec<Mode>,
     responses: Responses,
-    /// θ⁰, Θ⁰ and q, or their changes, blocks × columns.
+    /// Surface temperature θ⁰ and heat content Θ⁰ without flux and heat flux q, or their changes, blocks × columns.
     unheated: Vec<Lanes>,
     unheated_content: Vec<Lanes>,
     flux: Vec<Lanes>,
