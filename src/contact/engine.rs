@@ -144,6 +144,10 @@ pub trait Engine: Sized + 'static {
         tolerance: f64,
     ) -> Result<Sweep>;
 
+    /// Sets the surface temperature of the fields to that of the interface vector. The heat march takes it as a first guess: where
+    /// friction rises so fast with temperature that a node has several, it is the one that this one leads to.
+    fn set_surface_temperature(&self, interface: &Interface, now: &mut Self::Fields);
+
     /// Marches the wear (24) for the tractions.
     fn march_wear(problem: &Problem<Self>, before: &Self::Fields, now: &mut Self::Fields, solvers: &mut Self::Solvers);
 

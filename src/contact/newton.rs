@@ -86,6 +86,7 @@ impl<E: Engine> Sweeps<'_, E> {
         }
         E::march_wear(problem, self.before, self.now, self.solvers);
         let rise = problem.wheel_rise(self.iterate.wheel_temperature());
+        problem.operators.set_surface_temperature(self.iterate, self.now);
         E::march_heat(problem, self.before, rise, self.now, self.solvers)?;
         step::warm_wheel(problem, self.before, self.now);
         E::read(problem, self.now, self.solvers, self.image);

@@ -90,7 +90,7 @@ pub fn solve<E: Engine>(
     for iterations in 1..=settings.iterations {
         let sweep = E::solve_mechanics(problem, iterate, now, solvers, test.mechanics_tolerance())?;
         E::march_wear(problem, before, now, solvers);
-        march_heat(problem, before, iterate.wheel_temperature(), now, solvers)?;
+        march_heat(problem, before, iterate, now, solvers)?;
         // Newton's method has solved the step for the wear compliance that there is.
         if newton_sweeps == 0 {
             E::update_wear_compliance(problem, now, solvers);
@@ -190,16 +190,17 @@ pub fn initial_state<E: Engine>(problem: &Problem<E>, workspace: &mut Workspace<
 fn march_heat<E: Engine>(
     problem: &Problem<E>,
     before: &E::Fields,
-    guess: f64,
+    interface: &Interface,
     now: &mut E::Fields,
     solvers: &mut E::Solvers,
 ) -> Result<()> {
     let heating = problem.parameters.wheel_heating;
     let guess = match heating {
         WheelHeating::Off => problem.conditions.inputs.ambient_temperature,
-        WheelHeating::On => guess,
+        WheelHeating::On => interface.wheel_temperature(),
     };
     let mut wheel = rim::FixedPoint::new(guess, problem.settings.heat);
+    problem.operators.set_surface_temperature(interface, now);
     loop {
         E::march_heat(problem, before, problem.wheel_rise(wheel.temperature()), now, solvers)?;
         // The wheel takes the friction power at the temperature of this march, not at that of the mechanics: so the heat balance

@@ -127,7 +127,8 @@ impl HeatMarch<'_> {
                         unheated,
                         response: heat.response,
                     };
-                    self.surface.flux(exchange, rise, f64::INFINITY, position)?
+                    self.surface
+                        .flux(exchange, rise, after.surface[column.index], position)?
                 }
                 None => 0.0,
             };

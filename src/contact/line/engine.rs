@@ -149,6 +149,13 @@ impl Engine for LineOperators {
         mechanics::solve(problem, interface, now, solvers, tolerance)
     }
 
+    fn set_surface_temperature(&self, interface: &Interface, now: &mut LineFields) {
+        let window = &mut now.surface_temperature[self.mesh.window()];
+        for (temperature, rise) in window.iter_mut().zip(interface.temperatures()) {
+            *temperature = rise;
+        }
+    }
+
     fn march_wear(problem: &Problem, before: &LineFields, now: &mut LineFields, solvers: &mut LineSolvers) {
         heat_and_wear::march_wear(problem, before, now, solvers);
     }

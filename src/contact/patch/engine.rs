@@ -165,6 +165,12 @@ impl Engine for PatchOperators {
         mechanics::solve(problem, interface, now, solvers, tolerance)
     }
 
+    fn set_surface_temperature(&self, interface: &Interface, now: &mut PatchFields) {
+        for (temperature, rise) in now.heat.surface.iter_mut().zip(interface.temperatures()) {
+            *temperature = rise;
+        }
+    }
+
     fn march_wear(problem: &Problem, before: &PatchFields, now: &mut PatchFields, solvers: &mut PatchSolvers) {
         heat_and_wear::march_wear(problem, before, now, solvers);
     }
