@@ -156,6 +156,16 @@ pub enum Error {
         /// Change required.
         tolerance: f64,
     },
+    /// A step needs more work than it may take.
+    #[error(
+        "the step takes more than {limit:e} multiplications and additions, the budget of a step: its inputs change too fast for its length, or the contact has no solution nearby; a shorter step takes less"
+    )]
+    TooMuchWork {
+        /// Multiplications and additions until it was given up, about.
+        work: u64,
+        /// The budget.
+        limit: u64,
+    },
     /// The linear split behind the derivatives did not come to rest.
     #[error(
         "the derivatives of the step stopped after {iterations} iterations at a change of {residual:e} (relative; {tolerance:e} is required)"

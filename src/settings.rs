@@ -138,6 +138,14 @@ pub struct TangentialSettings {
     /// Ratio of two steps that is expected of a fresh factorisation until a second step has shown it. Where that was too
     /// hopeful, the next sweep starts from the residual that was left.
     pub fresh_contraction: f64,
+    /// Where the methods above stall: ratio of two regularisations on the way from the largest slip to the law.
+    pub continuation_ratio: f64,
+    /// The last of them before the law itself, relative to the largest slip.
+    pub least_regularisation: f64,
+    /// Residual to which those before the law are solved, relative to the largest pressure.
+    pub continuation_tolerance: f64,
+    /// Share of the residual by which a whole step has to lower it.
+    pub least_decrease: f64,
     /// The smallest ratio of two steps that is believed: steps of the size of round-off say nothing.
     pub least_contraction: f64,
 }
@@ -273,6 +281,10 @@ impl Default for TangentialSettings {
             continuation: 10,
             slow_contraction: 0.1,
             fresh_contraction: 0.01,
+            continuation_ratio: 0.1,
+            least_regularisation: 1e-7,
+            continuation_tolerance: 1e-4,
+            least_decrease: 1e-4,
             least_contraction: 1e-3,
         }
     }

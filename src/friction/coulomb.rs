@@ -129,6 +129,64 @@ impl Sliding {
     }
 }
 
+/// The regularised law solved for a shear and a slip against it of which only a sum is given, t + r σ = z with t = μ p (2/π) arctan(σ/ε): as
+/// well conditioned for a small ε as for a large one, and Coulomb's law to the limit.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Resisted {
+    /// t/(μ p).
+    pub saturation: f64,
+    /// t.
+    pub shear: f64,
+    /// dt/dz.
+    pub by_length: f64,
+    /// dt/d(μ p).
+    pub by_bound: f64,
+}
+
+impl Resisted {
+    /// With the bound μ p, r > 0, ε > 0, and z ≥ 0, all in units of the shear but r, shear per slip, and ε, slip.
+    pub fn new(bound: f64, scale: f64, regularisation: f64, length: f64) -> Resisted {
+        let relative = relative_slip(bound, scale * regularisation, length);
+        let saturation = FRAC_2_PI * relative.atan();
+        // dt/dσ.
+        let slope = bound * FRAC_2_PI / (regularisation * (1.0 + relative * relative));
+        let by_length = slope / (slope + scale);
+        Resisted {
+            saturation,
+            shear: bound * saturation,
+            by_length,
+            by_bound: saturation * (1.0 - by_length),
+        }
+    }
+}
+
+/// Limit of the Newton steps for the slip of one cell. From the start chosen they take three to five.
+const SLIP_STEPS: usize = 20;
+
+/// x ≥ 0 with b (2/π) arctan x + c x = z. The left side is concave, so that Newton's method from below stays below; it starts with
+/// arctan x ≤ (π/2) x/(x + 2/π), which is exact for small and large x in its order.
+fn relative_slip(b: f64, c: f64, z: f64) -> f64 {
+    if z <= 0.0 {
+        return 0.0;
+    }
+    let linear = c * FRAC_2_PI + b - z;
+    let root = (linear * linear + 4.0 * c * FRAC_2_PI * z).sqrt();
+    // The larger root of c x² + linear x − (2/π) z = 0, without the difference of nearly equal numbers.
+    let mut x = if linear > 0.0 {
+        2.0 * FRAC_2_PI * z / (linear + root)
+    } else {
+        (root - linear) / (2.0 * c)
+    };
+    for _ in 0..SLIP_STEPS {
+        let change = (z - b * FRAC_2_PI * x.atan() - c * x) / (b * FRAC_2_PI / (1.0 + x * x) + c);
+        x = (x + change).max(0.0);
+        if change <= 1e-15 * x {
+            break;
+        }
+    }
+    x
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -47,6 +47,8 @@ pub struct Mechanics {
     pschenichnyj: Pschenichnyj,
     pub(super) tangential: Tangential,
     pub(super) response: Response,
+    /// Multiplications and additions for it in this step.
+    response_work: u64,
     /// ∂s/∂τ on the nodes under pressure, without what the leading edge adds, m × m, and the weights it was made with.
     pub(super) slip_response: Vec<f64>,
     slip_weights: (f64, f64),
@@ -90,6 +92,7 @@ impl Mechanics {
             pschenichnyj: Pschenichnyj::new(nodes, settings.normal),
             tangential: Tangential::new(nodes, settings.tangential),
             response: Response::new(nodes),
+            response_work: 0,
             slip_response: vec![0.0; nodes * nodes],
             slip_weights: (f64::NAN, f64::NAN),
             profile: vector(),
@@ -114,7 +117,15 @@ impl Mechanics {
 
     /// Forgets what was factorised for the step before.
     pub fn start_step(&mut self) {
-        self.tangential.forget();
+        self.tangential.start_step();
+        self.active_set.start_step();
+        self.response_work = 0;
+    }
+
+    /// Multiplications and additions in this step, about: a measure of time that is the same on every machine.
+    #[allow(dead_code, reason = "for the budget of a step")]
+    pub fn work(&self) -> u64 {
+        self.tangential.work() + self.active_set.work() + self.response_work
     }
 
     /// Forgets what belongs to the normal compliance: it has been replaced.
@@ -195,7 +206,11 @@ impl Mechanics {
         let cut_off = ends.into_iter().any(|end| separation(end) < -self.settings.overlap);
         (self.gap, self.cut_off) = (gap, cut_off);
         // Not whether the response was computed anew: that depends on what was solved before this step.
-        Ok(self.nodes != self.nodes_before)
+        let set_changed = self.nodes != self.nodes_before;
+        if set_changed {
+            self.response_work += 2 * (self.nodes.len() as u64).pow(3);
+        }
+        Ok(set_changed)
     }
 
     /// Separation w = C p − b − δ of a node.

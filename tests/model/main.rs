@@ -1,5 +1,6 @@
 //! How the stepped model behaves, natively: what it bears, what it refuses, and what must not depend on how it is driven.
 
+mod at_rest;
 mod bad_input;
 mod by_speeds;
 mod defaults;

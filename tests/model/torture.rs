@@ -39,6 +39,33 @@ fn wheels_driven_at_random_arrive() {
     }
 }
 
+/// Runs by contact, seed and number, and steps until the failure, that once failed with "the tangential Newton solver stopped": friction with a
+/// memory sent Newton's method to and fro between corners of its law.
+const CORNERS: [(Engines, u64, u64, usize); 3] = [
+    (Engines::Line, 77, 5, 117),
+    (Engines::Line, 77, 6, 19),
+    (Engines::Line, 77, 200, 62),
+];
+
+#[test]
+fn friction_with_a_memory_has_corners() {
+    for (engines, seed, number, steps) in CORNERS {
+        let torture = Torture {
+            seed,
+            steps,
+            window: 1.0,
+            engines,
+        };
+        let run = torture.runs(number..number + 1).pop().unwrap();
+        assert_eq!(
+            run.failure, None,
+            "{engines:?}, seed {seed}, run {number}, step {}",
+            run.length
+        );
+        assert_eq!(run.length, steps);
+    }
+}
+
 /// A run follows from its seed and number, alone or with those that share its model.
 #[test]
 fn a_run_is_replayed_with_the_same_bits() {

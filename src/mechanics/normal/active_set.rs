@@ -30,6 +30,8 @@ pub struct ActiveSet {
     particular: Vec<f64>,
     separation: Vec<f64>,
     target: Vec<f64>,
+    /// Multiplications and additions in this step.
+    work: u64,
 }
 
 impl ActiveSet {
@@ -47,7 +49,25 @@ impl ActiveSet {
             particular: vec![0.0; nodes],
             separation: vec![0.0; nodes],
             target: vec![0.0; nodes],
+            work: 0,
         }
+    }
+
+    /// Begins a step.
+    pub fn start_step(&mut self) {
+        self.work = 0;
+    }
+
+    /// Multiplications and additions in this step, about. An inverse of the first set of a solve is not counted: whether it is kept depends
+    /// on the steps before.
+    pub fn work(&self) -> u64 {
+        self.work
+    }
+
+    /// Adds an exchange to the work.
+    fn count(&mut self, nodes: usize, inverts: bool) {
+        let m = self.active.len();
+        self.work += (m * m + m * nodes + if inverts { 4 * m * m * m / 3 } else { 0 }) as u64;
     }
 
     /// Forgets the inverse: the compliance is another one from now on.
@@ -77,6 +97,7 @@ impl ActiveSet {
             self.active.extend(problem.candidates());
         }
         for iterations in 1..=self.settings.exchanges {
+            self.count(pressure.len(), iterations > 1);
             let penetration = self.close_active_nodes(problem)?;
             pressure.copy_from_slice(&self.target);
             self.update_separation(problem, pressure, penetration);
@@ -128,6 +149,7 @@ impl ActiveSet {
         let first = self.settings.exchanges + 1;
         let limit = self.settings.exchanges + self.settings.descents_per_node * n;
         for iterations in first..=limit {
+            self.count(n, true);
             let penetration = self.close_active_nodes(problem)?;
             let blocking = (0..n)
                 .filter(|&i| self.target[i] < 0.0)

@@ -1,7 +1,7 @@
 //! The cells under pressure, strip by strip.
 
 use crate::body::grid::Grid;
-use crate::body::influence::Window;
+use crate::body::influence::{Transform, Window};
 use std::ops::Range;
 
 /// Neighbouring cells of one strip, all under pressure.
@@ -109,6 +109,11 @@ impl Contact {
     pub fn places<'a>(&'a self, grid: &'a Grid) -> impl Iterator<Item = usize> + 'a {
         self.runs.iter().flat_map(|run| run.places(grid))
     }
+}
+
+/// Multiplications and additions of a product with tables, about: along x term by term, across by a Fourier transform.
+pub fn work_of_product(transform: &Transform, window: &Window) -> u64 {
+    (8 * transform.strips() * window.loaded.len() * window.read.len()) as u64
 }
 
 #[cfg(test)]

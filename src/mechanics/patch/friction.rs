@@ -12,7 +12,7 @@ pub use on_path::PathOfCells;
 pub use tangent::{FrictionChange, LEAST_CHANGE};
 
 use super::blocks::{Blocks, OwnResponse};
-use super::contact::Contact;
+use super::contact::{Contact, work_of_product};
 use super::law::{Cell, Row, Scheme, Vector};
 use crate::body::grid::Grid;
 use crate::body::influence::{self, Tables, Transform, Window};
@@ -87,6 +87,13 @@ pub struct Friction {
     step: Vec<f32>,
     /// Where μ depends on slip.
     on_path: OnPath,
+    /// Multiplications and additions in this step.
+    work: u64,
+}
+
+/// The sum of a power of the unknowns of each run.
+fn work_of_blocks(contact: &Contact, power: u32) -> u64 {
+    contact.runs().iter().map(|run| (2 * run.cells as u64).pow(power)).sum()
 }
 
 impl Friction {
@@ -111,12 +118,20 @@ impl Friction {
             rows: vec![Row::default(); total],
             step: vec![0.0; 2 * total],
             on_path: OnPath::new(total),
+            work: 0,
         }
     }
 
     /// Forgets what was computed in another step: a step follows from its state alone.
     pub fn start_step(&mut self) {
         self.start_contact();
+        self.work = 0;
+    }
+
+    /// Multiplications and additions in this step, about: a measure of time that is the same on every machine.
+    #[allow(dead_code, reason = "for the budget of a step")]
+    pub fn work(&self) -> u64 {
+        self.work
     }
 
     /// Forgets what was computed for another contact.
@@ -201,7 +216,9 @@ impl Friction {
         for changes in [&mut self.correction, &mut self.correction_response] {
             changes.iter_mut().for_each(|component| component.fill(0.0));
         }
+        let product = work_of_product(problem.transform, &window);
         if self.answered != *shear {
+            self.work += product;
             let [x, y] = &mut self.response;
             let load = [&shear[0][..], &shear[1][..]];
             problem
@@ -226,6 +243,7 @@ impl Friction {
             if solved > self.settings.renewal && !fresh {
                 self.factorised = false;
             }
+            self.work += product;
             {
                 let [x, y] = &mut self.correction_response;
                 let load = [&self.correction[0][..], &self.correction[1][..]];
@@ -337,6 +355,7 @@ impl Friction {
             behind: if response.forward { -1 } else { 1 },
         };
         let n = problem.contact.cells();
+        self.work += work_of_blocks(problem.contact, 3) / 3;
         self.blocks
             .factorise(problem.contact, &self.rows[..n], problem.edge, &own)
     }
@@ -414,6 +433,9 @@ impl Friction {
             }
         };
         let solved = gmres.solve(&mut step[..2 * n], tolerance, multiply, |values| blocks.solve(values));
+        let product = work_of_product(problem.transform, window) + work_of_blocks(problem.contact, 2);
+        let orthogonalisation = (2 * n * solved.iterations) as u64;
+        self.work += solved.iterations as u64 * (product + orthogonalisation);
         for component in 0..2 {
             let values = self.step[component * n..(component + 1) * n].iter();
             for (place, value) in problem.contact.places(problem.grid).zip(values) {

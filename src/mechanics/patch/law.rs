@@ -14,7 +14,7 @@
 //! (Alart and Curnier 1991): it holds if the cell sticks within the bound, or slides with τ = −μp s/|s|. The regularised law (30) is
 //! written in the same way, with another Π.
 
-use std::f64::consts::FRAC_2_PI;
+use crate::friction::coulomb::{Resisted, STICK_SATURATION};
 
 /// A vector in the plane of the contact.
 pub type Vector = [f64; 2];
@@ -179,19 +179,19 @@ impl Scheme {
         let (r, epsilon) = (self.scale, self.regularisation);
         let pulled = plus(cell.shear, -r, slip);
         let length = dot(pulled, pulled).sqrt();
-        let relative = relative_slip(cell.bound, r * epsilon, length);
-        let saturation = FRAC_2_PI * relative.atan();
-        // dt/dσ of the law, and of t and σ with |z|.
-        let slope = cell.bound * FRAC_2_PI / (epsilon * (1.0 + relative * relative));
-        let stays = slope / (slope + r);
-        let shear = cell.bound * saturation;
+        let Resisted {
+            saturation,
+            shear,
+            by_length: stays,
+            by_bound: by_own_bound,
+        } = Resisted::new(cell.bound, r, epsilon, length);
         let (residual, by_pulled, by_bound) = if length > 0.0 {
             let direction = [pulled[0] / length, pulled[1] / length];
             let share = shear / length;
             (
                 plus(cell.shear, -shear, direction),
                 shifted(share, stays - share, outer(direction, direction)),
-                [0, 1].map(|i: usize| -saturation * (1.0 - stays) * direction[i]),
+                [0, 1].map(|i: usize| -by_own_bound * direction[i]),
             )
         } else {
             (cell.shear, shifted(stays, 0.0, Matrix::default()), Vector::default())
@@ -201,42 +201,16 @@ impl Scheme {
             shifted(1.0, -1.0, by_pulled),
             shifted(0.0, r, by_pulled),
             by_bound,
-            saturation < crate::friction::coulomb::STICK_SATURATION,
+            saturation < STICK_SATURATION,
         )
     }
-}
-
-/// Limit of the Newton steps for the slip of one cell. From the start chosen they take three to five.
-const SLIP_STEPS: usize = 20;
-
-/// x ≥ 0 with b (2/π) arctan x + c x = z. The left side is concave, so that Newton's method from below stays below; it starts with
-/// arctan x ≤ (π/2) x/(x + 2/π), which is exact for small and large x in its order.
-fn relative_slip(b: f64, c: f64, z: f64) -> f64 {
-    if z <= 0.0 {
-        return 0.0;
-    }
-    let linear = c * FRAC_2_PI + b - z;
-    let root = (linear * linear + 4.0 * c * FRAC_2_PI * z).sqrt();
-    // The larger root of c x² + linear x − (2/π) z = 0, without the difference of nearly equal numbers.
-    let mut x = if linear > 0.0 {
-        2.0 * FRAC_2_PI * z / (linear + root)
-    } else {
-        (root - linear) / (2.0 * c)
-    };
-    for _ in 0..SLIP_STEPS {
-        let change = (z - b * FRAC_2_PI * x.atan() - c * x) / (b * FRAC_2_PI / (1.0 + x * x) + c);
-        x = (x + change).max(0.0);
-        if change <= 1e-15 * x {
-            break;
-        }
-    }
-    x
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use proptest::prelude::*;
+    use std::f64::consts::FRAC_2_PI;
 
     fn vector() -> impl Strategy<Value = Vector> {
         prop::array::uniform2(-1.0..1.0_f64)

@@ -7,7 +7,7 @@
 
 mod tangent;
 
-use super::contact::Contact;
+use super::contact::{Contact, work_of_product};
 use crate::body::grid::Grid;
 use crate::body::influence::{self, Tables, Transform, Window};
 use crate::error::{Error, Result};
@@ -114,6 +114,8 @@ pub struct Normal {
     softness: Vec<f64>,
     /// Separation w of all cells.
     pub separation: Vec<f64>,
+    /// Multiplications and additions in this step.
+    work_done: u64,
 }
 
 fn dot(a: &[f64], b: &[f64]) -> f64 {
@@ -142,12 +144,20 @@ impl Normal {
             pressure: on_grid(),
             softness: on_grid(),
             separation: on_grid(),
+            work_done: 0,
         }
     }
 
     /// Forgets the displacement of the step before: a step follows from its state alone.
     pub fn start_step(&mut self) {
         self.displaced_by.fill(f64::NAN);
+        self.work_done = 0;
+    }
+
+    /// Multiplications and additions in this step, about: a measure of time that is the same on every machine.
+    #[allow(dead_code, reason = "for the budget of a step")]
+    pub fn work(&self) -> u64 {
+        self.work_done
     }
 
     /// Solves from the given pressure on the grid, whose cells become `contact`. Returns the penetration.
@@ -197,6 +207,7 @@ impl Normal {
             return;
         }
         self.displaced_by.copy_from_slice(pressure);
+        self.work_done += work_of_product(problem.transform, window);
         problem.transform.apply(
             &problem.approach.tables,
             window,
@@ -226,6 +237,8 @@ impl Normal {
     ) -> (f64, f64) {
         let (grid, n) = (problem.grid, contact.cells());
         let window = whole(grid, contact);
+        let preconditioner: usize = contact.runs().iter().map(|run| run.cells * run.cells).sum();
+        let work = work_of_product(problem.transform, &window) + preconditioner as u64;
         self.displace(problem, &window, pressure);
         contact.gather(grid, pressure, &mut self.pressure);
         contact.gather(grid, problem.softness, &mut self.softness);
@@ -272,6 +285,7 @@ impl Normal {
             }
             self.direction_grid.fill(0.0);
             contact.scatter(grid, &self.direction, &mut self.direction_grid);
+            self.work_done += work;
             // Of all cells: what lies beside the contact must be known to see whether it overlaps.
             problem.transform.apply(
                 &problem.approach.tables,

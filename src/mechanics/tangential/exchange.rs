@@ -106,7 +106,7 @@ impl Tangential {
     }
 
     /// Slip velocity per shear of a node on itself, `m/s`.
-    fn own_slip(&self, problem: &TangentialProblem, node: usize) -> f64 {
+    pub(super) fn own_slip(&self, problem: &TangentialProblem, node: usize) -> f64 {
         problem.slip_response[node * problem.pressure.len() + node]
     }
 
@@ -153,7 +153,7 @@ impl Tangential {
     }
 
     /// φ = −τ/(μ p).
-    fn set_saturation(&mut self, shear: &[f64]) {
+    pub(super) fn set_saturation(&mut self, shear: &[f64]) {
         // The largest number below 1: ±1 is slip.
         let stick = 1.0 - f64::EPSILON;
         for (i, shear) in shear.iter().enumerate() {

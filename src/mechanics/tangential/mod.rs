@@ -13,6 +13,7 @@
 //! diag(a) + diag(b) ∂s/∂τ + diag(c) ∂p/∂τ; [`newton`] solves the regularised one, [`exchange`] Coulomb's.
 
 mod exchange;
+mod globalised;
 mod newton;
 mod path;
 
@@ -171,6 +172,10 @@ pub struct Tangential {
     /// Length of a step over that of the step before, with this `factor`.
     contraction: f64,
     path: Path,
+    /// Whether the methods that are fast where they converge have stalled in this step.
+    has_stalled: bool,
+    /// Multiplications and additions in this step.
+    work: u64,
 }
 
 impl Tangential {
@@ -199,11 +204,28 @@ impl Tangential {
             factored: false,
             contraction: settings.fresh_contraction,
             path: Path::new(nodes),
+            has_stalled: false,
+            work: 0,
         }
     }
 
-    /// Forgets the factorised matrix: at the start of a step, so that it does not depend on the steps before, and
-    /// when the nodes under pressure change.
+    /// Begins a step: it does not depend on the steps before.
+    pub fn start_step(&mut self) {
+        self.forget();
+        (self.has_stalled, self.work) = (false, 0);
+    }
+
+    /// Multiplications and additions in this step, about: a measure of time that is the same on every machine.
+    pub fn work(&self) -> u64 {
+        self.work
+    }
+
+    /// Adds factorisations of a matrix of m nodes and its products with a vector to the work.
+    fn count(&mut self, m: usize, factorisations: usize, products: usize) {
+        self.work += (factorisations * m * m * m / 3 + products * m * m) as u64;
+    }
+
+    /// Forgets the factorised matrix: when the nodes under pressure change.
     pub fn forget(&mut self) {
         self.factored = false;
     }
@@ -249,11 +271,17 @@ impl Tangential {
     pub fn solve(&mut self, problem: &TangentialProblem, saturation: &[f64], shear: &mut [f64]) -> Result<f64> {
         let m = shear.len();
         self.change[..m].fill(0.0);
-        let end = if problem.regularisation > 0.0 {
+        let mut end = if self.has_stalled {
+            Ended::Stalled(0)
+        } else if problem.regularisation > 0.0 {
             self.solve_regularised(problem, shear)
         } else {
             self.solve_coulomb(problem, saturation, shear)
         };
+        if let Ended::Stalled(steps) = end {
+            self.has_stalled = true;
+            end = self.solve_globalised(problem, shear, steps);
+        }
         if let Ended::Stalled(iterations) = end {
             return Err(Error::TangentialNotConverged {
                 iterations,
@@ -270,6 +298,7 @@ impl Tangential {
     /// Pressure and slip after `self.change`, what the leading edge adds included.
     fn update_point(&mut self, problem: &TangentialProblem, shear: &[f64]) {
         let m = shear.len();
+        self.count(m, 0, 2);
         dense::multiply(problem.pressure_response, m, &self.change, &mut self.pressure);
         dense::multiply(problem.slip_response, m, &self.change, &mut self.slip);
         for i in 0..m {
@@ -331,6 +360,7 @@ impl Tangential {
     /// Factorises the law's rows at the present point. False where the matrix is singular.
     fn factorise(&mut self, problem: &TangentialProblem) -> bool {
         let m = problem.pressure.len();
+        self.count(m, 1, 2);
         let rows = &self.rows[..m];
         let (by_slip, by_pressure) = (&mut self.by_slip[..m], &mut self.by_pressure[..m]);
         for (row, law) in rows.iter().enumerate() {
@@ -371,6 +401,7 @@ impl Tangential {
     /// Adds to the law's rows what a node's bound takes from the slip of the nodes before it.
     fn add_links(&mut self, problem: &TangentialProblem, law: &PathLaw) {
         let m = problem.pressure.len();
+        self.count(m, 0, 4);
         for first in (0..m).step_by(LANES) {
             let columns = LANES.min(m - first);
             for lane in 0..columns {
@@ -405,6 +436,7 @@ impl Tangential {
 
     /// Newton step −J⁻¹ residual.
     fn find_step(&mut self, m: usize) {
+        self.count(m, 0, 1);
         for (step, residual) in self.step.iter_mut().zip(&self.residual[..m]) {
             *step = -residual;
         }

@@ -36,7 +36,7 @@ impl Tangential {
 
     /// φ = −τ/(μ p) in place of φ(s), the same at the solution. On compliant bodies with a small ε the step of τ that may be left out is one of
     /// φ(s) that may not.
-    fn take_saturation(&mut self, shear: &[f64]) {
+    pub(super) fn take_saturation(&mut self, shear: &[f64]) {
         for (i, shear) in shear.iter().enumerate() {
             let bound = self.friction[i] * self.pressure[i];
             if bound > 0.0 {

@@ -105,6 +105,7 @@ impl Tangential {
             }
         }
         self.factored = false;
+        self.count(m, 1, 3);
         if !dense::lu(&mut self.factor[..m * m], m, &mut self.pivots) {
             return false;
         }
@@ -141,6 +142,7 @@ impl Tangential {
     /// The solution for the present sets as a function of λ.
     fn solve_on_path(&mut self, problem: &TangentialProblem, shear: &[f64]) -> bool {
         let m = shear.len();
+        self.count(m, 1, 8);
         self.set_coulomb_rows(problem);
         for (i, row) in self.rows[..m].iter().enumerate() {
             let (constant, slope) = self.bound(problem, i);

@@ -2,7 +2,10 @@
 
 use super::*;
 use crate::friction::coulomb::saturation;
+use crate::friction::memory::Path as MemoryPath;
+use crate::friction::path::PathStep;
 use crate::mechanics::front::NearField;
+use crate::parameters::Parameters;
 use proptest::prelude::*;
 
 const NODES: usize = 6;
@@ -108,6 +111,7 @@ proptest! {
         friction in prop::collection::vec(0.1..0.6, NODES),
         follows in prop::collection::vec(-0.05..0.05, NODES * NODES),
         log_regularisation in -5.0..-2.0,
+        has_stalled in any::<bool>(),
     ) {
         let regularisation = 10.0_f64.powf(log_regularisation);
         let response = response();
@@ -124,7 +128,9 @@ proptest! {
             tolerance: 1e-12,
         };
         let mut shear = vec![0.0; NODES];
-        Tangential::new(NODES, TangentialSettings::default()).solve(&problem, &zero, &mut shear).unwrap();
+        let mut solver = Tangential::new(NODES, TangentialSettings::default());
+        solver.has_stalled = has_stalled;
+        solver.solve(&problem, &zero, &mut shear).unwrap();
         for row in 0..NODES {
             let slip = slip[row] + sum(&response, row, &shear);
             let p = (pressure[row] + sum(&follows, row, &shear)).max(0.0);
@@ -134,7 +140,7 @@ proptest! {
         }
     }
 
-    /// Coulomb's conditions at every node, by the exchanges and by the path alone, from any start.
+    /// Coulomb's conditions at every node, by the exchanges, by the path alone and with the line search, from any start.
     #[test]
     fn the_solution_satisfies_coulombs_law(
         pressure in prop::collection::vec(0.1..1.0, NODES),
@@ -143,6 +149,7 @@ proptest! {
         follows in prop::collection::vec(-0.05..0.05, NODES * NODES),
         start in prop::collection::vec(-1.0..1.0_f64, NODES),
         exchanges in 1..14_usize,
+        has_stalled in any::<bool>(),
     ) {
         let response = response();
         let zero = [0.0; NODES];
@@ -164,6 +171,7 @@ proptest! {
         };
         let settings = TangentialSettings { exchanges, ..TangentialSettings::default() };
         let mut solver = Tangential::new(NODES, settings);
+        solver.has_stalled = has_stalled;
         solver.solve(&problem, &start, &mut shear).unwrap();
         for row in 0..NODES {
             let slip: f64 = slip[row] + sum(&response, row, &shear);
@@ -176,6 +184,96 @@ proptest! {
                 prop_assert!(phi * slip > -1e-11, "{row}: {phi} {slip}");
             } else {
                 prop_assert!(slip.abs() < 1e-11, "{row}: {phi} {slip}");
+            }
+        }
+    }
+}
+
+/// A node that slips the faster the less it carries: friction that falls with slip, beside elasticity. From any shear the
+/// solution is the same, and it is one of the law.
+#[test]
+fn the_line_search_finds_the_solution_of_friction_that_falls_with_slip() {
+    let parameters = Parameters {
+        friction_slip_share: 0.3,
+        friction_slip_decay: 5.0,
+        friction_memory_distance: 1e-6,
+        layer_yield_stress: 3e8,
+        layer_hardening: 1e13,
+        ..Parameters::default()
+    };
+    let step = PathStep {
+        duration: 1e-3,
+        spacing: 1e-4,
+        speed: 10.0,
+        displacement: 1e-6,
+        pressure: 1e9,
+    };
+    let law = PathLaw::new(&parameters, &step).unwrap();
+    let resting = [0.4; NODES + 2];
+    let kept = [0.0; NODES + 2];
+    let path = MemoryPath {
+        resting: &resting,
+        friction: &resting,
+        speed: &kept,
+        flow: &kept,
+    };
+    let mut nodes = Vec::new();
+    law.prepare(
+        &path,
+        &resting,
+        |node| (1..=NODES).contains(&node),
+        |_, node| nodes.push(node),
+    );
+    nodes.reverse();
+    let pressure: Vec<f64> = (0..NODES).map(|i| 0.9 - 0.1 * i as f64).collect();
+    let friction = [0.4; NODES];
+    let (response, zero) = (response(), [0.0; NODES]);
+    let follows = [0.0; NODES * NODES];
+    for rigid_slip in [-0.3, -0.02, -2e-3, 1e-3, 5e-3, 0.02, 0.1, 1.0] {
+        for regularisation in [0.0, 1e-4] {
+            let mut solutions = Vec::new();
+            for start in [-0.2, 0.0, 0.3] {
+                let mut shear: Vec<f64> = pressure.iter().map(|p| start * p).collect();
+                let slip: Vec<f64> = (0..NODES).map(|i| rigid_slip + sum(&response, i, &shear)).collect();
+                let problem = TangentialProblem {
+                    pressure: &pressure,
+                    slip: &slip,
+                    pressure_response: &follows,
+                    slip_response: &response,
+                    friction: &friction,
+                    path: Some((law, &nodes)),
+                    edge: no_edge(&zero),
+                    regularisation,
+                    tolerance: 1e-12,
+                };
+                let mut solver = Tangential::new(NODES, TangentialSettings::default());
+                solver.has_stalled = true;
+                solver.solve(&problem, &zero, &mut shear).unwrap();
+                let mut before = Passed::default();
+                for row in (0..NODES).rev() {
+                    let slip = rigid_slip + sum(&response, row, &shear);
+                    let mu = law.friction(&nodes[row], &before, slip.abs(), pressure[row]);
+                    before = mu.passed(slip.abs());
+                    let bound = mu.coefficient * pressure[row];
+                    let expected = if regularisation > 0.0 {
+                        -bound * saturation(slip, regularisation)
+                    } else if slip.abs() > 1e-11 {
+                        -bound * slip.signum()
+                    } else {
+                        shear[row].clamp(-bound, bound)
+                    };
+                    assert!(
+                        (shear[row] - expected).abs() < 1e-9,
+                        "{rigid_slip} {row}: {} {expected}",
+                        shear[row]
+                    );
+                }
+                solutions.push(shear);
+            }
+            for other in &solutions[1..] {
+                for (one, other) in solutions[0].iter().zip(other) {
+                    assert!((one - other).abs() < 1e-9, "{rigid_slip}: {solutions:?}");
+                }
             }
         }
     }
