@@ -363,4 +363,6 @@ impl PathLaw {
 }
 
 #[cfg(test)]
+mod duals;
+#[cfg(test)]
 mod tests;
