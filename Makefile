@@ -132,15 +132,15 @@ description: command
 demo:
 	+@$(BESIDE) fmu fmu3 $(VENV)/ready
 	$(call say,The cases of the paper)
-	@$(PY) examples/paper_cases.py
+	@$(PY) studies paper_cases
 	$(call say,A braking manoeuvre - a stop)
-	@$(PY) examples/braking_demo.py
+	@$(PY) studies braking_demo
 	$(call say,The patch: its fields)
-	@$(PY) examples/patch_fields.py
+	@$(PY) studies patch_fields
 	$(call say,The patch: creep curves beside CONTACT and FASTSIM)
 	@$(CARGO) run --quiet --example patch_creep_curves > results/patch_creep_curves.part
 	@mv results/patch_creep_curves.part results/patch_creep_curves.csv
-	@$(PY) examples/patch_creep_curves.py
+	@$(PY) studies patch_creep_curves
 	@cp $(FMU) results/
 	$(call say,Written)
 	@ls -l results/*.fmu results/*.csv results/*.png | awk '{ print $$NF, "(" $$5, "bytes)" }'
@@ -148,9 +148,9 @@ demo:
 # SciPy comes with the packages of the couplings.
 measurements: fmu $(VENV)/couplings
 	$(call say,The Eurosprinter: friction and layer fitted to a measured creep curve)
-	@$(PY) examples/eurosprinter.py
+	@$(PY) studies eurosprinter
 	$(call say,A twin disc: friction - temperatures - wear)
-	@$(PY) examples/twin_disc.py
+	@$(PY) studies twin_disc
 
 # The pictures and tables of docs/measurements.md; commit what changes.
 measurements-docs: measurements
@@ -159,8 +159,8 @@ measurements-docs: measurements
 
 # ---- couplings: `make couplings` or one of them, `make coupling-stiff` for example --------------------------------
 
-$(WHEELSET): examples/wheelset.py $(VENV)/couplings
-	@$(PY) -m pythonfmu build -f examples/wheelset.py -d target
+$(WHEELSET): studies/longitudinal/wheelset.py $(VENV)/couplings
+	@$(PY) -m pythonfmu build -f studies/longitudinal/wheelset.py -d target
 
 couplings-set-up: fmu hosts $(WHEELSET)
 
@@ -168,7 +168,7 @@ couplings: $(addprefix coupling-,$(COUPLINGS))
 
 $(addprefix coupling-,$(COUPLINGS)): coupling-%: couplings-set-up
 	$(call say,Coupling: $*)
-	@$(PY) examples/$*.py
+	@$(PY) studies $*
 
 HUNTING := $(addsuffix .png,hunting_stability hunting_cycle hunting_curve hunting_contact)
 
@@ -179,7 +179,7 @@ couplings-docs: couplings
 
 # The time that the sweep takes on two workers against one.
 sweep-scaling: couplings-set-up
-	@$(PY) examples/sweep.py --scaling
+	@$(PY) studies sweep --scaling
 
 # ---- checks -------------------------------------------------------------------------------------------------------
 

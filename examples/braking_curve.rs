@@ -2,8 +2,8 @@
 //!
 //!     cargo run --release --example braking_curve
 
-use wheelrail::simulation::{Point, Schedule};
-use wheelrail::{Inputs, Parameters, Simulation, SlipSource};
+use wheelrail::simulation::{Error, Point, Schedule};
+use wheelrail::{Inputs, Outputs, Parameters, Simulation, SlipSource};
 
 /// The vehicle slows down by 1 m/s² from 20 m/s on.
 fn point(parameters: &Parameters, time: f64, creepage: f64) -> Point {
@@ -16,7 +16,8 @@ fn point(parameters: &Parameters, time: f64, creepage: f64) -> Point {
     Point { time, inputs }
 }
 
-fn main() -> Result<(), wheelrail::simulation::Error> {
+/// Time and outputs each half second.
+pub fn braking() -> Result<Vec<(f64, Outputs)>, Error> {
     let parameters = Parameters {
         slip_source: SlipSource::VehicleSpeed,
         ..Parameters::default()
@@ -34,21 +35,27 @@ fn main() -> Result<(), wheelrail::simulation::Error> {
     let schedule = Schedule::new(points.to_vec())?;
 
     let mut simulation = Simulation::new(&parameters, &schedule.start().inputs)?;
-    println!("time [s]  traction [kN]  creepage [%]  temperature [K]  friction [1]  worn [mm3]");
+    let mut table = Vec::new();
     for (number, step) in schedule.steps(1e-3)?.enumerate() {
         simulation.follow(&step)?;
         if (number + 1) % 500 == 0 {
-            let outputs = simulation.outputs();
-            println!(
-                "{:8.2}  {:13.2}  {:12.2}  {:15.1}  {:12.3}  {:10.4}",
-                step.to.time,
-                1e-3 * outputs.traction_force,
-                100.0 * outputs.slip_creepage,
-                outputs.peak_temperature,
-                outputs.friction_coefficient,
-                1e9 * outputs.worn_volume,
-            );
+            table.push((step.to.time, simulation.outputs().clone()));
         }
+    }
+    Ok(table)
+}
+
+fn main() -> Result<(), Error> {
+    println!("time [s]  traction [kN]  creepage [%]  temperature [K]  friction [1]  worn [mm3]");
+    for (time, outputs) in braking()? {
+        println!(
+            "{time:8.2}  {:13.2}  {:12.2}  {:15.1}  {:12.3}  {:10.4}",
+            1e-3 * outputs.traction_force,
+            100.0 * outputs.slip_creepage,
+            outputs.peak_temperature,
+            outputs.friction_coefficient,
+            1e9 * outputs.worn_volume,
+        );
     }
     Ok(())
 }

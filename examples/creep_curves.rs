@@ -6,8 +6,10 @@ use std::sync::Arc;
 use std::thread;
 use wheelrail::{Error, Inputs, Model, Parameters, Simulation};
 
-const SPEEDS: [f64; 4] = [5.0, 10.0, 20.0, 40.0];
-const CREEPAGES: [f64; 7] = [0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1];
+/// m/s.
+pub const SPEEDS: [f64; 4] = [5.0, 10.0, 20.0, 40.0];
+/// 1.
+pub const CREEPAGES: [f64; 7] = [0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1];
 
 /// Traction coefficient at each creepage, at a rolling speed in m/s.
 fn curve(model: Arc<Model>, speed: f64) -> Result<Vec<f64>, Error> {
@@ -29,21 +31,27 @@ fn curve(model: Arc<Model>, speed: f64) -> Result<Vec<f64>, Error> {
         .collect()
 }
 
-fn main() -> Result<(), Error> {
+/// A curve for each speed.
+pub fn curves() -> Result<Vec<Vec<f64>>, Error> {
     let model = Arc::new(Model::new(Parameters::default())?);
-    let curves = thread::scope(|scope| {
+    thread::scope(|scope| {
         SPEEDS
             .map(|speed| {
                 let model = model.clone();
                 scope.spawn(move || curve(model, speed))
             })
             .map(|thread| thread.join().expect("a thread that did not panic"))
-    });
+            .into_iter()
+            .collect()
+    })
+}
+
+fn main() -> Result<(), Error> {
+    let curves = curves()?;
     println!("traction coefficient; heat lowers the friction coefficient, the more the faster the wheel rolls");
     print!("creepage ");
     SPEEDS.iter().for_each(|speed| print!("{speed:>7} m/s"));
     println!();
-    let curves = curves.into_iter().collect::<Result<Vec<_>, Error>>()?;
     for (row, creepage) in CREEPAGES.iter().enumerate() {
         print!("{creepage:<9}");
         curves.iter().for_each(|curve| print!("{:>11.4}", curve[row]));

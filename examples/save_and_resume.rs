@@ -6,7 +6,8 @@ use std::error::Error;
 use wheelrail::simulation::{Point, Schedule};
 use wheelrail::{Inputs, Model, Parameters, Simulation, State};
 
-fn main() -> Result<(), Box<dyn Error>> {
+/// The states at the end: without a break, and resumed.
+pub fn both_ways() -> Result<[State; 2], Box<dyn Error>> {
     let rolling = Inputs::default();
     let sliding = Inputs {
         creepage: 0.02,
@@ -41,9 +42,13 @@ fn main() -> Result<(), Box<dyn Error>> {
     for step in steps.skip(500) {
         resumed.follow(&step)?;
     }
+    Ok([simulation.state, resumed.state])
+}
 
-    println!("without a break: {} K", simulation.outputs().peak_temperature);
-    println!("resumed:         {} K", resumed.outputs().peak_temperature);
-    assert_eq!(simulation.state, resumed.state);
+fn main() -> Result<(), Box<dyn Error>> {
+    let [whole, resumed] = both_ways()?;
+    println!("without a break: {} J of friction", whole.outputs.friction_energy);
+    println!("resumed:         {} J of friction", resumed.outputs.friction_energy);
+    assert_eq!(whole, resumed);
     Ok(())
 }

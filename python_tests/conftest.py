@@ -13,6 +13,11 @@ from fmpy.fmi2 import FMU2Slave, fmi2CallbackFunctions, fmi2CallbackLoggerTYPE
 REPOSITORY = Path(__file__).resolve().parent.parent
 # The Python package as it is here, for every test.
 sys.path.insert(0, str(REPOSITORY / "python"))
+# And the modules of the studies, as `python studies NAME` finds them.
+sys.path.insert(0, str(REPOSITORY / "studies"))
+import folders  # noqa: E402
+
+sys.path[:0] = folders.folders()
 
 
 def built(path):

@@ -1,21 +1,15 @@
-"""examples/adhesion.py: a locomotive at the adhesion limit. Its books close, the search finds the top of the curve.
+"""studies/adhesion: a locomotive at the adhesion limit. Its books close, the search finds the top of the curve.
 
 With the line in place of the patch, which is several times as fast and pulls within 2 % as much.
 """
 
-import sys
 from functools import cache
-from pathlib import Path
 
+import adhesion_runs as model
+import locomotive
 import numpy as np
 import pytest
-
-REPOSITORY = Path(__file__).resolve().parent.parent
-sys.path.insert(0, str(REPOSITORY / "examples"))
-
-import adhesion_runs as model  # noqa: E402
-import locomotive  # noqa: E402
-from adhesion_runs import AS_IT_IS, COLD, CONSTANT, NOISY, creepage, during, effort  # noqa: E402
+from adhesion_runs import AS_IT_IS, COLD, CONSTANT, NOISY, creepage, during, effort
 
 WIDTH = 0.02  # m
 LINE = {"contact_model": 1, "contact_width": WIDTH}

@@ -1,20 +1,15 @@
-"""examples/hunting.py: a wheelset on two patches settles below the linear model's critical speed, and hunts above."""
+"""studies/hunting: a wheelset on two patches settles below the linear model's critical speed, and hunts above."""
 
 import re
-import sys
 from itertools import pairwise
 from pathlib import Path
 
+import hunting_runs as hunting
+import kalker
 import numpy as np
 import pytest
-
-REPOSITORY = Path(__file__).resolve().parent.parent
-sys.path.insert(0, str(REPOSITORY / "examples"))
-
-import hunting_runs as hunting  # noqa: E402
-import kalker  # noqa: E402
-import running_wheelset  # noqa: E402
-from running_wheelset import (  # noqa: E402
+import running_wheelset
+from running_wheelset import (
     CLEARANCE,
     LOAD,
     SIDES,
@@ -25,6 +20,8 @@ from running_wheelset import (  # noqa: E402
     motion_slopes,
     running,
 )
+
+REPOSITORY = Path(__file__).resolve().parent.parent
 
 
 @pytest.fixture(scope="module")
@@ -86,7 +83,7 @@ def test_load_on_the_cones():
 
 
 def test_table_is_that_of_the_verification():
-    """The two rows of examples/kalker.py are those of src/verification/kalker.rs, which has them from b/a = 0.1 on."""
+    """The two rows of kalker.py are those of src/verification/kalker.rs, which has them from b/a = 0.1 on."""
     text = (REPOSITORY / "src" / "verification" / "kalker.rs").read_text()
     numbers = [float(number) for number in re.findall(r"\d+\.\d+", text.split("const LONG")[1].split("];")[0])]
     for ratio, rows in kalker.TABLE.items():

@@ -1,17 +1,10 @@
-"""examples/longitudinal.py: two FMUs in three masters. The masters agree, and the energy balance closes."""
+"""studies/longitudinal: two FMUs in three masters. The masters agree, and the energy balance closes."""
 
-import sys
-from pathlib import Path
-
+import longitudinal as model
 import numpy as np
 import pytest
+import stiff
 from test_hosts import has_tbb
-
-REPOSITORY = Path(__file__).resolve().parent.parent
-sys.path.insert(0, str(REPOSITORY / "examples"))
-
-import longitudinal as model  # noqa: E402
-import stiff  # noqa: E402
 
 needs_tbb = pytest.mark.skipif(not has_tbb(), reason="no libtbb.so.12 (Debian: libtbb12), see tools/hosts.py")
 
@@ -65,7 +58,7 @@ def test_energy_missing_shrinks_with_the_step(books):
 def test_bulge_wear_and_spring_are_what_is_left():
     """Without thermal expansion and wear only what the contact's spring holds is left, T²/2k in each wheel: to 1 %.
 
-    The spring is that of examples/stiff.py at 60 kN; from the wheelset's load it differs by 0.3 %.
+    The spring is that of studies/stiff at 60 kN; from the wheelset's load it differs by 0.3 %.
     """
     contact = {"thermal_expansion": 0.0, "wear_coefficient": 0.0}
     result = model.in_fmpy(model.STEPS[-1], model.SHORT_STOP, contact=contact, wheelset=model.SHORT)

@@ -1,23 +1,20 @@
-"""examples/maintenance.py: wear of a wheel, spread of a line by hand; a killed job goes on and gives the same bits."""
+"""studies/maintenance: wear of a wheel, spread of a line by hand; a killed job goes on and gives the same bits."""
 
+import os
 import subprocess
 import sys
-from pathlib import Path
 
+import braking_line
+import folders
+import maintenance
 import numpy as np
 import pytest
+from braking_line import AMBIENT, AS_IT_IS, CONTACT, CONTACT_WIDTH, FACTORS, WEAR_COEFFICIENT, drawn
+from dask_runs import read_component
+from helpers import FMU, WHEEL_RADIUS, Instance
+from maintenance_results import line_variance, trains_to_limit
 from scipy.integrate import quad
 from scipy.special import ndtri
-
-REPOSITORY = Path(__file__).resolve().parent.parent
-sys.path.insert(0, str(REPOSITORY / "examples"))
-
-import braking_line  # noqa: E402
-import maintenance  # noqa: E402
-from braking_line import AMBIENT, AS_IT_IS, CONTACT, CONTACT_WIDTH, FACTORS, WEAR_COEFFICIENT, drawn  # noqa: E402
-from dask_runs import read_component  # noqa: E402
-from helpers import FMU, WHEEL_RADIUS, Instance  # noqa: E402
-from maintenance_results import line_variance, trains_to_limit  # noqa: E402
 
 TRAINS = 40
 KEYS = [(scenario, number, "") for scenario in ("as it is", "vehicles 20 % heavier") for number in range(4)]
@@ -25,9 +22,9 @@ KEYS += [("weather anew for each train", 0, ""), ("weather anew for each train",
 # The same lines, short, in a process of its own, which goes on after each part when it is told to: it can be killed
 # half-way.
 PROGRAM = """
-import sys
+import os, sys
 from pathlib import Path
-sys.path.insert(0, sys.argv[1])
+sys.path[:0] = sys.argv[1].split(os.pathsep)
 import dask_runs, maintenance
 write = maintenance.write_part
 def waiting(*arguments):
@@ -227,14 +224,14 @@ def test_trains_to_limit():
 def test_killed_job_goes_on(tmp_path, killed_half_way):
     """Killed after some lines, it computes only the others; together they are the bits computed without Dask."""
     folder = tmp_path / "lines"
-    examples = str(REPOSITORY / "examples")
+    modules = os.pathsep.join(folders.folders())
     program = tmp_path / "program.py"
     program.write_text(PROGRAM)
-    killed_half_way([sys.executable, program, examples, folder])
+    killed_half_way([sys.executable, program, modules, folder])
     before = {path.name: path.stat().st_mtime_ns for path in folder.glob("*.parquet")}
     assert len(before) == 4
 
-    command = [sys.executable, program, examples, folder]
+    command = [sys.executable, program, modules, folder]
     done = subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=900)
     assert done.returncode == 0, done.stderr
     assert int(done.stdout.split("computed")[1]) == len(KEYS) - len(before)

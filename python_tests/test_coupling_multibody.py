@@ -1,15 +1,8 @@
-"""examples/multibody.py: a braked bogie in Exudyn. Momentum, load transfer and slip are those of mechanics."""
+"""studies/multibody: a braked bogie in Exudyn. Momentum, load transfer and slip are those of mechanics."""
 
-import sys
-from pathlib import Path
-
+import multibody
 import numpy as np
 import pytest
-
-REPOSITORY = Path(__file__).resolve().parent.parent
-sys.path.insert(0, str(REPOSITORY / "examples"))
-
-import multibody  # noqa: E402
 
 JOINT = 16.0  # m
 BRAKE_START, BRAKE_RAMP = 0.05, 0.1  # s

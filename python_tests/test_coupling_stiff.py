@@ -1,4 +1,4 @@
-"""examples/stiff.py: how long the explicit master's steps may be; the implicit ones beyond that, and through a stop."""
+"""studies/stiff: how long the explicit master's steps may be; the implicit ones beyond that, and through a stop."""
 
 import re
 import sys
@@ -6,12 +6,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import stiff
 
 REPOSITORY = Path(__file__).resolve().parent.parent
-sys.path.insert(0, str(REPOSITORY / "examples"))
 sys.path.insert(0, str(REPOSITORY / "tools"))
 
-import stiff  # noqa: E402
 import update_docs  # noqa: E402
 
 

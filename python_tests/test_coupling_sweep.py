@@ -1,28 +1,25 @@
-"""examples/sweep.py: creep curves that fall with temperature; a killed sweep goes on and gives the same bits."""
+"""studies/sweep: creep curves that fall with temperature; a killed sweep goes on and gives the same bits."""
 
 import hashlib
 import itertools
+import os
 import subprocess
 import sys
-from pathlib import Path
 
+import folders
 import numpy as np
 import pyarrow.parquet as pq
 import pytest
-
-REPOSITORY = Path(__file__).resolve().parent.parent
-sys.path.insert(0, str(REPOSITORY / "examples"))
-
-import sweep  # noqa: E402
+import sweep
 
 CREEPAGES = tuple(float(value) for value in np.geomspace(1e-3, 0.5, 20))
 SMALL = {"laws": ("constant", "piecewise_linear"), "speeds": (5.0, 20.0), "loads": (40e3, 60e3, 80e3)}
 # The same small sweep in a process of its own, which goes on after each part when it is told to: it can be killed
 # half-way.
 PROGRAM = """
-import sys
+import os, sys
 from pathlib import Path
-sys.path.insert(0, sys.argv[1])
+sys.path[:0] = sys.argv[1].split(os.pathsep)
 import sweep
 write = sweep.write_part
 def waiting(*arguments):
@@ -72,15 +69,15 @@ def test_traction_is_within_friction(curves):
 def test_killed_sweep_goes_on(tmp_path, killed_half_way):
     """Killed after some curves, it computes only the others; together they are the bits computed without Dask."""
     broken, whole = tmp_path / "broken", tmp_path / "whole"
-    examples = str(REPOSITORY / "examples")
+    modules = os.pathsep.join(folders.folders())
     program = tmp_path / "program.py"
     program.write_text(PROGRAM)
-    killed_half_way([sys.executable, program, examples, broken])
+    killed_half_way([sys.executable, program, modules, broken])
     before = {path.name: path.stat().st_mtime_ns for path in broken.glob("*.parquet")}
     assert len(before) == 4
 
     def complete(folder):
-        command = [sys.executable, program, examples, folder]
+        command = [sys.executable, program, modules, folder]
         done = subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=900)
         assert done.returncode == 0, done.stderr
         return int(done.stdout.split("computed")[1])

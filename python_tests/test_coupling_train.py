@@ -1,15 +1,8 @@
-"""examples/train.py: eight units chained by the rail. Heat and wear add up from wheel to wheel, and the rail cools."""
-
-import sys
-from pathlib import Path
+"""studies/train: eight units chained by the rail. Heat and wear add up from wheel to wheel, and the rail cools."""
 
 import numpy as np
 import pytest
-
-REPOSITORY = Path(__file__).resolve().parent.parent
-sys.path.insert(0, str(REPOSITORY / "examples"))
-
-import train  # noqa: E402
+import train
 
 STEP = 5e-3  # s
 

@@ -1,8 +1,9 @@
-"""README.md and the documentation say what the component does: their tables are compared, the examples run."""
+"""README.md and the documentation say what the component does: tables are compared, the studies of the demo run."""
 
 import csv
 import html
 import re
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -15,7 +16,7 @@ sys.path.insert(0, str(REPOSITORY / "tools"))
 import update_docs  # noqa: E402
 
 STALE = "run `make docs` and commit what it changes"
-EXAMPLES = ["paper_cases.py", "braking_demo.py", "patch_fields.py"]
+DRAWN = ["paper_cases", "braking_demo", "patch_fields"]
 
 
 def block(path, marker):
@@ -31,33 +32,30 @@ def cells(text):
 
 
 @pytest.fixture(scope="module")
-def examples(fmu, wheelrail, tmp_path_factory):
-    """Run the examples in a copy of their folder; return what each printed, and the folder."""
+def studies(fmu, wheelrail, tmp_path_factory):
+    """Run the studies of the demo in a copy of their folder; return what each printed, and the folder."""
     folder = tmp_path_factory.mktemp("copy")
-    (folder / "examples").mkdir()
     (folder / "target" / "release").mkdir(parents=True)
-    for source in (REPOSITORY / "examples").iterdir():
-        if source.is_file():
-            (folder / "examples" / source.name).write_bytes(source.read_bytes())
-    for linked in ("target/WheelRailContact.fmu", "target/release/wheelrail", "python"):
+    shutil.copytree(REPOSITORY / "studies", folder / "studies")
+    for linked in ("target/WheelRailContact.fmu", "target/release/wheelrail", "python", "examples"):
         (folder / linked).symlink_to(REPOSITORY / linked)
     printed = {}
-    for script in EXAMPLES:
-        command = [sys.executable, folder / "examples" / script]
+    for name in DRAWN:
+        command = [sys.executable, folder / "studies", name]
         done = subprocess.run(command, capture_output=True, text=True)
         assert done.returncode == 0, done.stderr
-        printed[script] = done.stdout
+        printed[name] = done.stdout
     return printed, folder
 
 
-@pytest.mark.parametrize("script", EXAMPLES)
-def test_examples_write_what_they_say(script, examples):
-    """Each example runs on its own, and every file that it names is there and not empty."""
-    printed, folder = examples
-    written = [line.split()[1] for line in printed[script].splitlines() if line.strip().startswith("wrote ")]
+@pytest.mark.parametrize("name", DRAWN)
+def test_studies_write_what_they_say(name, studies):
+    """Each study runs on its own, and every file that it names is there and not empty."""
+    printed, folder = studies
+    written = [line.split()[1] for line in printed[name].splitlines() if line.strip().startswith("wrote ")]
     assert {Path(name).suffix for name in written} == {".csv", ".png"}
-    for name in written:
-        assert (folder / name).stat().st_size > 300, name
+    for path in written:
+        assert (folder / path).stat().st_size > 300, path
 
 
 def test_tables_of_variables():
@@ -76,11 +74,11 @@ def test_tables_list_every_variable(description):
     assert {name for name in names if "solver." not in name} <= listed
 
 
-def test_figures_of_the_paper_cases(examples):
+def test_figures_of_the_paper_cases(studies):
     """The figures of the paper's cases are those of the simulation, to one unit of the last digit."""
-    rows = [line.split("|")[1:-1] for line in block(update_docs.INDEX, "examples/paper_cases.py").splitlines()[2:]]
+    rows = [line.split("|")[1:-1] for line in block(update_docs.INDEX, "studies/paper_cases").splitlines()[2:]]
     shown = {row[0].strip(): [re.search(r"[\d.]+", cell)[0] for cell in row[1:]] for row in rows}
-    with (examples[1] / "results" / "paper_cases.csv").open(newline="") as file:
+    with (studies[1] / "results" / "paper_cases.csv").open(newline="") as file:
         simulated = {row["case"]: row for row in csv.DictReader(file)}
     assert set(shown) == set(simulated)
     for case, row in simulated.items():
@@ -100,7 +98,7 @@ def test_accuracy_of_the_patch():
         pytest.skip("`make demo` writes results/patch_accuracy.csv")
     shown, fresh = (
         [[cell.strip() for cell in row.split("|")[1:-1]] for row in text.strip().splitlines()[2:]]
-        for text in (block(update_docs.PATCH, "examples/patch_creep_curves.py"), update_docs.patch_accuracy_markdown())
+        for text in (block(update_docs.PATCH, "studies/patch_creep_curves"), update_docs.patch_accuracy_markdown())
     )
     assert [row[:3] for row in shown] == [row[:3] for row in fresh], STALE
     for one, other in zip(shown, fresh, strict=True):
@@ -133,7 +131,7 @@ def test_links_of_readme():
 def test_named_files():
     """Every file of the repository and every Rust test that the documents name is there."""
     documents = [REPOSITORY / "README.md", REPOSITORY / "CONTRIBUTING.md", REPOSITORY / "CHANGELOG.md"]
-    folders = "src|tests|python_tests|tools|examples|benches|fuzz|docs|modelDescription"
+    folders = "src|tests|python_tests|tools|examples|studies|benches|fuzz|docs|modelDescription"
     rust = {path.stem for path in (REPOSITORY / "tests").rglob("*.rs")}
     rust |= {path.stem for path in (REPOSITORY / "src").rglob("*.rs")}
     missing = []

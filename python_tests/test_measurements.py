@@ -1,20 +1,16 @@
-"""examples/eurosprinter.py, examples/twin_disc.py: fits to measurements, and what docs/measurements.md says of them."""
+"""studies/eurosprinter, studies/twin_disc: fits to measurements, and what docs/measurements.md says of them."""
 
 import re
-import sys
 import tomllib
 from pathlib import Path
 
+import eurosprinter
+import fitting
 import numpy as np
 import pytest
+import twin_disc
 
 REPOSITORY = Path(__file__).resolve().parent.parent
-sys.path.insert(0, str(REPOSITORY / "examples"))
-
-import eurosprinter  # noqa: E402
-import fitting  # noqa: E402
-import twin_disc  # noqa: E402
-
 PAGE = (REPOSITORY / "docs" / "measurements.md").read_text()
 STALE = "run `make measurements-docs` and commit what it changes"
 

@@ -24,7 +24,7 @@ PICTURE = "docs/braking.png"
 STALE = f"{PICTURE} is not what README's lines draw: run `make docs` and commit what it changes"
 UNKNOWN = "README shows a command that no test runs"
 BLOCK = re.compile(r"^```(\w*)\n(.*?)^```", re.MULTILINE | re.DOTALL)
-# Of the clone, what a stranger's commands read; examples are copied, as they write beside themselves.
+# Of the clone, what a stranger's commands read; examples and studies are copied, as they write beside themselves.
 LINKED = ("Cargo.toml", "Cargo.lock", "benches", "modelDescription", "presets", "python", "src", "tests")
 
 # The stand-ins for what compiles: what `make` is asked for is made by this test, with the same commands.
@@ -34,7 +34,7 @@ make() {
     case $target in
       wheel) mkdir dist; cp "$BUILT_WHEEL" dist/ ;;
       command) cp "$BUILT/release/wheelrail" target/release/ ;;
-      demo) cp "$BUILT/WheelRailContact.fmu" target/; "$TESTING" examples/braking_demo.py
+      demo) cp "$BUILT/WheelRailContact.fmu" target/; "$TESTING" studies braking_demo
             cp target/WheelRailContact.fmu results/ ;;
       *) echo "UNKNOWN: make $target"; exit 1 ;;
     esac
@@ -79,7 +79,8 @@ def clone(fmu, wheelrail, tmp_path_factory):
     """Return a folder that has of a fresh clone what README's commands read, nothing built."""
     folder = tmp_path_factory.mktemp("stranger") / "wheelrail"
     (folder / "target" / "release").mkdir(parents=True)
-    shutil.copytree(REPOSITORY / "examples", folder / "examples")
+    for name in ("examples", "studies"):
+        shutil.copytree(REPOSITORY / name, folder / name)
     for name in LINKED:
         (folder / name).symlink_to(REPOSITORY / name)
     return folder

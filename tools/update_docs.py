@@ -1,8 +1,8 @@
 """Write the generated parts of README.md and of the documentation, between their markers (`make docs`).
 
 - the tables of variables, from `wheelrail describe`: all of them, and for README those to begin with;
-- the figures of the paper's cases, from results/paper_cases.csv, which examples/paper_cases.py writes;
-- the accuracy of the patch, from results/patch_accuracy.csv, which examples/patch_creep_curves.py writes;
+- the figures of the paper's cases, from results/paper_cases.csv, which studies/paper_cases writes;
+- the accuracy of the patch, from results/patch_accuracy.csv, which studies/patch_creep_curves writes;
 - the figures of the verification, from target/verification.txt, which `make verify` writes.
 
 With the argument `couplings` (`make couplings-docs`) the tables of the pages in docs/couplings/, with `measurements`
@@ -196,8 +196,8 @@ def main():
         return
     write(README, {"first variables": first_variables_markdown()})
     write(VARIABLES, {"wheelrail describe": variables_markdown()})
-    write(INDEX, {"examples/paper_cases.py": paper_cases_markdown()})
-    write(PATCH, {"examples/patch_creep_curves.py": patch_accuracy_markdown()})
+    write(INDEX, {"studies/paper_cases": paper_cases_markdown()})
+    write(PATCH, {"studies/patch_creep_curves": patch_accuracy_markdown()})
     write(PAGE, {"wheelrail describe": variables_html(), "wheelrail verify": verification_html()})
 
 

@@ -3,7 +3,7 @@
 
 use super::engine::{Along, Direction, Engine, Linearised};
 use super::interface::Interface;
-use super::rim::{self, ContactHeat};
+use super::rail_and_rim;
 use crate::error::{Error, Result};
 use crate::numerics::dense;
 use crate::numerics::gmres::Gmres;
@@ -157,32 +157,13 @@ fn sweep_tangent<E: Engine>(
     }
     if at.problem.conditions.duration > 0.0 {
         E::march_tangent(at, &along, change)?;
-        wheel_tangent(at, direction, change);
+        rail_and_rim::wheel_tangent(at, direction, change);
     } else {
         E::set_wheel_temperature(change, direction.inputs.ambient_temperature);
     }
     // Reading is linear: a change is read as the fields are.
     E::read(at.problem, change, at.solvers, image);
     Ok(())
-}
-
-/// Sets the change of the rim's temperature.
-fn wheel_tangent<E: Engine>(at: &Linearised<E>, direction: &Direction, change: &mut E::Fields) {
-    let (problem, fields) = (at.problem, &*at.fields);
-    let (parameters, force) = (problem.parameters, problem.unit_force());
-    let nodes = || E::heated_nodes(problem, fields, fields);
-    let heat = ContactHeat::new(parameters, force, nodes());
-    let heat_tangent = ContactHeat::tangent(parameters, force, nodes().zip(E::heated_nodes(problem, fields, change)));
-    let ambient = problem.conditions.inputs.ambient_temperature;
-    let temperature = rim::temperature_tangent(
-        parameters,
-        E::wheel_temperature(fields),
-        (ambient, direction.inputs.ambient_temperature),
-        problem.conditions.duration,
-        &heat,
-        &heat_tangent,
-    );
-    E::set_wheel_temperature(change, temperature);
 }
 
 /// |x|.

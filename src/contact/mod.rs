@@ -7,6 +7,7 @@
 
 pub mod convergence;
 pub mod engine;
+mod equations;
 pub mod fields;
 pub mod integrals;
 pub mod interface;
@@ -18,6 +19,7 @@ pub mod outputs;
 pub mod patch;
 pub mod problem;
 pub mod profiles;
+mod rail_and_rim;
 pub mod rim;
 pub mod sensitivity;
 pub mod step;

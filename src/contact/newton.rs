@@ -8,7 +8,7 @@ use super::engine::{Engine, Linearised};
 use super::interface::Interface;
 use super::linear::LinearSystem;
 use super::problem::Problem;
-use super::step;
+use super::rail_and_rim;
 use crate::error::Result;
 use crate::mechanics::sweep::Sweep;
 use crate::settings::Settings;
@@ -88,7 +88,7 @@ impl<E: Engine> Sweeps<'_, E> {
         let rise = problem.wheel_rise(self.iterate.wheel_temperature());
         problem.operators.set_surface_temperature(self.iterate, self.now);
         E::march_heat(problem, self.before, rise, self.now, self.solvers)?;
-        step::warm_wheel(problem, self.before, self.now);
+        rail_and_rim::warm_wheel(problem, self.before, self.now);
         E::read(problem, self.now, self.solvers, self.image);
         E::map_displacement(problem, self.now, self.solvers, self.image);
         Ok(distance(self.iterate, self.image))

@@ -1,12 +1,8 @@
 //! One implicit step as a problem: what a contact has computed once, the parameters, the limits of the methods, the conditions of
 //! the step.
 
-use super::engine::Engine;
 use crate::friction::FrictionState;
-use crate::friction::path::{PathLaw, PathStep};
-use crate::mechanics::normal::problem::Constraint;
-use crate::mechanics::transient::Transient;
-use crate::parameters::{Control, Parameters, WheelHeating};
+use crate::parameters::{Parameters, WheelHeating};
 use crate::settings::Settings;
 use crate::signals::{Inputs, Motion};
 use serde::{Deserialize, Serialize};
@@ -65,7 +61,7 @@ impl<E> Clone for Problem<'_, E> {
 
 impl<E> Copy for Problem<'_, E> {}
 
-impl<'a, E: Engine> Problem<'a, E> {
+impl<'a, E> Problem<'a, E> {
     /// Problem of a task for the given operators.
     pub fn new(operators: &'a E, task: &Task<'a>) -> Problem<'a, E> {
         Problem {
@@ -97,50 +93,6 @@ impl<'a, E: Engine> Problem<'a, E> {
         }
     }
 
-    /// Law by which friction depends on slip and on what a particle has met before; none where it does not.
-    pub fn path_law(&self) -> Option<PathLaw> {
-        let operators = self.operators;
-        PathLaw::new(
-            self.parameters,
-            &PathStep {
-                duration: self.conditions.duration,
-                spacing: operators.spacing(),
-                speed: self.conditions.motion.rolling_speed,
-                displacement: operators.own_displacement(self.parameters),
-                pressure: operators.pressure_scale(),
-            },
-        )
-    }
-
-    /// Load or penetration, scaled. A load too small to be felt counts as none.
-    pub fn constraint(&self) -> Constraint {
-        match self.parameters.control {
-            Control::Load => {
-                let load = self.conditions.inputs.normal_load;
-                let load = self.settings.mechanics.felt(load, self.parameters.largest_load);
-                Constraint::Total(load / self.unit_force())
-            }
-            Control::Penetration => {
-                Constraint::Penetration(self.parameters.prescribed_penetration / self.operators.displacement_scale())
-            }
-        }
-    }
-
-    /// Whether there is no load to carry.
-    pub fn is_unloaded(&self) -> bool {
-        self.constraint() == Constraint::Total(0.0)
-    }
-
-    /// Force of a scaled traction of 1 on a node, `N`.
-    pub fn unit_force(&self) -> f64 {
-        self.operators.unit_force(self.parameters)
-    }
-
-    /// Load that the pressure of the fields carries, `N`.
-    pub fn load(&self, fields: &E::Fields) -> f64 {
-        self.unit_force() * E::pressure(fields).iter().sum::<f64>()
-    }
-
     /// Whether rail material moves towards −x; V = 0 counts so.
     pub fn is_forward(&self) -> bool {
         self.conditions.motion.rolling_speed >= 0.0
@@ -158,31 +110,5 @@ impl<'a, E: Engine> Problem<'a, E> {
             WheelHeating::Off => 0.0,
             WheelHeating::On => wheel_temperature - self.conditions.inputs.ambient_temperature,
         }
-    }
-
-    /// Wear depth per time at a slip of 1 m/s under a scaled pressure of 1.
-    pub fn wear_per_slip(&self) -> f64 {
-        self.parameters.wear_coefficient * self.operators.pressure_scale()
-    }
-
-    /// ∂u/∂t over the step, for a displacement that is forgotten over `relaxation_length` `m` of rolling.
-    pub fn transient(&self, relaxation_length: f64) -> Transient {
-        Transient::new(
-            self.conditions.duration,
-            self.conditions.motion.rolling_speed.abs(),
-            self.operators.spacing(),
-            relaxation_length,
-            self.operators.displacement_scale(),
-        )
-    }
-
-    /// Change of [`Problem::transient`] per |V|.
-    pub fn transient_per_speed(&self, relaxation_length: f64) -> Transient {
-        self.transient(relaxation_length).tangent(
-            self.conditions.duration,
-            self.conditions.motion.rolling_speed.abs(),
-            self.operators.spacing(),
-            relaxation_length,
-        )
     }
 }

@@ -10,11 +10,10 @@ use super::interface::Interface;
 use super::memory;
 use super::newton::{self, Newton, Sweeps};
 use super::problem::{Convergence, Problem};
-use super::rim::{self, ContactHeat};
+use super::rail_and_rim;
 use crate::error::{Error, Result};
 use crate::mechanics::sweep::Sweep;
 use crate::numerics::anderson::Anderson;
-use crate::parameters::WheelHeating;
 use crate::settings::Settings;
 
 /// Solvers and buffers of a step and of its derivatives. What a step leaves in them changes no result of another one.
@@ -90,7 +89,7 @@ pub fn solve<E: Engine>(
     for iterations in 1..=settings.iterations {
         let sweep = E::solve_mechanics(problem, iterate, now, solvers, test.mechanics_tolerance())?;
         E::march_wear(problem, before, now, solvers);
-        march_heat(problem, before, iterate, now, solvers)?;
+        rail_and_rim::march_heat(problem, before, iterate, now, solvers)?;
         // Newton's method has solved the step for the wear compliance that there is.
         if newton_sweeps == 0 {
             E::update_wear_compliance(problem, now, solvers);
@@ -147,7 +146,7 @@ fn finish<E: Engine>(
     memory::end(problem, now);
     E::close_displacement(problem, interface, now, solvers);
     E::finalise(problem, before, now, solvers)?;
-    warm_wheel(problem, before, now);
+    rail_and_rim::warm_wheel(problem, before, now);
     Ok(Convergence {
         iterations,
         residual: test.change(),
@@ -183,53 +182,6 @@ pub fn initial_state<E: Engine>(problem: &Problem<E>, workspace: &mut Workspace<
         residual: sweep.shear_change,
         tolerance,
     })
-}
-
-/// Marches heat (19), (23) together with the rim's temperature: what the rail gives to the wheel and what the wheel takes is the
-/// same heat. With a cold wheel this is one march.
-fn march_heat<E: Engine>(
-    problem: &Problem<E>,
-    before: &E::Fields,
-    interface: &Interface,
-    now: &mut E::Fields,
-    solvers: &mut E::Solvers,
-) -> Result<()> {
-    let heating = problem.parameters.wheel_heating;
-    let guess = match heating {
-        WheelHeating::Off => problem.conditions.inputs.ambient_temperature,
-        WheelHeating::On => interface.wheel_temperature(),
-    };
-    let mut wheel = rim::FixedPoint::new(guess, problem.settings.heat);
-    problem.operators.set_surface_temperature(interface, now);
-    loop {
-        E::march_heat(problem, before, problem.wheel_rise(wheel.temperature()), now, solvers)?;
-        // The wheel takes the friction power at the temperature of this march, not at that of the mechanics: so the heat balance
-        // closes to round-off, whatever the tolerance of this iteration.
-        if heating == WheelHeating::On {
-            E::close_friction(problem, now, solvers);
-        }
-        warm_wheel(problem, before, now);
-        if wheel.converges(E::wheel_temperature(now))? {
-            return Ok(());
-        }
-    }
-}
-
-/// Sets the rim's temperature to that under the heat that the contact gives to it.
-pub(super) fn warm_wheel<E: Engine>(problem: &Problem<E>, before: &E::Fields, now: &mut E::Fields) {
-    let heat = ContactHeat::new(
-        problem.parameters,
-        problem.unit_force(),
-        E::heated_nodes(problem, now, now),
-    );
-    let temperature = rim::temperature(
-        problem.parameters,
-        E::wheel_temperature(before),
-        problem.conditions.inputs.ambient_temperature,
-        problem.conditions.duration,
-        &heat,
-    );
-    E::set_wheel_temperature(now, temperature);
 }
 
 /// Whether the contact is held within its window. Under a load that the window was made for it may be: a wheel that spins on the

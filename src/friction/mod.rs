@@ -1,6 +1,8 @@
 //! Friction: the laws of the coefficient μ(θ) here, with slip and memory in [`path`] and [`memory`], a layer that flows in [`layer`], Coulomb's law in [`coulomb`].
 
 pub mod coulomb;
+#[cfg(test)]
+pub mod duals;
 pub mod layer;
 pub mod memory;
 mod node;

@@ -369,4 +369,6 @@ impl PathLaw {
 }
 
 #[cfg(test)]
+mod duals;
+#[cfg(test)]
 mod tests;

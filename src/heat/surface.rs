@@ -207,11 +207,13 @@ impl SurfaceCondition<'_> {
 }
 
 #[cfg(test)]
+mod duals;
+#[cfg(test)]
 mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    fn condition(parameters: &Parameters) -> SurfaceCondition<'_> {
+    pub fn condition(parameters: &Parameters) -> SurfaceCondition<'_> {
         SurfaceCondition {
             friction: FrictionState {
                 parameters,
@@ -254,61 +256,6 @@ mod tests {
             let expected = 0.5 * (power - debris - conducted);
             let size = 0.5 * (power + debris.abs() + (rise.abs() + wheel_rise.abs()) * pressure / parameters.contact_thermal_resistance);
             prop_assert!((flux - expected).abs() <= 1e-10 * size, "{flux} {expected}");
-        }
-
-        #[test]
-        fn the_tangent_is_the_derivative_of_the_flux(
-            pressure in 1e7..1e9,
-            speed in 1e-3..1.0,
-            power in 1e-3..1.0,
-            wheel_rise in -20.0..200.0,
-            unheated in 40.0..80.0,
-            changes in prop::array::uniform8(-1.0..1.0_f64),
-        ) {
-            let parameters = parameters(100.0);
-            let response = 1e-7;
-            let [dp, ds, dq, dw, du, ambient, friction_scale, coefficient] = changes;
-            let law = |h: f64| PointLaw { base: 0.05 + h * coefficient, share: 0.8, cap: 0.0 };
-            let sliding = Sliding { speed, power };
-            let change = ExchangeChange {
-                pressure: 1e7 * dp,
-                sliding: Sliding { speed: 1e-2 * ds, power: 1e-2 * dq },
-                wheel_rise: dw,
-                coefficient,
-            };
-            let common = CommonChange { ambient, friction_scale };
-            let at = |h: f64| {
-                let mut condition = condition(&parameters);
-                condition.friction.ambient += h * ambient;
-                condition.friction.scale += h * friction_scale;
-                let mut exchange = SurfaceExchange::new(
-                    &parameters,
-                    pressure + h * change.pressure,
-                    Sliding {
-                        speed: speed + h * change.sliding.speed,
-                        power: power + h * change.sliding.power,
-                    },
-                    wheel_rise + h * change.wheel_rise,
-                );
-                exchange.law = law(h);
-                let rise = SurfaceRise { unheated: unheated + h * du, response };
-                let flux = condition.flux(&exchange, rise, f64::INFINITY, 0.0).unwrap();
-                let rise = unheated + h * du + response * flux;
-                (flux, friction::coefficient(&parameters, condition.friction.ambient + rise).1)
-            };
-            let h = 1e-5;
-            let (here, ahead, behind) = (at(0.0), at(h), at(-h));
-            // Not across a corner of the friction law.
-            prop_assume!(ahead.1 == behind.1);
-            let mut exchange = SurfaceExchange::new(&parameters, pressure, sliding, wheel_rise);
-            exchange.law = law(0.0);
-            let tangent = SurfaceExchange::tangent(&parameters, pressure, sliding, wheel_rise, &change);
-            let rise = unheated + response * here.0;
-            let change = SurfaceRise { unheated: du, response };
-            let exact = condition(&parameters).flux_tangent(&exchange, &tangent, &common, rise, change);
-            let difference = (ahead.0 - behind.0) / (2.0 * h);
-            // Truncation h², round-off of the flux over h.
-            prop_assert!((exact - difference).abs() <= 1e-5 * exact.abs() + 1e-9 / h * here.0.abs().max(1e4), "{exact} {difference}");
         }
     }
 

@@ -205,11 +205,13 @@ impl Front {
 }
 
 #[cfg(test)]
+mod duals;
+#[cfg(test)]
 mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    const FRONT: Front = Front {
+    pub const FRONT: Front = Front {
         near_field: NearField {
             direct: 0.04,
             coupling: 0.012,
@@ -220,46 +222,7 @@ mod tests {
         strain_speed: 20.0,
     };
 
-    fn moved(edge: &Edge, h: f64, change: &Edge) -> Edge {
-        Edge {
-            pressure: std::array::from_fn(|k| edge.pressure[k] + h * change.pressure[k]),
-            shear: std::array::from_fn(|k| edge.shear[k] + h * change.shear[k]),
-            friction: edge.friction + h * change.friction,
-            gap: edge.gap + h * change.gap,
-        }
-    }
-
     proptest! {
-        #[test]
-        fn the_partial_derivatives_are_those_of_the_slip(
-            pressure in prop::array::uniform3(0.05..0.5_f64),
-            ratio in prop::array::uniform3(-0.25..0.25_f64),
-            gap in 1e-4..0.05_f64,
-            change in prop::array::uniform8(-1.0..1.0_f64),
-            forward in any::<bool>(),
-            soft_rail in any::<bool>(),
-        ) {
-            let mut front = Front { forward, ..FRONT };
-            if !soft_rail {
-                front.near_field.coupling *= -1.0;
-            }
-            let edge = Edge {
-                pressure,
-                shear: std::array::from_fn(|k| ratio[k] * pressure[k]),
-                friction: 0.3,
-                gap,
-            };
-            let [a, b, c, d, e, f, friction, gap] = change;
-            let change = Edge { pressure: [a, b, c], shear: [d, e, f], friction, gap };
-            let h = 1e-7;
-            let [ahead, behind] = [h, -h].map(|h| front.added(&moved(&edge, h, &change)));
-            for (row, added) in front.added(&edge).iter().enumerate() {
-                let difference = (ahead[row].slip - behind[row].slip) / (2.0 * h);
-                let tangent = added.change(&change);
-                prop_assert!((difference - tangent).abs() < 1e-5 * (1.0 + tangent.abs()), "{row}: {difference} {tangent}");
-            }
-        }
-
         /// Nothing jumps where the node ahead comes under pressure: it is then the leading one, without pressure yet.
         #[test]
         fn a_node_that_joins_changes_nothing(pressure in prop::array::uniform3(0.1..0.5_f64), ratio in -0.3..0.28_f64) {

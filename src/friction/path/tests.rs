@@ -1,17 +1,16 @@
-//! The law on a window with two contacts: against itself node by node, its derivatives against differences.
+//! The law on a window with two contacts: against itself node by node, in its limits. Its derivatives are in [`super::duals`].
 
 use super::super::memory::Brought;
 use super::*;
-use proptest::prelude::*;
 
-const NODES: usize = 11;
+pub const NODES: usize = 11;
 /// Two contacts, the second entered by what has left the first.
-const TOUCHES: [bool; NODES] = [false, true, true, true, false, false, true, true, true, true, false];
-const SPACING: f64 = 2e-4;
+pub const TOUCHES: [bool; NODES] = [false, true, true, true, false, false, true, true, true, true, false];
+pub const SPACING: f64 = 2e-4;
 /// Scale of pressures, `Pa`.
-const PRESSURE: f64 = 1e9;
+pub const PRESSURE: f64 = 1e9;
 
-fn parameters(distance: f64) -> Parameters {
+pub fn parameters(distance: f64) -> Parameters {
     Parameters {
         friction_slip_share: 0.4,
         friction_slip_decay: 0.7,
@@ -20,7 +19,7 @@ fn parameters(distance: f64) -> Parameters {
     }
 }
 
-fn step(duration: f64, speed: f64) -> PathStep {
+pub fn step(duration: f64, speed: f64) -> PathStep {
     PathStep {
         duration,
         spacing: SPACING,
@@ -35,7 +34,7 @@ fn values(of: impl Fn(usize) -> f64) -> Vec<f64> {
 }
 
 /// A memory without regularity.
-fn before() -> Brought {
+pub fn before() -> Brought {
     Brought {
         friction: values(|i| 0.3 + 0.05 * (1.7 * i as f64).sin()),
         speed: values(|i| {
@@ -57,7 +56,7 @@ fn before() -> Brought {
 }
 
 /// Parameters with a layer that yields at some 60 % of the surfaces' bound.
-fn with_layer(parameters: Parameters) -> Parameters {
+pub fn with_layer(parameters: Parameters) -> Parameters {
     Parameters {
         layer_yield_stress: 0.08 * PRESSURE,
         layer_hardening: 2e4 * PRESSURE,
@@ -65,7 +64,7 @@ fn with_layer(parameters: Parameters) -> Parameters {
     }
 }
 
-fn pressure() -> Vec<f64> {
+pub fn pressure() -> Vec<f64> {
     values(|i| {
         if TOUCHES[i] {
             0.4 + 0.2 * (1.9 * i as f64).sin()
@@ -77,7 +76,7 @@ fn pressure() -> Vec<f64> {
 
 /// Solution at these μ(θ), slip velocities and pressures, from the law of the nodes in contact and then the others:
 /// their coefficients, and the history that they leave.
-fn solve(law: &PathLaw, resting: &[f64], speed: &[f64], pressure: &[f64]) -> (Vec<f64>, Brought) {
+pub fn solve(law: &PathLaw, resting: &[f64], speed: &[f64], pressure: &[f64]) -> (Vec<f64>, Brought) {
     let brought = before();
     let path = brought.path(0..NODES);
     let mut coefficient = vec![0.0; NODES];
@@ -103,7 +102,7 @@ fn solve(law: &PathLaw, resting: &[f64], speed: &[f64], pressure: &[f64]) -> (Ve
     (coefficient, now)
 }
 
-fn speeds() -> Vec<f64> {
+pub fn speeds() -> Vec<f64> {
     // Some above s₀ and some below.
     values(|i| match i % 4 {
         _ if !TOUCHES[i] => 0.0,
@@ -112,65 +111,8 @@ fn speeds() -> Vec<f64> {
     })
 }
 
-fn resting() -> Vec<f64> {
+pub fn resting() -> Vec<f64> {
     values(|i| 0.4 - 0.01 * i as f64)
-}
-
-proptest! {
-    /// Tangent with speed, μ(θ) and pressure of all nodes at once, over parts of a cell and over many, along and
-    /// against x₁, at any d_c, with a layer that flows and without.
-    #[test]
-    fn the_tangent_is_the_derivative(
-        cells in prop_oneof![0.05..0.9_f64, 1.1..20.0_f64, Just(f64::INFINITY)],
-        log_distance in -7.5..-4.5,
-        forward in any::<bool>(),
-        speed_change in -1.0..1.0_f64,
-        change in prop::collection::vec(-0.1..0.1_f64, NODES),
-        slips in prop::collection::vec(-1e-3..1e-3_f64, NODES),
-        pressures in prop::collection::vec(-0.1..0.1_f64, NODES),
-        layer in any::<bool>(),
-        part in 0.0..1.0_f64,
-    ) {
-        let parameters = parameters(10.0_f64.powf(log_distance));
-        let parameters = if layer { with_layer(parameters) } else { parameters };
-        let sign = if forward { 1.0 } else { -1.0 };
-        let speed = 10.0;
-        let duration = cells * SPACING / speed;
-        let at = |h: f64| {
-            let law = PathLaw::new(&parameters, &step(duration, sign * (speed + h * speed_change))).unwrap();
-            let resting = values(|i| resting()[i] + h * change[i]);
-            let speeds = values(|i| if TOUCHES[i] { speeds()[i] + h * slips[i] } else { 0.0 });
-            let pressure = values(|i| if TOUCHES[i] { pressure()[i] + h * pressures[i] } else { 0.0 });
-            solve(&law, &resting, &speeds, &pressure)
-        };
-        let h = 1e-5;
-        let ((_, now), (ahead, _), (behind, _)) = (at(0.0), at(h), at(-h));
-        let law = PathLaw::new(&parameters, &step(duration, sign * speed)).unwrap();
-        let brought = before();
-        let mut tangent = vec![0.0; NODES];
-        law.tangent(
-            (&brought.path(0..NODES), &now.path(0..NODES)),
-            (&pressure(), |node| part * pressures[node]),
-            (speed_change, &change),
-            &mut tangent,
-        );
-        // The part of the slip and the rest of the pressure's, in the order of the particles.
-        let (mut last, mut last_change) = (Passed::default(), Passed::default());
-        let (path, mut by_slip) = (brought.path(0..NODES), vec![0.0; NODES]);
-        law.prepare(&path, &resting(), |node| TOUCHES[node], |node, own| {
-            let found = law.friction(&own, &last, now.speed[node], pressure()[node]);
-            let pressed = (1.0 - part) * pressures[node];
-            let (linked, passed) = found.change(&last_change, slips[node], pressed);
-            by_slip[node] = linked + found.by_speed() * slips[node] + found.by_pressure() * pressed;
-            (last, last_change) = (found.passed(now.speed[node]), passed);
-        });
-        for node in (0..NODES).filter(|&node| TOUCHES[node]) {
-            let exact = tangent[node] + by_slip[node];
-            let difference = (ahead[node] - behind[node]) / (2.0 * h);
-            // Truncation: h² over the squares of the scales, of which d_c is the shortest.
-            prop_assert!((exact - difference).abs() < 1e-5 * (1.0 + exact.abs()), "{node}: {exact} {difference}");
-        }
-    }
 }
 
 /// The share of μ(θ) is the derivative by it.

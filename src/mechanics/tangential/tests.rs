@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::friction::coulomb::saturation;
-use crate::friction::memory::Path as MemoryPath;
+use crate::friction::memory::ParticlePath as MemoryPath;
 use crate::friction::path::PathStep;
 use crate::mechanics::front::NearField;
 use crate::parameters::Parameters;

@@ -1,0 +1,80 @@
+//! Parts of the equations of a step that all contacts have: the law of friction along a path, load or penetration, ∂u/∂t, wear.
+
+use super::engine::Engine;
+use super::problem::Problem;
+use crate::friction::path::{PathLaw, PathStep};
+use crate::mechanics::normal::problem::Constraint;
+use crate::mechanics::transient::Transient;
+use crate::parameters::Control;
+
+impl<E: Engine> Problem<'_, E> {
+    /// Law by which friction depends on slip and on what a particle has met before; none where it does not.
+    pub fn path_law(&self) -> Option<PathLaw> {
+        let operators = self.operators;
+        PathLaw::new(
+            self.parameters,
+            &PathStep {
+                duration: self.conditions.duration,
+                spacing: operators.spacing(),
+                speed: self.conditions.motion.rolling_speed,
+                displacement: operators.own_displacement(self.parameters),
+                pressure: operators.pressure_scale(),
+            },
+        )
+    }
+
+    /// Load or penetration, scaled. A load too small to be felt counts as none.
+    pub fn constraint(&self) -> Constraint {
+        match self.parameters.control {
+            Control::Load => {
+                let load = self.conditions.inputs.normal_load;
+                let load = self.settings.mechanics.felt(load, self.parameters.largest_load);
+                Constraint::Total(load / self.unit_force())
+            }
+            Control::Penetration => {
+                Constraint::Penetration(self.parameters.prescribed_penetration / self.operators.displacement_scale())
+            }
+        }
+    }
+
+    /// Whether there is no load to carry.
+    pub fn is_unloaded(&self) -> bool {
+        self.constraint() == Constraint::Total(0.0)
+    }
+
+    /// Force of a scaled traction of 1 on a node, `N`.
+    pub fn unit_force(&self) -> f64 {
+        self.operators.unit_force(self.parameters)
+    }
+
+    /// Load that the pressure of the fields carries, `N`.
+    pub fn load(&self, fields: &E::Fields) -> f64 {
+        self.unit_force() * E::pressure(fields).iter().sum::<f64>()
+    }
+
+    /// Wear depth per time at a slip of 1 m/s under a scaled pressure of 1.
+    pub fn wear_per_slip(&self) -> f64 {
+        self.parameters.wear_coefficient * self.operators.pressure_scale()
+    }
+
+    /// ∂u/∂t over the step, for a displacement that is forgotten over `relaxation_length` `m` of rolling.
+    pub fn transient(&self, relaxation_length: f64) -> Transient {
+        Transient::new(
+            self.conditions.duration,
+            self.conditions.motion.rolling_speed.abs(),
+            self.operators.spacing(),
+            relaxation_length,
+            self.operators.displacement_scale(),
+        )
+    }
+
+    /// Change of [`Problem::transient`] per |V|.
+    pub fn transient_per_speed(&self, relaxation_length: f64) -> Transient {
+        self.transient(relaxation_length).tangent(
+            self.conditions.duration,
+            self.conditions.motion.rolling_speed.abs(),
+            self.operators.spacing(),
+            relaxation_length,
+        )
+    }
+}

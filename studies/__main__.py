@@ -1,0 +1,28 @@
+"""Run a study by its name, with its options; without a name, say which there are.
+
+.venv/bin/python studies hunting
+"""
+
+import ast
+import runpy
+import sys
+
+from folders import folders, studies
+
+
+def main():
+    """Run the study that is named."""
+    programs = studies()
+    if len(sys.argv) < 2 or sys.argv[1] not in programs:
+        for name, program in programs.items():
+            print(f"{name:20} {ast.get_docstring(ast.parse(program.read_text())).splitlines()[0]}")
+        sys.exit(0 if len(sys.argv) < 2 else f"there is no study {sys.argv[1]}")
+    # A study sees its own name and options; the processes that it starts take over the path.
+    sys.path[:0] = folders()
+    program = str(programs[sys.argv.pop(1)])
+    sys.argv[0] = program
+    runpy.run_path(program, run_name="__main__")
+
+
+if __name__ == "__main__":
+    main()
