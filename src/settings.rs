@@ -43,8 +43,10 @@ pub struct StepSettings {
     /// difference.
     pub shortest: f64,
     /// Number of times in one step that a sub-step that fails is tried again with a quarter of its length; those after
-    /// it stay below half of it. 8: a 65 000th of the step.
+    /// it stay below half of it. 12: a 16-millionth of the step.
     pub retries: usize,
+    /// Sub-steps at that limit after which it is doubled.
+    pub substeps_at_limit: usize,
 }
 
 /// Convergence of the operator split.
@@ -209,7 +211,8 @@ impl Default for StepSettings {
             first_substep: 0.25,
             ramp_substeps: 50.0,
             shortest: 1e-100,
-            retries: 8,
+            retries: 12,
+            substeps_at_limit: 4,
         }
     }
 }
@@ -509,6 +512,10 @@ pub(crate) mod limits {
 pub struct InterfaceSettings {
     /// Iterations of the fixed point after which Newton's method takes over: a step that contracts is done by then.
     pub fixed_point_iterations: usize,
+    /// Iterations in which |x − G(x)| has not been halved after which it takes over, too.
+    pub idle_iterations: usize,
+    /// Limit of the sweeps of Newton's method, line search included.
+    pub newton_sweeps: usize,
     /// Limit of the Newton steps.
     pub newton_steps: usize,
     /// Change of the interface vector at which they end, in tolerances of the split: the sweep that closes the step adds to it.
@@ -537,10 +544,12 @@ impl Default for InterfaceSettings {
     fn default() -> Self {
         InterfaceSettings {
             fixed_point_iterations: 20,
-            newton_steps: 40,
+            idle_iterations: 6,
+            newton_sweeps: 60,
+            newton_steps: 25,
             newton_margin: 0.3,
             newton_krylov_tolerance: 1e-3,
-            halvings: 8,
+            halvings: 6,
             descent: 1e-4,
             mechanics_sweeps: 30,
             mechanics_tolerance: 1e-11,

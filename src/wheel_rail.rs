@@ -219,12 +219,13 @@ impl Model {
         let jump = self.change(&state.inputs, inputs);
         let ramp = self.change(inputs, &self.inputs_at(inputs, rates, duration));
         let mut substep = duration / (ramp / settings.jump).ceil().clamp(1.0, settings.ramp_substeps);
-        let mut largest_substep = substep;
+        let planned = substep;
+        let mut largest_substep = planned;
         if jump > settings.jump {
             substep = substep.min(settings.first_substep * self.passage_time(inputs));
         }
         let mut convergence = Convergence::default();
-        let mut retries = 0;
+        let (mut retries, mut at_limit) = (0, 0);
         while committed < duration {
             // The last sub-step takes the rest, so that no sliver is left over by rounding.
             let remaining = duration - committed;
@@ -255,6 +256,11 @@ impl Model {
             convergence.residual = solved.residual;
             convergence.fills_window |= solved.fills_window;
             state.convergence = convergence;
+            // After some sub-steps at the limit that a failure has set, longer ones are tried.
+            at_limit = if length >= largest_substep { at_limit + 1 } else { 0 };
+            if at_limit >= settings.substeps_at_limit {
+                (largest_substep, at_limit) = ((2.0 * largest_substep).min(planned), 0);
+            }
             substep = (2.0 * substep).min(largest_substep);
         }
         Ok(())

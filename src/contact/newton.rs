@@ -24,6 +24,9 @@ pub struct Newton<E: Engine> {
     /// Iterate with the least residual so far, and that residual.
     best: Interface,
     least_residual: f64,
+    /// Iterations of the fixed point since the residual was halved last, and that residual.
+    idle: usize,
+    halved: f64,
 }
 
 impl<E: Engine> Newton<E> {
@@ -37,21 +40,29 @@ impl<E: Engine> Newton<E> {
             moved: operators.fields(),
             best: interface,
             least_residual: f64::INFINITY,
+            idle: 0,
+            halved: f64::INFINITY,
         }
     }
 
     /// Forgets the step before.
     pub fn restart(&mut self) {
-        self.least_residual = f64::INFINITY;
+        (self.least_residual, self.halved, self.idle) = (f64::INFINITY, f64::INFINITY, 0);
     }
 
-    /// Keeps an iterate of the fixed-point iteration if its residual is the least so far: Newton's method begins there.
-    pub fn keep(&mut self, iterate: &Interface, image: &Interface) {
+    /// Keeps an iterate of the fixed-point iteration if its residual is the least so far: Newton's method begins there. Returns for how
+    /// many iterations the residual has not been halved.
+    pub fn keep(&mut self, iterate: &Interface, image: &Interface) -> usize {
         let residual = distance(iterate, image);
+        self.idle += 1;
+        if residual < 0.5 * self.halved {
+            (self.halved, self.idle) = (residual, 0);
+        }
         if residual < self.least_residual {
             self.least_residual = residual;
             self.best.values_mut().copy_from_slice(iterate.values());
         }
+        self.idle
     }
 }
 
@@ -150,7 +161,7 @@ pub fn solve<E: Engine>(
             }
             damping *= 0.5;
         }
-        if !falls {
+        if !falls || count > settings.newton_sweeps {
             break;
         }
     }

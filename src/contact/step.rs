@@ -110,8 +110,8 @@ pub fn solve<E: Engine>(
             E::map_displacement(problem, now, solvers, image);
             test.amend(iterate.change_to(image, settings.least_temperature));
         }
-        newton.keep(iterate, image);
-        if iterations >= fixed_point_iterations {
+        let idle = newton.keep(iterate, image);
+        if idle >= problem.settings.interface.idle_iterations || iterations >= fixed_point_iterations {
             let sweeps = Sweeps {
                 before,
                 now: &mut *now,
