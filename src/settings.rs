@@ -146,6 +146,18 @@ pub struct TangentialSettings {
     pub least_regularisation: f64,
     /// Residual to which those before the law are solved, relative to the largest pressure.
     pub continuation_tolerance: f64,
+    /// Where that does not lead to the law: limit of the arcs along the path of solutions.
+    pub arcs: usize,
+    /// Newton steps back to the path after one of them.
+    pub arc_corrections: usize,
+    /// Residual at which it is on the path, relative to the largest pressure: a rougher one passes by where the path turns back.
+    pub arc_tolerance: f64,
+    /// Length of the first, in decades of ε and largest pressures.
+    pub first_arc: f64,
+    /// The longest.
+    pub largest_arc: f64,
+    /// The shortest.
+    pub least_arc: f64,
     /// Share of the residual by which a whole step has to lower it.
     pub least_decrease: f64,
     /// The smallest ratio of two steps that is believed: steps of the size of round-off say nothing.
@@ -287,6 +299,12 @@ impl Default for TangentialSettings {
             continuation_ratio: 0.1,
             least_regularisation: 1e-7,
             continuation_tolerance: 1e-4,
+            arcs: 120,
+            arc_corrections: 8,
+            arc_tolerance: 1e-8,
+            first_arc: 0.3,
+            largest_arc: 1.0,
+            least_arc: 1e-5,
             least_decrease: 1e-4,
             least_contraction: 1e-3,
         }

@@ -124,6 +124,13 @@ pub fn update_wear_compliance(problem: &Problem, now: &LineFields, solvers: &mut
 pub fn pending_displacement(problem: &Problem, now: &LineFields, solvers: &LineSolvers) -> f64 {
     let share = |now: &[f64], mapped: &[f64]| relative(largest_change(now, mapped), largest(mapped));
     let temperature = &now.surface_temperature[problem.operators.mesh.window()];
+    // Without slip flux and temperature in the window may be nothing but round-off, and each iteration has another one, while the heat of the
+    // rail beside the window displaces it: a share of that is no measure.
+    let settings = &problem.settings.split;
+    let unfelt = settings.unfelt * settings.tolerance * settings.least_temperature;
+    if largest_change(temperature, &solvers.mapped_temperature) <= unfelt {
+        return 0.0;
+    }
     let share = share(&now.heat_flux, &solvers.mapped_flux).min(share(temperature, &solvers.mapped_temperature));
     if share.is_infinite() {
         share

@@ -14,7 +14,7 @@
 
 use super::{Ended, LawRow, Tangential, TangentialProblem};
 use crate::friction::coulomb::Resisted;
-use crate::numerics::dense::largest;
+use crate::numerics::dense::{self, largest};
 
 impl Tangential {
     /// Solves the law after `spent` steps of a method that has stalled.
@@ -42,6 +42,11 @@ impl Tangential {
                 steps += self.search(problem, regularisation, shear, rough).steps();
                 regularisation *= self.settings.continuation_ratio;
             }
+            end = self.search(problem, problem.regularisation, shear, tolerance);
+            steps += end.steps();
+        }
+        if let Ended::Stalled(_) = end {
+            steps += self.follow_regularisation(problem, shear);
             end = self.search(problem, problem.regularisation, shear, tolerance);
             steps += end.steps();
         }
@@ -94,6 +99,116 @@ impl Tangential {
             }
         }
         Ended::Stalled(settings.newton_steps)
+    }
+
+    /// Follows the solution from an ε as large as the slip, where there is one only, to the ε that is asked for, by the length of its arc in the
+    /// shear and in ln ε: where friction falls with slip it may turn back and come again. Returns the steps that it took.
+    fn follow_regularisation(&mut self, problem: &TangentialProblem, shear: &[f64]) -> usize {
+        let m = shear.len();
+        let settings = self.settings;
+        let largest_pressure = largest(problem.pressure);
+        for (change, shear) in self.change.iter_mut().zip(shear) {
+            *change = -shear;
+        }
+        self.update_point(problem, shear);
+        let first = largest(&self.slip[..m]);
+        let last = (settings.least_regularisation * first).max(problem.regularisation).ln();
+        let rough = settings.continuation_tolerance * largest_pressure;
+        let mut steps = self.search(problem, first, shear, rough).steps();
+        // A unit of the shear is the largest pressure, one of ln ε a decade.
+        let units = [largest_pressure, std::f64::consts::LN_10];
+        let (mut logarithm, mut arc) = (first.ln(), settings.first_arc);
+        self.tangent[..m].fill(0.0);
+        let mut tangent_by_logarithm = -1.0;
+        for _ in 0..settings.arcs {
+            if logarithm <= last || arc < settings.least_arc {
+                break;
+            }
+            // The tangent that leads on.
+            self.update_natural_residual(problem, logarithm.exp(), shear);
+            if !self.factorise(problem) {
+                break;
+            }
+            steps += 1;
+            self.solve_for_logarithm(problem, logarithm.exp(), shear);
+            let (mut along, mut square) = (tangent_by_logarithm, 1.0);
+            for (new, old) in self.by_logarithm[..m].iter_mut().zip(&self.tangent) {
+                *new *= units[1] / units[0];
+                along += *new * old;
+                square += *new * *new;
+            }
+            tangent_by_logarithm = f64::copysign(1.0 / square.sqrt(), along);
+            for (tangent, new) in self.tangent.iter_mut().zip(&self.by_logarithm[..m]) {
+                *tangent = tangent_by_logarithm * new;
+            }
+            self.before[..m].copy_from_slice(&self.change[..m]);
+            // A step along it, and back to the solution across it.
+            let mut arrived = None;
+            while arrived.is_none() && arc >= settings.least_arc {
+                for ((change, start), tangent) in self.change.iter_mut().zip(&self.before[..m]).zip(&self.tangent) {
+                    *change = start + arc * units[0] * tangent;
+                }
+                let mut now = logarithm + arc * units[1] * tangent_by_logarithm;
+                for correction in 0..settings.arc_corrections {
+                    self.update_natural_residual(problem, now.exp(), shear);
+                    if largest(&self.residual[..m]) <= settings.arc_tolerance * largest_pressure {
+                        arrived = Some((now, correction));
+                        break;
+                    }
+                    if !self.factorise(problem) {
+                        break;
+                    }
+                    steps += 1;
+                    self.find_step(m);
+                    self.solve_for_logarithm(problem, now.exp(), shear);
+                    // tᵀ(Δτ + dτ/dlnε Δlnε) + t Δlnε = 0.
+                    let (mut across, mut slope) = (0.0, tangent_by_logarithm / units[1]);
+                    for i in 0..m {
+                        across += self.tangent[i] * self.step[i] / units[0];
+                        slope += self.tangent[i] * self.by_logarithm[i] / units[0];
+                    }
+                    let change = -across / slope;
+                    if !change.is_finite() || change.abs() > 2.0 * units[1] {
+                        break;
+                    }
+                    now += change;
+                    for i in 0..m {
+                        self.change[i] += self.step[i] + change * self.by_logarithm[i];
+                    }
+                }
+                if arrived.is_none() {
+                    arc *= 0.25;
+                }
+            }
+            match arrived {
+                Some((now, corrections)) => {
+                    logarithm = now;
+                    if corrections <= settings.arc_corrections / 2 {
+                        arc = (2.0 * arc).min(settings.largest_arc);
+                    }
+                }
+                None => {
+                    self.change[..m].copy_from_slice(&self.before[..m]);
+                    break;
+                }
+            }
+        }
+        steps
+    }
+
+    /// dτ/d ln ε at a solution, with the matrix that is factorised.
+    fn solve_for_logarithm(&mut self, problem: &TangentialProblem, regularisation: f64, shear: &[f64]) {
+        let m = shear.len();
+        self.count(m, 0, 1);
+        for (i, shear) in shear.iter().enumerate() {
+            let scale = 1.0 / self.own_slip(problem, i);
+            let pulled = shear + self.change[i] - scale * self.slip[i];
+            let bound = self.friction[i] * self.pressure[i];
+            let resisted = Resisted::new(bound, scale, regularisation, pulled.abs());
+            // r σ = |z| − t; the residual has −t.
+            self.by_logarithm[i] = -pulled.signum() * (pulled.abs() - resisted.shear) * resisted.by_length;
+        }
+        dense::lu_solve(&self.factor, m, &self.pivots, &mut self.by_logarithm[..m]);
     }
 
     /// The point after `self.change`, the residual τ − Π(τ − r s) and its derivatives; returns the residual's 2-norm.

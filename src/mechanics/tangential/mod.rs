@@ -172,6 +172,10 @@ pub struct Tangential {
     /// Length of a step over that of the step before, with this `factor`.
     contraction: f64,
     path: Path,
+    /// dτ/d ln ε.
+    by_logarithm: Vec<f64>,
+    /// Direction of the path of solutions in the shear.
+    tangent: Vec<f64>,
     /// Whether the methods that are fast where they converge have stalled in this step.
     has_stalled: bool,
     /// Multiplications and additions in this step.
@@ -204,6 +208,8 @@ impl Tangential {
             factored: false,
             contraction: settings.fresh_contraction,
             path: Path::new(nodes),
+            by_logarithm: vector(),
+            tangent: vector(),
             has_stalled: false,
             work: 0,
         }

@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::friction::coulomb::saturation;
-use crate::friction::memory::ParticlePath as MemoryPath;
+use crate::friction::memory::ParticlePath;
 use crate::friction::path::PathStep;
 use crate::mechanics::front::NearField;
 use crate::parameters::Parameters;
@@ -211,7 +211,7 @@ fn the_line_search_finds_the_solution_of_friction_that_falls_with_slip() {
     let law = PathLaw::new(&parameters, &step).unwrap();
     let resting = [0.4; NODES + 2];
     let kept = [0.0; NODES + 2];
-    let path = MemoryPath {
+    let path = ParticlePath {
         resting: &resting,
         friction: &resting,
         speed: &kept,
