@@ -47,6 +47,8 @@ pub struct StepSettings {
     pub retries: usize,
     /// Sub-steps at that limit after which it is doubled.
     pub substeps_at_limit: usize,
+    /// Budget of a step in multiplications and additions, about: counted, not timed.
+    pub work: u64,
 }
 
 /// Convergence of the operator split.
@@ -225,6 +227,7 @@ impl Default for StepSettings {
             shortest: 1e-100,
             retries: 12,
             substeps_at_limit: 4,
+            work: 200_000_000,
         }
     }
 }

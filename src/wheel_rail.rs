@@ -208,6 +208,7 @@ impl Model {
         } else {
             duration
         };
+        workspace.contact.begin_step();
         let start = state.time;
         let mut committed = 0.0;
         let interrupted = |committed, error| Interrupted { committed, error };
@@ -240,8 +241,10 @@ impl Model {
                 Ok(solved) => solved,
                 // A shorter sub-step starts closer to its solution; what the window cannot hold no step can.
                 Err(error)
-                    if !matches!(error, Error::ContactLeavesWindow { .. } | Error::OtherContactModel)
-                        && retries < settings.retries =>
+                    if !matches!(
+                        error,
+                        Error::ContactLeavesWindow { .. } | Error::TooMuchWork { .. } | Error::OtherContactModel
+                    ) && retries < settings.retries =>
                 {
                     retries += 1;
                     substep = 0.25 * length;

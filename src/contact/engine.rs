@@ -144,6 +144,12 @@ pub trait Engine: Sized + 'static {
         tolerance: f64,
     ) -> Result<Sweep>;
 
+    /// Work of the mechanics since the step began, in multiplications and additions.
+    fn mechanics_work(solvers: &Self::Solvers) -> u64;
+
+    /// Work of a sweep besides, about.
+    fn sweep_work(&self) -> u64;
+
     /// Sets the surface temperature of the fields to that of the interface vector. The heat march takes it as a first guess: where
     /// friction rises so fast with temperature that a node has several, it is the one that this one leads to.
     fn set_surface_temperature(&self, interface: &Interface, now: &mut Self::Fields);

@@ -20,6 +20,7 @@ pub struct LinearSystem<E: Engine> {
     along: Interface,
     residual: Vec<f64>,
     correction: Vec<f32>,
+    products: u64,
 }
 
 impl<E: Engine> LinearSystem<E> {
@@ -33,6 +34,7 @@ impl<E: Engine> LinearSystem<E> {
             image: along.clone(),
             residual: vec![0.0; size],
             correction: vec![0.0; size],
+            products: 0,
             along,
         }
     }
@@ -50,7 +52,9 @@ impl<E: Engine> LinearSystem<E> {
             along,
             residual,
             correction,
+            products,
         } = self;
+        *products = 0;
         let settings = at.problem.settings.interface;
         begin_direction(at, &Direction::NONE, change);
         let size = norm(values);
@@ -73,6 +77,7 @@ impl<E: Engine> LinearSystem<E> {
                     for (along, value) in along.values_mut().iter_mut().zip(values) {
                         *along = f64::from(*value);
                     }
+                    *products += 1;
                     if let Err(error) = sweep_tangent(at, &Direction::NONE, along, change, image) {
                         failed = Some(error);
                     }
@@ -103,6 +108,11 @@ impl<E: Engine> LinearSystem<E> {
             }
         }
         Ok(dense::relative(left, size))
+    }
+
+    /// Products with the linearised sweep in the last solution.
+    pub fn products(&self) -> u64 {
+        self.products
     }
 
     /// Computes the change of the fields along a direction, with the interface vector following.

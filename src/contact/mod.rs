@@ -23,6 +23,7 @@ mod rail_and_rim;
 pub mod rim;
 pub mod sensitivity;
 pub mod step;
+pub mod work;
 
 use crate::error::{Error, Result};
 use crate::parameters::{ContactModel, Parameters};
@@ -233,6 +234,14 @@ impl Operators {
 }
 
 impl ContactWorkspace {
+    /// Begins a communication step, whose sub-steps share its budget of work.
+    pub fn begin_step(&mut self) {
+        match self {
+            ContactWorkspace::Line(workspace) => workspace.begin_step(),
+            ContactWorkspace::Patch(workspace) => workspace.begin_step(),
+        }
+    }
+
     /// Makes the solution of [`Operators::solve`] over `duration` `s` the state. What that has refused as of another contact model
     /// stays as it is.
     pub fn commit(&mut self, state: &mut ContactState, duration: f64) {

@@ -9,6 +9,7 @@ use super::interface::Interface;
 use super::linear::LinearSystem;
 use super::problem::Problem;
 use super::rail_and_rim;
+use super::work::Work;
 use crate::error::Result;
 use crate::mechanics::sweep::Sweep;
 use crate::settings::Settings;
@@ -81,6 +82,14 @@ pub struct Sweeps<'a, E: Engine> {
 }
 
 impl<E: Engine> Sweeps<'_, E> {
+    /// One sweep, whose work is counted. The inner error is that of a solver.
+    fn counted_sweep(&mut self, problem: &Problem<E>, work: &mut Work) -> Result<Result<f64>> {
+        let before = E::mechanics_work(self.solvers);
+        let residual = self.sweep(problem);
+        work.add(problem.operators.sweep_work() + E::mechanics_work(self.solvers).saturating_sub(before))?;
+        Ok(residual)
+    }
+
     /// One sweep x ↦ G(x), with mechanics that have come to rest and the wheel at the temperature of the iterate: a function of x
     /// and of the fields before, whatever was swept last. Returns |x − G(x)|.
     fn sweep(&mut self, problem: &Problem<E>) -> Result<f64> {
@@ -116,6 +125,7 @@ pub fn solve<E: Engine>(
     newton: &mut Newton<E>,
     mut sweeps: Sweeps<E>,
     test: &mut ConvergenceTest,
+    work: &mut Work,
 ) -> Result<usize> {
     let settings = problem.settings.interface;
     let split = E::split_settings(problem.settings);
@@ -127,7 +137,7 @@ pub fn solve<E: Engine>(
         ..
     } = newton;
     sweeps.iterate.values_mut().copy_from_slice(best.values());
-    let mut residual = sweeps.sweep(problem)?;
+    let mut residual = sweeps.counted_sweep(problem, work)??;
     let mut count = 1;
     for _ in 0..settings.newton_steps {
         let change = sweeps.iterate.change_to(sweeps.image, split.least_temperature);
@@ -144,6 +154,7 @@ pub fn solve<E: Engine>(
         let tolerance = settings.krylov_tolerance;
         let mut at = Linearised::new(problem, sweeps.iterate, sweeps.now, sweeps.solvers, tangent, tolerance)?;
         system.solve(&mut at, step.values_mut(), settings.newton_krylov_tolerance)?;
+        work.add(system.products() * problem.operators.sweep_work())?;
         let mut damping = 1.0;
         let mut falls = false;
         for _ in 0..=settings.halvings {
@@ -153,7 +164,7 @@ pub fn solve<E: Engine>(
             }
             count += 1;
             // Where a solver fails, the step is too long.
-            let trial = sweeps.sweep(problem).unwrap_or(f64::INFINITY);
+            let trial = sweeps.counted_sweep(problem, work)?.unwrap_or(f64::INFINITY);
             if trial < (1.0 - settings.descent * damping) * residual {
                 residual = trial;
                 falls = true;

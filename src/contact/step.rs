@@ -11,6 +11,7 @@ use super::memory;
 use super::newton::{self, Newton, Sweeps};
 use super::problem::{Convergence, Problem};
 use super::rail_and_rim;
+use super::work::Work;
 use crate::error::{Error, Result};
 use crate::mechanics::sweep::Sweep;
 use crate::numerics::anderson::Anderson;
@@ -26,6 +27,7 @@ pub struct Workspace<E: Engine> {
     /// What the sweep makes of it.
     pub(super) image: Interface,
     anderson: Anderson,
+    work: Work,
     pub(super) newton: Newton<E>,
 }
 
@@ -37,10 +39,16 @@ impl<E: Engine> Workspace<E> {
             solvers: operators.solvers(settings),
             trial: operators.fields(),
             anderson: Anderson::new(interface.values().len()),
+            work: Work::new(settings.step.work),
             newton: Newton::new(operators, settings),
             image: interface.clone(),
             iterate: interface,
         }
+    }
+
+    /// Begins a communication step, whose sub-steps share its budget of work.
+    pub fn begin_step(&mut self) {
+        self.work.restart();
     }
 
     /// Fields at the end of the step that was solved last.
@@ -73,6 +81,7 @@ pub fn solve<E: Engine>(
         iterate,
         image,
         anderson,
+        work,
         newton,
     } = workspace;
     now.guess_from(before);
@@ -87,7 +96,10 @@ pub fn solve<E: Engine>(
     let fixed_point_iterations = problem.settings.interface.fixed_point_iterations;
     let mut newton_sweeps = 0;
     for iterations in 1..=settings.iterations {
-        let sweep = E::solve_mechanics(problem, iterate, now, solvers, test.mechanics_tolerance())?;
+        let before_mechanics = E::mechanics_work(solvers);
+        let sweep = E::solve_mechanics(problem, iterate, now, solvers, test.mechanics_tolerance());
+        work.add(problem.operators.sweep_work() + E::mechanics_work(solvers).saturating_sub(before_mechanics))?;
+        let sweep = sweep?;
         E::march_wear(problem, before, now, solvers);
         rail_and_rim::march_heat(problem, before, iterate, now, solvers)?;
         // Newton's method has solved the step for the wear compliance that there is.
@@ -119,7 +131,7 @@ pub fn solve<E: Engine>(
                 iterate: &mut *iterate,
                 image: &mut *image,
             };
-            newton_sweeps += newton::solve(problem, newton, sweeps, &mut test)?;
+            newton_sweeps += newton::solve(problem, newton, sweeps, &mut test, work)?;
             anderson.restart();
             continue;
         }

@@ -149,6 +149,16 @@ impl Engine for LineOperators {
         mechanics::solve(problem, interface, now, solvers, tolerance)
     }
 
+    fn mechanics_work(solvers: &LineSolvers) -> u64 {
+        solvers.mechanics.work()
+    }
+
+    /// Products with the compliance, and some ten operations a mode.
+    fn sweep_work(&self) -> u64 {
+        let nodes = self.mesh.contact_nodes;
+        (6 * nodes * nodes + 10 * self.mesh.columns() * self.heat.basis.len()) as u64
+    }
+
     fn set_surface_temperature(&self, interface: &Interface, now: &mut LineFields) {
         let window = &mut now.surface_temperature[self.mesh.window()];
         for (temperature, rise) in window.iter_mut().zip(interface.temperatures()) {

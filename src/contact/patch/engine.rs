@@ -165,6 +165,15 @@ impl Engine for PatchOperators {
         mechanics::solve(problem, interface, now, solvers, tolerance)
     }
 
+    fn mechanics_work(solvers: &PatchSolvers) -> u64 {
+        solvers.normal.work() + solvers.friction.work()
+    }
+
+    /// Some ten operations a mode.
+    fn sweep_work(&self) -> u64 {
+        (10 * self.grid.strips * self.grid.cells * self.basis.len()) as u64
+    }
+
     fn set_surface_temperature(&self, interface: &Interface, now: &mut PatchFields) {
         for (temperature, rise) in now.heat.surface.iter_mut().zip(interface.temperatures()) {
             *temperature = rise;

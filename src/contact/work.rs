@@ -1,0 +1,38 @@
+//! Work of a step, and the budget that bounds it.
+
+use crate::error::{Error, Result};
+
+/// Work of a communication step, in multiplications and additions, about: counted, not timed, so that a step ends in the same way on
+/// every machine.
+#[derive(Debug, Clone, Copy)]
+pub struct Work {
+    spent: u64,
+    limit: u64,
+}
+
+impl Work {
+    /// No work yet.
+    pub fn new(limit: u64) -> Work {
+        Work { spent: 0, limit }
+    }
+
+    /// Begins a communication step.
+    pub fn restart(&mut self) {
+        self.spent = 0;
+    }
+
+    /// Adds work.
+    ///
+    /// # Errors
+    /// [`Error::TooMuchWork`] beyond the budget.
+    pub fn add(&mut self, work: u64) -> Result<()> {
+        self.spent += work;
+        if self.spent > self.limit {
+            return Err(Error::TooMuchWork {
+                work: self.spent,
+                limit: self.limit,
+            });
+        }
+        Ok(())
+    }
+}
