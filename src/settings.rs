@@ -197,10 +197,6 @@ pub struct HeatSettings {
 /// Derivatives of the outputs.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SensitivitySettings {
-    /// Limit of the iterations of the linear split.
-    pub iterations: usize,
-    /// Iterations after which Anderson's method takes part.
-    pub accelerate_after: usize,
     /// Change of the tangents, relative to the largest, at which the linear split rests.
     pub tolerance: f64,
     /// Residual of the linear system, relative to its right-hand side, above which it counts as not solved: what round-off leaves may be
@@ -339,8 +335,6 @@ impl Default for HeatSettings {
 impl Default for SensitivitySettings {
     fn default() -> Self {
         SensitivitySettings {
-            iterations: 400,
-            accelerate_after: 6,
             tolerance: 1e-9,
             largest_residual: 1e-6,
             output_step: 1e-7,
@@ -368,7 +362,6 @@ impl Settings {
     /// Derivatives of the outputs of a patch: its linear systems are solved by iteration.
     pub fn patch_sensitivity(&self) -> SensitivitySettings {
         SensitivitySettings {
-            accelerate_after: self.patch.sensitivity_accelerate_after,
             tolerance: self.patch.sensitivity_tolerance,
             ..self.sensitivity
         }
@@ -383,11 +376,6 @@ pub struct PatchSettings {
     pub split_tolerance: f64,
     /// Error of the shear at which it rests, relative to the peak pressure.
     pub shear_tolerance: f64,
-    /// Iterations of the split after which it rests at `late_tolerance`: where slip heats so much that friction has hardly one solution,
-    /// Anderson's method circles around it.
-    pub late_after: usize,
-    /// Change of temperature, lift and wear at which it then rests: about as much as the cells resolve.
-    pub late_tolerance: f64,
     /// Tolerance of the tractions in the first iteration of the split, whose temperature is only a guess.
     pub first_mechanics_tolerance: f64,
     /// Tolerance of the tractions where they are solved alone, for the initial state.
@@ -436,8 +424,6 @@ pub struct PatchSettings {
     /// Error of the tangents, relative to the largest, at which the linear split of the derivatives rests, and residual of its linear
     /// systems, which a small change of the pressure by heat feels a hundredfold. Each digit costs a tenth of the time.
     pub sensitivity_tolerance: f64,
-    /// Iterations of it after which Anderson's method takes part.
-    pub sensitivity_accelerate_after: usize,
 }
 
 impl Default for PatchSettings {
@@ -445,8 +431,6 @@ impl Default for PatchSettings {
         PatchSettings {
             split_tolerance: 1e-6,
             shear_tolerance: 1e-6,
-            late_after: 40,
-            late_tolerance: 1e-3,
             first_mechanics_tolerance: 1e-5,
             tolerance: 1e-9,
             least_tolerance: 1e-10,
@@ -470,7 +454,6 @@ impl Default for PatchSettings {
             continuation_tolerance: 1e-4,
             least_regularisation: 1e-4,
             sensitivity_tolerance: 1e-7,
-            sensitivity_accelerate_after: 1,
         }
     }
 }
