@@ -121,7 +121,8 @@ impl Tangential {
         self.tangent[..m].fill(0.0);
         let mut tangent_by_logarithm = -1.0;
         for _ in 0..settings.arcs {
-            if logarithm <= last || arc < settings.least_arc {
+            // Back where it began: it has lost the path.
+            if logarithm <= last || logarithm > first.ln() || arc < settings.least_arc {
                 break;
             }
             // The tangent that leads on.
