@@ -6,44 +6,10 @@
 use super::forms::{Fields, elements};
 use super::mesh::Mesh;
 use crate::error::{Error, Result};
-use crate::numerics::sparse_cholesky::SparseCholesky;
-use faer::sparse::{SparseColMat, SymbolicSparseColMat};
+use crate::numerics::band_cholesky::Band;
 
 /// Fields that are solved for together where there are many.
 const MANY: usize = 32;
-
-/// The sums of element contributions to the lower triangle of a symmetric matrix, column by column.
-struct Sums(Vec<Vec<(usize, f64)>>);
-
-impl Sums {
-    fn new(unknowns: usize) -> Sums {
-        // A node of the mesh has up to eight neighbours; half of them, and itself, are in the lower triangle.
-        Sums((0..unknowns).map(|_| Vec::with_capacity(10)).collect())
-    }
-
-    fn add(&mut self, row: usize, column: usize, value: f64) {
-        let column = &mut self.0[column];
-        match column.iter_mut().find(|(r, _)| *r == row) {
-            Some((_, sum)) => *sum += value,
-            None => column.push((row, value)),
-        }
-    }
-
-    /// The matrix, rows in ascending order.
-    fn compressed(self) -> SparseColMat<usize, f64> {
-        let unknowns = self.0.len();
-        let count = self.0.iter().map(Vec::len).sum();
-        let (mut starts, mut rows, mut values) = (vec![0], Vec::with_capacity(count), Vec::with_capacity(count));
-        for mut column in self.0 {
-            column.sort_unstable_by_key(|(row, _)| *row);
-            rows.extend(column.iter().map(|(r, _)| r));
-            values.extend(column.iter().map(|(_, v)| v));
-            starts.push(rows.len());
-        }
-        let pattern = SymbolicSparseColMat::new_checked(unknowns, unknowns, starts, None, rows);
-        SparseColMat::new(pattern, values)
-    }
-}
 
 /// One entry of the stiffness between a free and a clamped displacement.
 struct StiffnessEntry {
@@ -56,7 +22,7 @@ struct StiffnessEntry {
 
 /// The factorised body.
 pub struct Elasticity {
-    factor: SparseCholesky,
+    factor: Band,
     /// The row in `factor` of each `2 * node + direction`, `None` where clamped.
     rows: Vec<Option<usize>>,
     unknowns: usize,
@@ -71,16 +37,17 @@ impl Elasticity {
     /// [`Error::StiffnessNotPositiveDefinite`]: above the Rayleigh speed the form is not coercive.
     pub fn new(mesh: &Mesh, lambda: f64, shear: f64, rho_v2: f64) -> Result<Elasticity> {
         let nodes = mesh.nodes();
-        let mut unknown = vec![None; 2 * nodes];
+        let mut rows = vec![None; 2 * nodes];
         let mut unknowns = 0;
         for node in (0..nodes).filter(|&n| !mesh.is_clamped(n)) {
             for direction in 0..2 {
-                unknown[2 * node + direction] = Some(unknowns);
+                rows[2 * node + direction] = Some(unknowns);
                 unknowns += 1;
             }
         }
 
-        let mut stiffness = Sums::new(unknowns);
+        // Nodes are numbered column by column: none is coupled further than to the next column's.
+        let mut stiffness = Band::new(unknowns, 2 * (mesh.rows() + 1) + 1);
         let mut boundary = Vec::new();
         for element in elements(mesh) {
             let grad = element.gradients;
@@ -88,11 +55,11 @@ impl Elasticity {
                 for (j, node_j) in element.nodes.into_iter().enumerate() {
                     for (a, b) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
                         let (place, other) = (2 * node_i + a, 2 * node_j + b);
-                        let Some(row) = unknown[place] else {
+                        let Some(row) = rows[place] else {
                             continue;
                         };
                         // The lower triangle is enough.
-                        if unknown[other].is_some_and(|column| row < column) {
+                        if rows[other].is_some_and(|column| row < column) {
                             continue;
                         }
                         // σ(u):ε(v) = λ div u div v + 2γ ε(u):ε(v)
@@ -102,7 +69,7 @@ impl Elasticity {
                                 - rho_v2 * grad[i][0] * grad[j][0];
                         }
                         value *= element.measure;
-                        match unknown[other] {
+                        match rows[other] {
                             Some(column) => stiffness.add(row, column, value),
                             None => boundary.push(StiffnessEntry {
                                 free: place,
@@ -115,13 +82,8 @@ impl Elasticity {
             }
         }
         let failed = Error::StiffnessNotPositiveDefinite { unknowns };
-        let factor = SparseCholesky::new(&stiffness.compressed()).ok_or(failed)?;
-        let rows = unknown
-            .into_iter()
-            .map(|unknown| unknown.map(|unknown| factor.row_of(unknown)))
-            .collect();
         Ok(Elasticity {
-            factor,
+            factor: stiffness.factorised().ok_or(failed)?,
             rows,
             unknowns,
             boundary,

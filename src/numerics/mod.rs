@@ -2,6 +2,7 @@
 
 pub mod anderson;
 pub mod arctangent;
+pub mod band_cholesky;
 pub mod decay;
 pub mod dense;
 pub mod elliptic;
@@ -10,4 +11,3 @@ pub mod gmres;
 pub mod interpolation;
 pub mod real;
 pub mod single;
-pub mod sparse_cholesky;

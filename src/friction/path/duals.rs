@@ -8,7 +8,7 @@ use super::*;
 use num_dual::{Dual64, DualNum};
 use proptest::prelude::*;
 
-/// Where a rail goes, and what is done to it, in dual numbers.
+/// Step of a rail through the window, with all that the law depends on, in dual numbers.
 struct March {
     /// |V|, `m/s`.
     speed: Dual64,
@@ -90,7 +90,7 @@ impl March {
 }
 
 proptest! {
-    /// With |V|, slip, μ(θ) and pressure of all nodes at once, over parts of a cell and over many, along and against x₁, at any d_c, with a
+    /// Checks changes of |V|, slip, μ(θ) and pressure of all nodes at once, over parts of a cell and over many, along and against x₁, at any d_c, with a
     /// layer that flows and without.
     #[test]
     fn the_tangent_is_the_derivative_of_the_equations(
