@@ -62,6 +62,9 @@ pub struct SplitSettings {
     pub tolerance: f64,
     /// Error of the shear at which it rests, relative to the peak pressure.
     pub shear_tolerance: f64,
+    /// Change at which it is ended where neither the fixed point nor Newton's method gets further: below what the mesh resolves. Slip that
+    /// heats so much that friction has hardly one solution leaves it.
+    pub stalled_tolerance: f64,
     /// Tolerance of the mechanics in the first iteration, whose temperature is only a guess.
     pub first_mechanics_tolerance: f64,
     /// Tolerance of the mechanics relative to the last change of the split: their error must not hide its contraction.
@@ -234,6 +237,7 @@ impl Default for SplitSettings {
             iterations: 100,
             tolerance: 1e-9,
             shear_tolerance: 1e-9,
+            stalled_tolerance: 1e-6,
             first_mechanics_tolerance: 1e-8,
             mechanics_tolerance: 1e-4,
             last_mechanics_tolerance: 1e-12,
@@ -350,6 +354,7 @@ impl Settings {
         SplitSettings {
             tolerance: self.patch.split_tolerance,
             shear_tolerance: self.patch.shear_tolerance,
+            stalled_tolerance: 1e-3,
             first_mechanics_tolerance: self.patch.first_mechanics_tolerance,
             last_mechanics_tolerance: self.patch.least_tolerance,
             mechanics_tolerance: 1e-1,
@@ -528,6 +533,8 @@ pub struct InterfaceSettings {
     pub newton_krylov_tolerance: f64,
     /// Limit of the halvings of a Newton step.
     pub halvings: usize,
+    /// Steps of Newton's method that are taken in full although the residual does not fall: friction that is steep in temperature may jump.
+    pub jumps: usize,
     /// Share of the decrease that the linear system predicts which must be there for a step to be taken.
     pub descent: f64,
     /// Limit of the solutions of the mechanics for one interface vector: nodes under pressure may change in each.
@@ -554,6 +561,7 @@ impl Default for InterfaceSettings {
             newton_margin: 0.3,
             newton_krylov_tolerance: 1e-3,
             halvings: 6,
+            jumps: 3,
             descent: 1e-4,
             mechanics_sweeps: 30,
             mechanics_tolerance: 1e-11,

@@ -68,12 +68,16 @@ class Crate:
 
     def __init__(self, source):
         """Read all files but those of the command line."""
-        self.text, self.passed_on = {}, {}
+        self.text, self.passed_on, tests = {}, {}, set()
         for path in sorted(source.rglob("*.rs")):
             names = path.relative_to(source).with_suffix("").parts
             if names[0] not in ("bin", "main"):
                 module = () if names == ("lib",) else names[: -1 if names[-1] == "mod" else None]
                 self.text[module] = code(path.read_text())
+                declared = re.findall(r"#\[cfg\(test\)\]\s*(?:pub\s+)?mod\s+(\w+)\s*;", path.read_text())
+                tests.update((*module, name) for name in declared)
+        for module in [module for module in self.text if any(module[: len(test)] == test for test in tests)]:
+            del self.text[module]
         self.uses = {module: list(self.paths(module)) for module in self.text}
 
     def paths(self, module):

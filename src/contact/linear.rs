@@ -39,12 +39,18 @@ impl<E: Engine> LinearSystem<E> {
         }
     }
 
-    /// Solves (1 − G′) dx = `values`, in place, until the residual is below `tolerance` relative to the values. Returns what it is in the
-    /// end.
+    /// Solves (1 − G′) dx = `values`, in place, by at most so many corrections in single precision, until the residual is below
+    /// `tolerance` relative to the values. Returns what it is in the end.
     ///
     /// # Errors
     /// A linear system of the sweep that cannot be solved.
-    pub fn solve(&mut self, at: &mut Linearised<E>, values: &mut [f64], tolerance: f64) -> Result<f64> {
+    pub fn solve(
+        &mut self,
+        at: &mut Linearised<E>,
+        values: &mut [f64],
+        tolerance: f64,
+        refinements: usize,
+    ) -> Result<f64> {
         let LinearSystem {
             change,
             gmres,
@@ -61,7 +67,7 @@ impl<E: Engine> LinearSystem<E> {
         residual.copy_from_slice(values);
         values.fill(0.0);
         let mut left = size;
-        for _ in 0..settings.refinements {
+        for _ in 0..refinements {
             if left <= tolerance * size || size == 0.0 {
                 break;
             }
@@ -126,11 +132,12 @@ impl<E: Engine> LinearSystem<E> {
         following: &mut Interface,
     ) -> Result<()> {
         let settings = E::sensitivity_settings(at.problem.settings);
+        let refinements = at.problem.settings.interface.refinements;
         following.values_mut().fill(0.0);
         begin_direction(at, direction, &mut self.change);
         sweep_tangent(at, direction, following, &mut self.change, &mut self.image)?;
         following.values_mut().copy_from_slice(self.image.values());
-        let residual = self.solve(at, following.values_mut(), settings.tolerance)?;
+        let residual = self.solve(at, following.values_mut(), settings.tolerance, refinements)?;
         if residual > settings.largest_residual {
             return Err(Error::SensitivityNotConverged {
                 iterations: at.problem.settings.interface.krylov_iterations,

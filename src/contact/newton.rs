@@ -138,9 +138,11 @@ pub fn solve<E: Engine>(
     } = newton;
     sweeps.iterate.values_mut().copy_from_slice(best.values());
     let mut residual = sweeps.counted_sweep(problem, work)??;
-    let mut count = 1;
+    let (mut count, mut jumps) = (1, 0);
     for _ in 0..settings.newton_steps {
         let change = sweeps.iterate.change_to(sweeps.image, split.least_temperature);
+            eprintln!("newton {count} residual {residual:e} change {change:e}");
+        }
         test.amend(change);
         if change <= settings.newton_margin * split.tolerance {
             return Ok(count);
@@ -153,15 +155,15 @@ pub fn solve<E: Engine>(
         E::close_displacement(problem, sweeps.iterate, sweeps.now, sweeps.solvers);
         let tolerance = settings.krylov_tolerance;
         let mut at = Linearised::new(problem, sweeps.iterate, sweeps.now, sweeps.solvers, tangent, tolerance)?;
-        system.solve(&mut at, step.values_mut(), settings.newton_krylov_tolerance)?;
+        // One correction: Newton's method takes a step that is not quite exact.
+        system.solve(&mut at, step.values_mut(), settings.newton_krylov_tolerance, 1)?;
+            eprintln!("   linear {left:e} products {}", system.products());
+        }
         work.add(system.products() * problem.operators.sweep_work())?;
         let mut damping = 1.0;
         let mut falls = false;
         for _ in 0..=settings.halvings {
-            let values = best.values().iter().zip(step.values());
-            for (iterate, (best, step)) in sweeps.iterate.values_mut().iter_mut().zip(values) {
-                *iterate = best + damping * step;
-            }
+            set_iterate(sweeps.iterate, best, step, damping);
             count += 1;
             // Where a solver fails, the step is too long.
             let trial = sweeps.counted_sweep(problem, work)?.unwrap_or(f64::INFINITY);
@@ -170,13 +172,42 @@ pub fn solve<E: Engine>(
                 falls = true;
                 break;
             }
+                eprintln!(
+                    "   trial {trial:e} damping {damping} step {:e}",
+                    crate::numerics::dense::largest(step.values())
+                );
+            }
             damping *= 0.5;
         }
-        if !falls || count > settings.newton_sweeps {
+        if count > settings.newton_sweeps {
             break;
         }
+        if !falls {
+            // A node that has several temperatures has left the one that it had: the solution, if there is one, is on the other side of
+            // the jump.
+            if jumps == settings.jumps {
+                break;
+            }
+            jumps += 1;
+            set_iterate(sweeps.iterate, best, step, 1.0);
+            count += 1;
+            residual = sweeps.counted_sweep(problem, work)??;
+        }
+    }
+    // Neither method gets further: the iterate may be as good as the mesh all the same.
+    if test.change() <= split.stalled_tolerance {
+        sweeps.iterate.values_mut().copy_from_slice(best.values());
+        return Ok(count);
     }
     Err(test.error(count))
+}
+
+/// Sets the iterate to the best one moved by `damping` times a step.
+fn set_iterate(iterate: &mut Interface, best: &Interface, step: &Interface, damping: f64) {
+    let values = best.values().iter().zip(step.values());
+    for (iterate, (best, step)) in iterate.values_mut().iter_mut().zip(values) {
+        *iterate = best + damping * step;
+    }
 }
 
 /// |x − G(x)|.

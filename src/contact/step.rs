@@ -114,7 +114,8 @@ pub fn solve<E: Engine>(
             f64::INFINITY
         };
         let change = iterate.change_to(image, settings.least_temperature);
-        if test.is_passed(change.max(pending), &sweep) {
+        let passes = test.is_passed(change.max(pending), &sweep);
+        if passes || newton_sweeps > 0 && change.max(pending) <= settings.stalled_tolerance {
             let iterations = iterations + newton_sweeps;
             return finish(problem, before, iterate, now, solvers, iterations, &test);
         }

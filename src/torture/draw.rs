@@ -122,9 +122,12 @@ fn patch(random: &mut Random, parameters: &mut Parameters) {
     parameters.prescribed_penetration = random.between(0.1, 0.3) * approach;
 }
 
-/// The steepest friction, `1/K`: the paper's. Where the coefficient changes much faster, a contact has several temperatures, and a
+/// The steepest friction of a table, `1/K`: the paper's. Where the coefficient rises much faster, a contact has several temperatures, and a
 /// step of any length may have to jump from one to another.
-const STEEPEST: f64 = 0.02;
+const STEEPEST: f64 = 0.002;
+
+/// The steepest fall of friction between two temperatures, `1/K`: from 0.53 to 0.18 within 18 K.
+const STEEPEST_FALL: f64 = 0.02;
 
 /// A table of friction coefficients that rise or fall between temperatures some degrees to some hundred degrees apart.
 fn table(random: &mut Random, parameters: &mut Parameters) {
@@ -182,6 +185,6 @@ pub fn tune(random: &mut Random, parameters: &mut Parameters) {
     parameters.friction_cold = random.between(0.05, 0.7);
     parameters.friction_hot = parameters.friction_cold * random.between(0.3, 1.0);
     parameters.friction_temperature_cold = random.between(290.0, 600.0);
-    let range = (parameters.friction_cold - parameters.friction_hot) / STEEPEST;
+    let range = (parameters.friction_cold - parameters.friction_hot) / STEEPEST_FALL;
     parameters.friction_temperature_hot = parameters.friction_temperature_cold + random.decades(10.0, 500.0).max(range);
 }
