@@ -394,9 +394,9 @@ pub struct PatchSettings {
     pub tolerance: f64,
     /// The smallest that is asked of them.
     pub least_tolerance: f64,
-    /// Largest opening ahead of a cell over its pressure, in displacements of a cell under its own pressure: a cell that has just
+    /// Largest separation ahead of a cell over its pressure, in displacements of a cell under its own pressure: a cell that has just
     /// joined has next to none.
-    pub largest_opening: f64,
+    pub largest_separation_ratio: f64,
     /// Slip that does not count as slip, relative to that by which a cell's shear of the peak pressure answers.
     pub noise: f64,
     /// The least compliance of a pattern of pressures, over that of one cell by itself.
@@ -450,7 +450,7 @@ impl Default for PatchSettings {
             first_mechanics_tolerance: 1e-5,
             tolerance: 1e-9,
             least_tolerance: 1e-10,
-            largest_opening: 1e3,
+            largest_separation_ratio: 1e3,
             noise: 1e-4,
             least_compliance: 0.1,
             normal_passes: 60,

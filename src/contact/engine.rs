@@ -1,5 +1,6 @@
-//! What a contact offers to the step: its operators, built once, are an [`Engine`]. The line and the patch are two; a third one is
-//! another implementation, and the step ([`super::step`]) and its derivatives ([`super::sensitivity`]) stay as they are.
+//! Interface between a contact model and the step: the model's operators, built once, are an [`Engine`]. The line and the patch are
+//! two; a third one is another implementation, and the step ([`super::step`]) and its derivatives ([`super::sensitivity`]) stay as
+//! they are.
 
 use super::fields::Fields;
 use super::integrals::Integrals;
@@ -39,7 +40,7 @@ impl Direction {
 pub struct MaterialPath {
     /// Nodes, by their number.
     pub nodes: Range<usize>,
-    /// Their places in the fields of the tractions.
+    /// Places of the nodes in the fields of the tractions.
     pub places: Range<usize>,
 }
 
@@ -199,7 +200,8 @@ pub trait Engine: Sized + 'static {
         solvers: &mut Self::Solvers,
     );
 
-    /// Computes what acts on nothing any more within the step: heat under the surface, rail behind the window.
+    /// Computes, from the converged fields, what no other equation of the step depends on: heat under the surface, rail behind the
+    /// window.
     ///
     /// # Errors
     /// [`crate::error::Error::SurfaceNotConverged`].

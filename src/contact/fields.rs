@@ -21,11 +21,11 @@ pub enum Outputs {
 /// First guess of a field at the end of a step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Guess {
-    /// Its value at the beginning of the step.
+    /// Value of the field at the beginning of the step.
     Before,
-    /// Its value at the beginning, moved on at the rate of the step before.
+    /// Value of the field at the beginning of the step, moved on at the rate of the step before.
     Extrapolated,
-    /// None: the step computes it from the beginning of the step.
+    /// No guess: the step computes the field from its value at the beginning of the step.
     Computed,
 }
 
@@ -35,7 +35,7 @@ pub struct Row<F> {
     pub get: fn(&F) -> &Vec<f64>,
     /// The field, to be changed.
     pub get_mut: fn(&mut F) -> &mut Vec<f64>,
-    /// How the outputs depend on it.
+    /// Dependence of the outputs on the field.
     pub outputs: Outputs,
     /// First guess of a step.
     pub guess: Guess,
@@ -81,15 +81,15 @@ pub(super) use number;
 
 /// Fields of a contact, all that a step changes.
 pub trait Fields: Clone + PartialEq + std::fmt::Debug + Serialize + DeserializeOwned + 'static {
-    /// Table of the fields, but for what friction remembers.
+    /// Table of the fields, but for the history of friction.
     const ROWS: &'static [Row<Self>];
     /// Table of the numbers.
     const NUMBERS: &'static [Number<Self>];
 
-    /// What friction remembers.
+    /// History of friction.
     fn memory(&self) -> &Memory;
 
-    /// What friction remembers, to be changed.
+    /// History of friction, to be changed.
     fn memory_mut(&mut self) -> &mut Memory;
 
     /// Overwrites these fields with others of the same sizes, without allocating.
@@ -108,7 +108,7 @@ pub trait Fields: Clone + PartialEq + std::fmt::Debug + Serialize + DeserializeO
         }
     }
 
-    /// Copies the fields of some rows and what friction remembers.
+    /// Copies the fields of some rows and the history of friction.
     fn copy(&mut self, other: &Self, included: impl Fn(&Row<Self>) -> bool) {
         for row in Self::ROWS.iter().filter(|row| included(row)) {
             (row.get_mut)(self).copy_from_slice((row.get)(other));
@@ -116,7 +116,7 @@ pub trait Fields: Clone + PartialEq + std::fmt::Debug + Serialize + DeserializeO
         self.memory_mut().copy_from(other.memory());
     }
 
-    /// Sets everything to 0, but for what friction remembers.
+    /// Sets everything to 0, but for the history of friction.
     fn clear(&mut self) {
         for row in Self::ROWS {
             (row.get_mut)(self).fill(0.0);
@@ -139,7 +139,8 @@ pub trait Fields: Clone + PartialEq + std::fmt::Debug + Serialize + DeserializeO
         }
     }
 
-    /// Step of a central difference of the outputs along a change: it moves no field by more than its share of its largest value.
+    /// Step of a central difference of the outputs along a change: it moves no field by more than a small fraction of the field's
+    /// largest value, which the settings give.
     fn output_step(&self, change: &Self, settings: &SensitivitySettings) -> f64 {
         let step = Self::ROWS
             .iter()

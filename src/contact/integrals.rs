@@ -1,4 +1,4 @@
-//! What the fields of a contact sum up to. The sums of two parts of a contact add up to those of the whole.
+//! Integrals of the fields over a contact. The sums of two parts of a contact add up to those of the whole.
 
 use super::rim::ContactHeat;
 use crate::friction::coulomb;
@@ -91,7 +91,7 @@ pub struct Sums {
 }
 
 impl Sums {
-    /// Of the given nodes.
+    /// Sums over the given nodes.
     pub fn of(nodes: impl Iterator<Item = Node>) -> Sums {
         let mut sum = Sums::default();
         for node in nodes {

@@ -1,4 +1,4 @@
-//! Friction that depends on slip and on the past, on the paths of the rail's particles: what they bring into a step and take along.
+//! History of friction on the paths of the rail's particles: with what it begins a step, and with what it ends.
 
 use super::engine::Engine;
 use super::fields::Fields;
@@ -6,7 +6,7 @@ use super::problem::Problem;
 use crate::friction::memory::Memory;
 use crate::friction::path::PathLaw;
 
-/// Takes what the rail brings along from the step before.
+/// Begins a step with the history that the rail brings along from the step before.
 pub fn begin<E: Engine>(problem: &Problem<E>, before: &E::Fields, now: &mut E::Fields) {
     let remembers = Memory::is_kept(problem.parameters);
     let memory = now.memory_mut();
@@ -17,7 +17,7 @@ pub fn begin<E: Engine>(problem: &Problem<E>, before: &E::Fields, now: &mut E::F
     }
 }
 
-/// Sets what the rail takes along into the next step.
+/// Ends a step with the history that the rail takes along into the next one.
 pub fn end<E: Engine>(problem: &Problem<E>, now: &mut E::Fields) {
     let remembers = Memory::is_kept(problem.parameters);
     now.memory_mut().remembers = remembers;

@@ -3,7 +3,7 @@
 //! [`engine`] says what a contact offers, [`mod@line`] and [`patch`] offer it: a contact resolved along the rail, and along and
 //! across it. All else is written once: the [`problem`] of a step, its [`fields`], the [`interface`] vector between mechanics and
 //! heat, the [`step`], [`newton`] for the hard ones, [`sensitivity`] and its [`linear`] system, [`integrals`] of the fields and
-//! [`outputs`] from them, [`profiles`] for plotting, what friction has in [`memory`], the wheel's [`rim`].
+//! [`outputs`] from them, [`profiles`] for plotting, the [`memory`] of friction, the wheel's [`rim`].
 
 pub mod convergence;
 pub mod engine;

@@ -36,7 +36,8 @@ impl Integrals {
         }
     }
 
-    /// Writes what a line contact has none of: forces across the rail and about its normal, the contact's extent across.
+    /// Writes the outputs that a patch has and a line contact does not: forces across the rail and about its normal, the contact's
+    /// extent across.
     fn add_patch(&self, motion: &Motion, outputs: &mut Outputs) {
         let force = self.unit_force();
         outputs.lateral_force = -force * self.sums.lateral_shear;

@@ -72,7 +72,7 @@ impl<'a, E> Problem<'a, E> {
         }
     }
 
-    /// The same problem under other inputs.
+    /// Problem of the same step under other inputs.
     pub fn under(&self, inputs: Inputs) -> Problem<'a, E> {
         Problem {
             conditions: Conditions {

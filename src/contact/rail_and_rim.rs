@@ -65,7 +65,8 @@ pub fn wheel_tangent<E: Engine>(at: &Linearised<E>, direction: &Direction, chang
     let temperature = rim::temperature_tangent(
         parameters,
         E::wheel_temperature(fields),
-        (ambient, direction.inputs.ambient_temperature),
+        ambient,
+        direction.inputs.ambient_temperature,
         problem.conditions.duration,
         &heat,
         &heat_tangent,

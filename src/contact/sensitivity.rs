@@ -95,7 +95,7 @@ fn output_tangent<E: Engine>(
         let difference = (signal.get)(&ahead) - (signal.get)(&behind);
         (signal.set)(&mut derivative, difference / (2.0 * step));
     }
-    // It follows from the motion alone, whose tangent is exact.
+    // The distance follows from the motion alone, whose tangent is exact.
     derivative.distance = direction.speed * conditions.duration;
     if problem.is_unloaded() {
         derivative.penetration = 0.0;

@@ -16,8 +16,8 @@ pub struct LineFields {
     pub thermal_displacement: Vec<f64>,
     /// Wear depth at the columns, `m`.
     pub wear: Vec<f64>,
-    /// What stood in the inflow column before the step: its modal amplitudes, then its wear depth, modes + 1. The derivatives of
-    /// the step need it.
+    /// Content of the inflow column before the step, which the derivatives of the step need: its modal amplitudes, then its wear
+    /// depth, modes + 1.
     pub replaced_inflow: Vec<f64>,
     /// Pressure, scaled, n.
     pub pressure: Vec<f64>,
@@ -33,11 +33,11 @@ pub struct LineFields {
     pub heat_flux: Vec<f64>,
     /// Displacement of the contact nodes along x₁, scaled, n.
     pub displacement: Vec<f64>,
-    /// Its change over the last step, n.
+    /// Change of the displacement along x₁ over the last step, scaled, n.
     pub displacement_change: Vec<f64>,
-    /// What friction remembers, n.
+    /// History of friction, n.
     pub memory: Memory,
-    /// The way of rolling on which the last step took the displacement to be forgotten, `m`.
+    /// Relaxation length of the displacement in the last step, `m`: the distance of rolling on which a change of it decays.
     pub relaxation_length: f64,
     /// Penetration δ, scaled; 0 when lifted.
     pub penetration: f64,

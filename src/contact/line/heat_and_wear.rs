@@ -55,7 +55,7 @@ impl<'a> Problem<'a> {
     }
 }
 
-/// Keeps what stands in the inflow column before something new enters there.
+/// Keeps the content of the inflow column before new rail enters there.
 pub fn keep_inflow(problem: &Problem, before: &LineFields, now: &mut LineFields) {
     let inflow = problem.upwind().inflow();
     let modes = problem.operators.heat.basis.len();
@@ -116,26 +116,26 @@ pub fn update_wear_compliance(problem: &Problem, now: &LineFields, solvers: &mut
     }
 }
 
-/// Bound of the thermal displacement that the heat of this iteration would add if the thermal map were applied. The flux
-/// has changed by some share since the map was applied last; the displacement changes by less than that share, because
-/// most of the heat was there before; and the same holds of the share by which the surface temperature has changed, which tells
-/// the noise of next to no flux from heat. The bound spares the last iteration of a step the map, the
-/// largest part of its work: the fields keep the displacement that the tractions have felt.
+/// Bound of the thermal displacement that the heat of this iteration would add if the thermal map were applied. Since the map
+/// was applied last the flux has changed by some ratio; the displacement changes by a smaller one, because most of the heat was
+/// there before. The ratio by which the surface temperature has changed is a bound as well, and the better one where the flux is
+/// next to none and its changes are noise. The bound spares the last iteration of a step the map, the largest part of its work:
+/// the fields keep the displacement that the tractions were solved for.
 pub fn pending_displacement(problem: &Problem, now: &LineFields, solvers: &LineSolvers) -> f64 {
-    let share = |now: &[f64], mapped: &[f64]| relative(largest_change(now, mapped), largest(mapped));
+    let ratio = |now: &[f64], mapped: &[f64]| relative(largest_change(now, mapped), largest(mapped));
     let temperature = &now.surface_temperature[problem.operators.mesh.window()];
-    // Without slip flux and temperature in the window may be nothing but round-off, and each iteration has another one, while the heat of the
-    // rail beside the window displaces it: a share of that is no measure.
+    // Without slip flux and temperature in the window may be nothing but round-off, which changes from iteration to iteration,
+    // while the heat of the rail beside the window displaces it: a ratio to that is no measure.
     let settings = &problem.settings.split;
-    let unfelt = settings.unfelt * settings.tolerance * settings.least_temperature;
-    if largest_change(temperature, &solvers.mapped_temperature) <= unfelt {
+    let negligible = settings.unfelt * settings.tolerance * settings.least_temperature;
+    if largest_change(temperature, &solvers.mapped_temperature) <= negligible {
         return 0.0;
     }
-    let share = share(&now.heat_flux, &solvers.mapped_flux).min(share(temperature, &solvers.mapped_temperature));
-    if share.is_infinite() {
-        share
+    let ratio = ratio(&now.heat_flux, &solvers.mapped_flux).min(ratio(temperature, &solvers.mapped_temperature));
+    if ratio.is_infinite() {
+        ratio
     } else {
-        share * largest(&now.thermal_displacement)
+        ratio * largest(&now.thermal_displacement)
     }
 }
 

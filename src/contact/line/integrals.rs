@@ -1,4 +1,4 @@
-//! What is read off the fields of a line contact for the outputs.
+//! Integrals over a line contact, its extent, and the profiles' values that the outputs are made of.
 
 use super::fields::LineFields;
 use super::mechanics::Problem;
@@ -9,7 +9,7 @@ use crate::contact::integrals::{Node, Sums};
 use crate::contact::rim::ContactHeat;
 use crate::friction::coulomb;
 
-/// Of the given fields under the problem's conditions.
+/// Integrals of the given fields under the problem's conditions.
 pub fn integrals(problem: &Problem, fields: &LineFields) -> Integrals {
     let (operators, parameters) = (problem.operators, problem.parameters);
     let transport = problem.upwind();

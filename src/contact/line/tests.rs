@@ -1,4 +1,4 @@
-//! What must hold of the fields of a running simulation.
+//! Tests of the fields of a running simulation: balances, signs, symmetry.
 
 use super::fields::LineFields;
 use crate::numerics::dense;
@@ -13,7 +13,7 @@ fn largest_difference(a: &[f64], b: &[f64]) -> f64 {
     dense::largest_change(a, b) / dense::largest(a)
 }
 
-/// What the wear depth on the rail grows by in a step, ∫(W − Wⁿ) dx as the march balances it, `m²`.
+/// Growth of the worn area on the rail in a step, ∫(W − Wⁿ) dx as the march balances it, `m²`.
 fn deposited(x: &[f64], speed: f64, duration: f64, before: &[f64], after: &[f64]) -> f64 {
     let transport = Upwind::new(x, speed);
     let growth = |i: usize| after[i] - before[i];

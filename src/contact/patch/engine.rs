@@ -82,7 +82,7 @@ impl Engine for PatchOperators {
         self.scales.displacement * self.own[0][self.grid.stride()]
     }
 
-    /// In the ratio of the contact's length.
+    /// Scales the relaxation length at the largest load by the ratio of the contact's lengths.
     fn relaxation_length(problem: &Problem, fields: &PatchFields) -> f64 {
         let load = problem.load(fields);
         let ratio = (load / problem.parameters.largest_load).cbrt().min(1.0);
@@ -144,7 +144,7 @@ impl Engine for PatchOperators {
         Ok(())
     }
 
-    /// What was not under pressure is not extrapolated into it.
+    /// Takes off the first guess the pressure of cells that were not under pressure before.
     fn limit_guess(before: &PatchFields, now: &mut PatchFields) {
         for (pressure, before) in now.pressure.iter_mut().zip(&before.pressure) {
             *pressure = if *before > 0.0 { pressure.max(0.0) } else { 0.0 };

@@ -1,4 +1,4 @@
-//! What is read off the fields of a patch for the outputs.
+//! Integrals over a patch, its extent, and the profiles' values that the outputs are made of.
 
 use super::extent::extent;
 use super::fields::PatchFields;
@@ -10,7 +10,7 @@ use crate::contact::integrals::{Node, Sums};
 use crate::contact::rim::ContactHeat;
 use crate::friction::coulomb;
 
-/// Of the given fields under the problem's conditions.
+/// Integrals of the given fields under the problem's conditions.
 pub fn integrals(problem: &Problem, fields: &PatchFields) -> Integrals {
     let operators = problem.operators;
     let extent = extent(operators, &fields.pressure);

@@ -108,7 +108,8 @@ pub fn heat(at: &mut Linearised<PatchOperators>, along: &Along, change: &mut Pat
         .heat_tangent(&fields.heat, &march_change, &mut change.heat, heat)
 }
 
-/// Computes the change of what acts on nothing any more within the step.
+/// Computes the change of the heat under the surface and of the rail behind the window, on which no other equation of the step
+/// depends.
 pub fn finalise(at: &mut Linearised<PatchOperators>, direction: &Direction, change: &mut PatchFields) {
     let (problem, fields) = (at.problem, &*at.fields);
     let breadth = if at.touches {
@@ -122,7 +123,7 @@ pub fn finalise(at: &mut Linearised<PatchOperators>, direction: &Direction, chan
     wear.finish_tangent(direction.speed, breadth, &fields.wear, &mut change.wear);
 }
 
-/// The change of what carries heat through the strips.
+/// Change of what carries heat through the strips.
 fn carriage(direction: &Direction, breadth: f64) -> CarriageChange {
     CarriageChange {
         speed: direction.speed,

@@ -66,8 +66,8 @@ pub fn solve(
     })
 }
 
-/// Without contact there are no tractions. The displacement that does not come from shear is that of this step all the same: what
-/// the contact before has left would act on the next one.
+/// Clears the tractions where there is no contact. The displacement that does not come from shear is computed all the same: the one
+/// that is left from the contact before would act on the next one.
 fn lift(problem: &Problem, interface: &Interface, fields: &mut PatchFields, solvers: &mut PatchSolvers) {
     fields.pressure.fill(0.0);
     fields.friction.fill(0.0);
@@ -142,7 +142,7 @@ fn solve_friction(
         let contact = (&solvers.contact, &fields.pressure[..]);
         memory::prepare(problem, path_law, contact, fields, &mut solvers.path);
     }
-    // Coulomb's bound, and what the leading edge adds: the opening ahead is that of the gap in the ratio of the tractions.
+    // Coulomb's bound, and the leading-edge correction: u jumps out of the contact as the gap does, in the ratio of the tractions.
     if path_law.is_none() {
         fields.friction.fill(0.0);
     }
@@ -161,8 +161,10 @@ fn solve_friction(
             solvers.bound[index] = mu * fields.pressure[place];
             solvers.edge[index] = if k == leading {
                 let gap = solvers.normal.separation[place.wrapping_add_signed(ahead)];
-                let ratio = problem.opening(gap, fields.pressure[place]);
-                operators.opening.map(|factor| weights.strain_speed * factor * ratio)
+                let ratio = problem.separation_ratio(gap, fields.pressure[place]);
+                operators
+                    .edge_factors
+                    .map(|factor| weights.strain_speed * factor * ratio)
             } else {
                 [0.0; 2]
             };
@@ -222,7 +224,7 @@ fn solve_friction(
     Ok(())
 }
 
-/// A first guess within Coulomb's bound, nothing outside the contact.
+/// Scales the shear of the first guess back to Coulomb's bound, to nothing outside the contact.
 fn keep_within_bounds(grid: &Grid, contact: &Contact, bound: &[f64], fields: &mut PatchFields, on_grid: &mut [f64]) {
     on_grid.fill(0.0);
     contact.scatter(grid, bound, on_grid);
@@ -230,14 +232,14 @@ fn keep_within_bounds(grid: &Grid, contact: &Contact, bound: &[f64], fields: &mu
     for ((x, y), &bound) in x.iter_mut().zip(y).zip(&*on_grid) {
         let length = coulomb::magnitude([*x, *y]);
         if length > bound {
-            let share = bound / length;
-            (*x, *y) = (share * *x, share * *y);
+            let ratio = bound / length;
+            (*x, *y) = (ratio * *x, ratio * *y);
         }
     }
     on_grid.fill(0.0);
 }
 
-/// The slip ahead of the cells without the response to their shear.
+/// Computes the slip ahead of the cells without the response to their shear.
 fn free_slip(
     problem: &Problem,
     interface: &Interface,
@@ -267,7 +269,7 @@ fn free_slip(
     }
 }
 
-/// The displacement that does not come from shear: by pressure where the bodies differ, and by heat.
+/// Computes the displacement that does not come from shear: by pressure where the bodies differ, and by heat.
 fn given_displacement(problem: &Problem, interface: &Interface, fields: &PatchFields, solvers: &mut PatchSolvers) {
     let operators = problem.operators;
     let grid = &operators.grid;
@@ -296,7 +298,8 @@ fn given_displacement(problem: &Problem, interface: &Interface, fields: &PatchFi
     }
 }
 
-/// At rest, where the slip is the wheel's alone: the law gives the shear, and there is none without slip.
+/// Sets the shear of a wheel that stands on the spot, where the slip is the wheel's alone: the law gives the shear, and there is
+/// none without slip.
 fn slide_on_the_spot(
     problem: &Problem,
     path: Option<&PathOfCells>,
@@ -338,7 +341,7 @@ fn slide_on_the_spot(
     }
 }
 
-/// The slip at the centres of the cells, the mean of that ahead and that behind: it heats, wears and takes power.
+/// Computes the slip at the centres of the cells, the mean of that ahead and that behind: it heats, wears and takes power.
 fn mean_slip(problem: &Problem, fields: &mut PatchFields, solvers: &mut PatchSolvers) {
     let grid = &problem.operators.grid;
     let moves = f64::from(solvers.response.own[0][solvers.response.origin]) != 0.0;

@@ -1,4 +1,4 @@
-//! Friction that depends on slip: the law of the cells under pressure, at what the particles of their strip bring along.
+//! Friction of the cells under pressure where it depends on slip, for the history that the particles of their strip bring along.
 
 use super::fields::PatchFields;
 use super::problem::Problem;
@@ -7,13 +7,14 @@ use crate::friction::path::PathLaw;
 use crate::mechanics::patch::contact::Contact;
 use std::ops::Range;
 
-/// The cells of a strip.
+/// Cells of a strip.
 fn cells(problem: &Problem, strip: usize) -> Range<usize> {
     let cells = problem.operators.grid.cells;
     strip * cells..(strip + 1) * cells
 }
 
-/// The friction law of the cells under pressure at what their particles bring along, with μ(θ) of all cells in the fields.
+/// Sets the friction law of the cells under pressure for the history that their particles bring along, with μ(θ) of all cells in
+/// the fields.
 pub fn prepare(
     problem: &Problem,
     law: &PathLaw,

@@ -37,7 +37,7 @@ pub fn contact_nodes(operators: &PatchOperators, fields: &PatchFields) -> Vec<Co
         .collect()
 }
 
-/// Of the fields, linear between the centres of the cells; between the two strips in the middle their mean.
+/// Samples the fields, linear between the centres of the cells; between the two strips in the middle their mean.
 pub fn profiles(problem: &Problem, fields: &PatchFields, ambient: f64) -> Profiles {
     let operators = problem.operators;
     let grid = &operators.grid;

@@ -1,12 +1,12 @@
-//! How the slip responds to the shear: the products of the rail, of a cell's displacement and of that of the cell ahead of it, with the
-//! weights that speed and step give them.
+//! Response of the slip to the shear: the displacement by shear of a cell and of the cell ahead of it, with the weights that speed and
+//! step give them.
 
 use super::operators::PatchOperators;
 use super::problem::{Problem, SlipWeights};
 use crate::body::influence::ShiftedKernels;
 use crate::mechanics::patch::friction::SlipResponse;
 
-/// No response yet.
+/// Response that is not adapted to any weights yet.
 pub fn none(operators: &PatchOperators) -> SlipResponse {
     SlipResponse {
         double: operators.displacement.clone(),
@@ -17,11 +17,11 @@ pub fn none(operators: &PatchOperators) -> SlipResponse {
     }
 }
 
-/// The response of the slip to the shear at these weights, for a contact on so many strips.
+/// Adapts the response of the slip to the weights, for a contact on so many strips.
 pub fn adapt(problem: &Problem, weights: &SlipWeights, strips: usize, response: &mut SlipResponse) {
     let (operators, forward) = (problem.operators, problem.is_forward());
     response.forward = forward;
-    // The displacement of the cell ahead is felt at one lag more towards it.
+    // The kernel of the cell ahead is that of the cell itself, shifted by one lag.
     let ahead = if forward { 1 } else { -1 };
     let (own, next) = (weights.strain + weights.change, -weights.strain);
     let (transform, displacement) = operators.transform_for(strips);

@@ -1,8 +1,7 @@
 //! The change of the tractions with inputs, temperature and wear, at the solution of a step: pressure, then friction, each as the
 //! linear system that its solver solves last.
 //!
-//! It has solvers and tables of its own: what a step has left in the others is not needed, so that it starts from the fields
-//! alone.
+//! It has solvers and tables of its own, so that it starts from the fields alone, whatever a step has left in its solvers.
 
 use super::expansion;
 use super::fields::PatchFields;
@@ -29,7 +28,7 @@ use crate::mechanics::patch::normal::{Normal, NormalProblem};
 use crate::numerics::dense::{add_multiple, largest};
 use crate::settings::Settings;
 
-/// The linearised mechanics: solvers, what they are linearised at, and buffers.
+/// Linearised mechanics: solvers, the point at which they are linearised, and buffers.
 pub struct PatchTangent {
     contact: Contact,
     normal: Normal,
@@ -37,26 +36,33 @@ pub struct PatchTangent {
     response: SlipResponse,
     products: influence::ProductScratch<f64>,
     weights: SlipWeights,
-    /// What the friction law of all cells has in common: r, w, ε.
+    /// Constants r, w, ε of the friction law, the same for all cells.
     scheme: [f64; 3],
-    /// On the grid: slip ahead but for the leading edge, separation.
+    /// Slip ahead of the cells without what the leading edge adds, on the grid, `m/s`.
     slip: [Vec<f64>; 2],
+    /// Separation of the cells, on the grid, scaled.
     separation: Vec<f64>,
-    /// Of the cells: bound, slip per shear by the leading edge.
+    /// Coulomb's bound μp of the cells under pressure, scaled.
     bound: Vec<f64>,
+    /// Slip per shear that the leading edge adds to the cells under pressure, along x and y, `m/s`.
     edge: Vec<Vector>,
-    /// Changes on the grid: gap, u that does not come from shear, slip ahead but for the shear's part.
+    /// Change of the gap, on the grid, scaled.
     gap: Vec<f64>,
+    /// Change of the displacement u that does not come from shear, on the grid, scaled.
     given: [Vec<f64>; 2],
+    /// Change of the slip ahead of the cells at an unchanged shear, without what the leading edge adds, on the grid, `m/s`.
     free_slip: [Vec<f64>; 2],
-    /// Changes of the cells.
+    /// Change of Coulomb's bound of the cells under pressure, scaled.
     bound_change: Vec<f64>,
+    /// Change of the slip per shear that the leading edge adds to the cells under pressure, `m/s`.
     edge_change: Vec<Vector>,
-    expansion: expansion::Scratch,
+    expansion: expansion::ExpansionBuffers,
     nothing: Vec<f64>,
-    /// Where friction depends on slip: its law, that of the cells under pressure, the change of μ of all cells at unchanged slip.
+    /// Law of friction along a path; none where friction does not depend on slip.
     path_law: Option<PathLaw>,
+    /// Friction law of the cells under pressure where friction depends on slip.
     path: PathScratch,
+    /// Change of μ of all cells at unchanged slip.
     friction_change: Vec<f64>,
     /// Heat march, change of the wear rate, surface exchange at the solution and its change.
     pub(super) heat: StripHeatScratch,
@@ -66,7 +72,7 @@ pub struct PatchTangent {
 }
 
 impl PatchTangent {
-    /// For a rail.
+    /// Solvers and buffers for the given operators.
     pub fn new(operators: &PatchOperators, settings: &Settings) -> PatchTangent {
         let (grid, transform) = (&operators.grid, &operators.transform);
         let on_grid = || vec![0.0; grid.len()];
@@ -93,7 +99,7 @@ impl PatchTangent {
             free_slip: vectors(),
             bound_change: on_grid(),
             edge_change: vec![[0.0; 2]; grid.len()],
-            expansion: expansion::Scratch::new(grid, transform),
+            expansion: expansion::ExpansionBuffers::new(grid, transform),
             nothing: on_grid(),
             path_law: None,
             path: PathScratch::new(grid.strips * grid.cells),
@@ -148,13 +154,13 @@ impl PatchTangent {
                 self.edge[index] = [0.0; 2];
             }
             let (index, place) = leading_cell(problem, run);
-            let opening = problem.opening(
+            let ratio = problem.separation_ratio(
                 self.separation[place.wrapping_add_signed(ahead)],
                 fields.pressure[place],
             );
             self.edge[index] = operators
-                .opening
-                .map(|factor| self.weights.strain_speed * factor * opening);
+                .edge_factors
+                .map(|factor| self.weights.strain_speed * factor * ratio);
         }
         let own = f64::from(self.response.own[0][self.response.origin]);
         // At rest without a step before there is the law for the slip ahead, and no response to it.
@@ -178,7 +184,7 @@ impl PatchTangent {
         self.friction.linearise(&law, &fields.shear)
     }
 
-    /// The separation of the cells.
+    /// Computes the separation of the cells.
     fn separate(&mut self, problem: &Problem, interface: &Interface, fields: &PatchFields, solvers: &PatchSolvers) {
         let (operators, grid) = (problem.operators, &problem.operators.grid);
         for strip in 0..grid.strips {
@@ -193,8 +199,8 @@ impl PatchTangent {
         self.separation.copy_from_slice(&self.normal.separation);
     }
 
-    /// The change of tractions, friction coefficient and slip from the given one to that under the given change of the
-    /// interface vector.
+    /// Moves the change of tractions, friction coefficient and slip from the given one, a first guess, to that under the given change
+    /// of the interface vector.
     ///
     /// # Errors
     /// [`crate::error::Error::NormalNotConverged`], [`crate::error::Error::TangentialNotConverged`].
@@ -253,8 +259,8 @@ impl PatchTangent {
                 &mut self.friction_change,
             );
             for run in self.contact.runs() {
-                let own = &self.friction_change[run.strip * grid.cells + run.first..];
-                tangent.friction[run.places(grid)].copy_from_slice(&own[..run.cells]);
+                let first = run.strip * grid.cells + run.first;
+                tangent.friction[run.places(grid)].copy_from_slice(&self.friction_change[first..first + run.cells]);
             }
         }
         for (index, place) in self.contact.places(grid).enumerate() {
@@ -288,7 +294,7 @@ impl PatchTangent {
         Ok(())
     }
 
-    /// The change of the slip that does not count as slip: it follows the response of a cell to its own shear, and the peak pressure.
+    /// Change of the slip w that does not count as slip: w follows the response of a cell to its own shear, and the peak pressure.
     fn noise(&self, problem: &Problem, fields: &PatchFields, direction: &Direction, pressure: &[f64]) -> f64 {
         let [_, noise, _] = self.scheme;
         if !noise.is_finite() {
@@ -305,7 +311,7 @@ impl PatchTangent {
         noise * (own_change / own + pressure)
     }
 
-    /// The change of what the leading edge adds.
+    /// Computes the change of the slip per shear that the leading edge adds.
     fn edges(&mut self, problem: &Problem, fields: &PatchFields, direction: &Direction, tangent: &PatchFields) {
         let ahead = leading(problem);
         let strain_speed = problem.slip_weights_tangent(fields, direction.speed).strain_speed;
@@ -314,14 +320,15 @@ impl PatchTangent {
             let (index, place) = leading_cell(problem, run);
             let next = place.wrapping_add_signed(ahead);
             let (gap, pressure) = (self.separation[next], fields.pressure[place]);
-            let changes = (self.normal.separation[next], tangent.pressure[place]);
-            let change = strain_speed * problem.opening(gap, pressure)
-                + self.weights.strain_speed * problem.opening_tangent((gap, pressure), changes);
-            self.edge_change[index] = problem.operators.opening.map(|factor| factor * change);
+            let (gap_change, pressure_change) = (self.normal.separation[next], tangent.pressure[place]);
+            let change = strain_speed * problem.separation_ratio(gap, pressure)
+                + self.weights.strain_speed
+                    * problem.separation_ratio_tangent(gap, pressure, gap_change, pressure_change);
+            self.edge_change[index] = problem.operators.edge_factors.map(|factor| factor * change);
         }
     }
 
-    /// The change of the slip ahead of the cells at an unchanged shear, but for the leading edge.
+    /// Computes the change of the slip ahead of the cells at an unchanged shear, but for the leading edge.
     fn free_slip(
         &mut self,
         problem: &Problem,
@@ -367,7 +374,7 @@ impl PatchTangent {
         }
     }
 
-    /// The change of the slip at the centres of the cells.
+    /// Computes the change of the slip at the centres of the cells.
     fn mean_slip(&self, problem: &Problem, fields: &PatchFields, tangent: &mut PatchFields) {
         let grid = &problem.operators.grid;
         let behind = -leading(problem);
