@@ -30,7 +30,7 @@ pub enum Guess {
 }
 
 /// Row of the table of fields.
-pub struct Row<F> {
+pub struct FieldRow<F> {
     /// The field.
     pub get: fn(&F) -> &Vec<f64>,
     /// The field, to be changed.
@@ -56,7 +56,7 @@ pub struct Number<F> {
 /// Declares a row: dependence of the outputs, first guess, the field.
 macro_rules! row {
     ($outputs:ident, $guess:ident, $($field:tt)+) => {
-        $crate::contact::fields::Row {
+        $crate::contact::fields::FieldRow {
             get: |fields| &fields.$($field)+,
             get_mut: |fields| &mut fields.$($field)+,
             outputs: $crate::contact::fields::Outputs::$outputs,
@@ -82,7 +82,7 @@ pub(super) use number;
 /// Fields of a contact, all that a step changes.
 pub trait Fields: Clone + PartialEq + std::fmt::Debug + Serialize + DeserializeOwned + 'static {
     /// Table of the fields, but for the history of friction.
-    const ROWS: &'static [Row<Self>];
+    const ROWS: &'static [FieldRow<Self>];
     /// Table of the numbers.
     const NUMBERS: &'static [Number<Self>];
 
@@ -109,7 +109,7 @@ pub trait Fields: Clone + PartialEq + std::fmt::Debug + Serialize + DeserializeO
     }
 
     /// Copies the fields of some rows and the history of friction.
-    fn copy(&mut self, other: &Self, included: impl Fn(&Row<Self>) -> bool) {
+    fn copy(&mut self, other: &Self, included: impl Fn(&FieldRow<Self>) -> bool) {
         for row in Self::ROWS.iter().filter(|row| included(row)) {
             (row.get_mut)(self).copy_from_slice((row.get)(other));
         }
@@ -176,18 +176,18 @@ pub trait Fields: Clone + PartialEq + std::fmt::Debug + Serialize + DeserializeO
 
 /// State of a contact: its fields and the rates at which they changed over the last step.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct State<F> {
+pub struct EngineState<F> {
     /// Temperature, wear, tractions.
     pub fields: F,
     /// Rates of change of the fields that are extrapolated, per second, in the order of their rows.
     pub rates: Vec<Vec<f64>>,
 }
 
-impl<F: Fields> State<F> {
+impl<F: Fields> EngineState<F> {
     /// State that does not change.
-    pub fn at_rest(fields: F) -> State<F> {
+    pub fn at_rest(fields: F) -> EngineState<F> {
         let rates = extrapolated::<F>().map(|row| vec![0.0; (row.get)(&fields).len()]);
-        State {
+        EngineState {
             rates: rates.collect(),
             fields,
         }
@@ -214,7 +214,7 @@ impl<F: Fields> State<F> {
     }
 
     /// Whether the state, of another source, has the sizes of `expected` and finite content.
-    pub fn is_valid(&self, expected: &State<F>) -> bool {
+    pub fn is_valid(&self, expected: &EngineState<F>) -> bool {
         let same = |own: &Vec<f64>, expected: &Vec<f64>| {
             own.len() == expected.len() && own.iter().all(|value| value.is_finite())
         };
@@ -229,6 +229,6 @@ impl<F: Fields> State<F> {
 }
 
 /// Rows that are extrapolated.
-fn extrapolated<F: Fields>() -> impl Iterator<Item = &'static Row<F>> {
+fn extrapolated<F: Fields>() -> impl Iterator<Item = &'static FieldRow<F>> {
     F::ROWS.iter().filter(|row| row.guess == Guess::Extrapolated)
 }

@@ -11,7 +11,7 @@ use super::problem::Problem;
 use super::rail_and_rim;
 use super::work::Work;
 use crate::error::Result;
-use crate::mechanics::sweep::Sweep;
+use crate::mechanics::normal_tangential::TractionChange;
 use crate::settings::Settings;
 
 /// Solvers and buffers of Newton's method, and of the derivatives of a step.
@@ -96,7 +96,7 @@ impl<E: Engine> Sweeps<'_, E> {
         let settings = &problem.settings.interface;
         let tolerance = E::split_settings(problem.settings).last_mechanics_tolerance;
         for _ in 0..settings.mechanics_sweeps {
-            let Sweep {
+            let TractionChange {
                 shear_change,
                 set_changed,
             } = E::solve_mechanics(problem, self.iterate, self.now, self.solvers, tolerance)?;
@@ -150,7 +150,7 @@ pub fn solve<E: Engine>(
         for (step, (iterate, image)) in step.values_mut().iter_mut().zip(values) {
             *step = image - iterate;
         }
-        E::close_displacement(problem, sweeps.iterate, sweeps.now, sweeps.solvers);
+        E::finalise_displacement(problem, sweeps.iterate, sweeps.now, sweeps.solvers);
         let tolerance = settings.krylov_tolerance;
         let mut at = Linearised::new(problem, sweeps.iterate, sweeps.now, sweeps.solvers, tangent, tolerance)?;
         system.solve(&mut at, step.values_mut(), settings.newton_krylov_tolerance)?;

@@ -1,7 +1,7 @@
 //! The outputs, from the integrals over a contact.
 
 use super::integrals::Integrals;
-use super::problem::Conditions;
+use super::problem::StepConditions;
 use super::rim;
 use crate::friction;
 use crate::parameters::{ContactModel, Parameters};
@@ -111,7 +111,7 @@ impl Integrals {
     }
 
     /// The outputs at the end of a step that began with the totals of `before`.
-    pub fn outputs_after(&self, parameters: &Parameters, conditions: &Conditions, before: &Outputs) -> Outputs {
+    pub fn outputs_after(&self, parameters: &Parameters, conditions: &StepConditions, before: &Outputs) -> Outputs {
         let mut outputs = self.outputs(parameters, &conditions.inputs);
         let rates = self.total_rates(parameters, &conditions.inputs);
         for total in Outputs::totals() {

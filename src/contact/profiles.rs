@@ -117,8 +117,8 @@ pub struct ContactNode {
     pub slip: f64,
     /// Slip velocity to the left, `m/s`; 0 of a line contact.
     pub lateral_slip: f64,
-    /// Share −τ/(μ p) of Coulomb's bound; of a patch |τ|/(μ p).
-    pub saturation: f64,
+    /// Traction utilisation −τ/(μ p), with the sign of the slip; of a patch its magnitude |τ|/(μ p).
+    pub utilisation: f64,
     /// Temperature rise over the ambient, `K`.
     pub temperature: f64,
     /// Wear depth, `m`.
@@ -135,7 +135,7 @@ impl ContactNode {
         lateral_shear: 0.0,
         slip: 0.0,
         lateral_slip: 0.0,
-        saturation: 0.0,
+        utilisation: 0.0,
         temperature: 0.0,
         wear_depth: 0.0,
     };

@@ -28,7 +28,7 @@ pub fn march_heat<E: Engine>(
         // The wheel takes the friction power at the temperature of this march, not at that of the mechanics: so the heat balance
         // closes to round-off, whatever the tolerance of this iteration.
         if heating == WheelHeating::On {
-            E::close_friction(problem, now, solvers);
+            E::finalise_friction(problem, now, solvers);
         }
         warm_wheel(problem, before, now);
         if wheel.converges(E::wheel_temperature(now))? {

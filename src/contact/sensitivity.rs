@@ -8,7 +8,7 @@
 use super::engine::{Direction, Engine, Linearised};
 use super::fields::Fields;
 use super::problem::Problem;
-use super::step::Workspace;
+use super::step::StepWorkspace;
 use crate::error::Result;
 use crate::signals::{INPUTS, Inputs, OUTPUTS, OutputKind, Outputs};
 
@@ -20,10 +20,10 @@ use crate::signals::{INPUTS, Inputs, OUTPUTS, OutputKind, Outputs};
 pub fn outputs<E: Engine>(
     problem: &Problem<E>,
     fields: &E::Fields,
-    workspace: &mut Workspace<E>,
+    workspace: &mut StepWorkspace<E>,
     inputs: impl IntoIterator<Item = usize>,
 ) -> Result<Vec<Outputs>> {
-    let Workspace {
+    let StepWorkspace {
         solvers,
         trial,
         iterate,

@@ -7,7 +7,7 @@ use crate::body::mesh::Mesh;
 use crate::body::pair;
 use crate::error::Result;
 use crate::heat::Heat;
-use crate::mechanics::front::NearField;
+use crate::mechanics::leading_edge::NearField;
 use crate::parameters::Parameters;
 
 /// Discretised rail and the wheel's profile, built at initialisation.

@@ -11,7 +11,7 @@
 
 use crate::body::compliance::Compliance;
 use crate::body::mesh::Mesh;
-use crate::mechanics::front::NearField;
+use crate::mechanics::leading_edge::NearField;
 use crate::parameters::Parameters;
 use std::f64::consts::PI;
 

@@ -134,7 +134,7 @@ mod solvers {
         let fields = &mut run.state.contact.line_mut().fields;
         let mean = fields.pressure.iter().sum::<f64>() / fields.pressure.len() as f64;
         fields.pressure.fill(mean);
-        for start in [&mut fields.shear, &mut fields.slip, &mut fields.saturation] {
+        for start in [&mut fields.shear, &mut fields.slip, &mut fields.utilisation] {
             start.fill(0.0);
         }
         for rates in &mut run.state.contact.line_mut().rates {

@@ -1,7 +1,7 @@
 //! The fields of a patch, all that a step changes.
 
 use super::operators::PatchOperators;
-use crate::contact::fields::{Fields, Number, Row, number, row};
+use crate::contact::fields::{FieldRow, Fields, Number, number, row};
 use crate::friction::memory::Memory;
 use crate::heat::strips::StripTemperature;
 use crate::wear::strips::StripWear;
@@ -59,7 +59,7 @@ impl PatchFields {
 }
 
 impl Fields for PatchFields {
-    const ROWS: &'static [Row<PatchFields>] = &[
+    const ROWS: &'static [FieldRow<PatchFields>] = &[
         row!(Nonlinear, Extrapolated, shear[0]),
         row!(Nonlinear, Extrapolated, shear[1]),
         row!(Nonlinear, Extrapolated, pressure),

@@ -9,8 +9,8 @@ use crate::body::mesh::Mesh;
 use crate::error::Result;
 use crate::heat::basis::DepthBasis;
 use crate::heat::incoming::Incoming;
-use crate::mechanics::front::LAYER_OPENING;
-use crate::mechanics::patch::normal::Approach;
+use crate::mechanics::leading_edge::LAYER_STRAIN;
+use crate::mechanics::patch::normal::NormalInfluence;
 use crate::parameters::{HertzEllipse, Parameters};
 use crate::transport::strips::Strips;
 use std::f64::consts::PI;
@@ -34,15 +34,15 @@ pub struct PatchOperators {
     pub scales: Scales,
     /// Products on the grid.
     pub transform: Transform,
-    /// Approach by pressure, scaled.
-    pub approach: Approach,
+    /// NormalInfluence by pressure, scaled.
+    pub normal_influence: NormalInfluence,
     /// Displacement u by shear, scaled.
     pub displacement: Tables<f64>,
     /// Transforms that serve fewer strips, ascending, with the tables of u by shear for them: a product costs as much as it serves
     /// strips.
     pub narrow: Vec<(Transform, Tables<f64>)>,
     /// The kernels of u_x by τ_x and of u_y by τ_y of a strip on itself, by the lag along x, as the tables have it.
-    pub own: [Vec<f64>; 2],
+    pub strip_kernels: [Vec<f64>; 2],
     /// Displacement u by pressure, and with the same tables the upward displacement by shear, scaled; none where the bodies are alike.
     pub coupling: Option<Tables<f64>>,
     /// Displacement by heat.
@@ -122,12 +122,12 @@ impl PatchOperators {
             )
         });
         let columns = 2 * grid.stride() as isize + 8;
-        let own = |kernel: &dyn Fn((isize, isize)) -> f64| -> Vec<f64> {
+        let on_strip = |kernel: &dyn Fn((isize, isize)) -> f64| -> Vec<f64> {
             (0..columns)
                 .map(|lag| kernel((lag - grid.stride() as isize, 0)))
                 .collect()
         };
-        let own = [own(&along), own(&across)];
+        let strip_kernels = [on_strip(&along), on_strip(&across)];
         let curvature = parameters.rail_transverse_curvature + parameters.wheel_transverse_curvature;
         let radius = parameters.wheel_radius;
         let mut gap = vec![0.0; grid.len()];
@@ -150,7 +150,7 @@ impl PatchOperators {
         );
         let basis = DepthBasis::new(&mesh.depth)?;
         Ok(PatchOperators {
-            approach: Approach::new(&grid, &transform, normal),
+            normal_influence: NormalInfluence::new(&grid, &transform, normal),
             displacement: transform.tables(along, mixed, across),
             narrow: narrow
                 .into_iter()
@@ -159,7 +159,7 @@ impl PatchOperators {
                     (transform, tables)
                 })
                 .collect(),
-            own,
+            strip_kernels,
             coupling,
             expansion: Expansion::new(
                 parameters,
@@ -170,7 +170,7 @@ impl PatchOperators {
             ),
             edge_factors: {
                 // The edges of the strips are nearly straight: the pressure of a cell displaces half-planes by 2Δ/E*, 1/E* = π normal.
-                let edge = LAYER_OPENING * layer / (2.0 * PI * pair.normal() * unit * grid.length);
+                let edge = LAYER_STRAIN * layer / (2.0 * PI * pair.normal() * unit * grid.length);
                 [1.0 + edge, pair.direct / pair.normal() + edge]
             },
             gap,

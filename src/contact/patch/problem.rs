@@ -11,7 +11,7 @@ use crate::wear::strips::StripWearMarch;
 use std::ops::Range;
 
 /// Problem of a step of the patch.
-pub type Problem<'a> = crate::contact::problem::Problem<'a, PatchOperators>;
+pub type PatchProblem<'a> = crate::contact::problem::Problem<'a, PatchOperators>;
 
 /// Weights with which displacements enter the slip ahead of a cell, `m/s` per scaled displacement.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -33,7 +33,7 @@ impl SlipWeights {
     }
 }
 
-impl<'a> Problem<'a> {
+impl<'a> PatchProblem<'a> {
     /// Weights with which displacements enter the slip.
     pub fn slip_weights(&self, transient: Transient) -> SlipWeights {
         let speed = self.conditions.motion.rolling_speed.abs();
@@ -67,7 +67,7 @@ impl<'a> Problem<'a> {
         (gap.max(0.0) / pressure).min(self.largest_separation_ratio())
     }
 
-    /// Change of [`Problem::separation_ratio`].
+    /// Change of [`PatchProblem::separation_ratio`].
     pub fn separation_ratio_tangent(&self, gap: f64, pressure: f64, gap_change: f64, pressure_change: f64) -> f64 {
         let ratio = gap / pressure;
         if ratio > 0.0 && ratio < self.largest_separation_ratio() {
@@ -78,7 +78,7 @@ impl<'a> Problem<'a> {
     }
 
     fn largest_separation_ratio(&self) -> f64 {
-        self.settings.patch.largest_separation_ratio * self.operators.approach.own
+        self.settings.patch.largest_separation_ratio * self.operators.normal_influence.diagonal
     }
 
     /// Cells of a strip that have a cell ahead of them: the slip is taken between the two.
@@ -119,23 +119,23 @@ impl<'a> Problem<'a> {
     /// Sliding of a cell, by its place on the grid.
     pub fn sliding(&self, fields: &PatchFields, place: usize) -> Sliding {
         let (slip, _) = vectors(fields, place);
-        Sliding::of_vectors(slip, share(fields, place))
+        Sliding::of_vectors(slip, utilisation(fields, place))
     }
 
-    /// Change of [`Problem::sliding`] with that of the fields.
+    /// Change of [`PatchProblem::sliding`] with that of the fields.
     pub fn sliding_tangent(&self, fields: &PatchFields, tangent: &PatchFields, place: usize) -> Sliding {
         let ((slip, _), (slip_change, shear_change)) = (vectors(fields, place), vectors(tangent, place));
         let (mu, pressure) = (fields.friction[place], fields.pressure[place]);
-        let (bound, share) = (mu * pressure, share(fields, place));
+        let (bound, utilisation) = (mu * pressure, utilisation(fields, place));
         let bound_change = tangent.friction[place] * pressure + mu * tangent.pressure[place];
-        let share_change = [0, 1].map(|component| {
+        let utilisation_change = [0, 1].map(|component| {
             if bound > 0.0 {
-                (shear_change[component] - share[component] * bound_change) / bound
+                -(shear_change[component] + utilisation[component] * bound_change) / bound
             } else {
                 0.0
             }
         });
-        Sliding::vector_tangent(slip, share, slip_change, share_change)
+        Sliding::vector_tangent(slip, utilisation, slip_change, utilisation_change)
     }
 
     /// Computes what heats and cools the surface of the cells, strip by strip, with the wheel at θ_w.
@@ -177,9 +177,9 @@ fn vectors(fields: &PatchFields, place: usize) -> ([f64; 2], [f64; 2]) {
     (at(&fields.slip), at(&fields.shear))
 }
 
-/// Traction utilisation −τ/(μp) of a cell times −1: τ/(μp), along the rail and across it.
-fn share(fields: &PatchFields, place: usize) -> [f64; 2] {
+/// Traction utilisation −τ/(μp) of a cell, along the rail and across it: with the sign of the slip.
+fn utilisation(fields: &PatchFields, place: usize) -> [f64; 2] {
     let bound = fields.friction[place] * fields.pressure[place];
     let (_, shear) = vectors(fields, place);
-    shear.map(|shear| if bound > 0.0 { shear / bound } else { 0.0 })
+    shear.map(|shear| if bound > 0.0 { -shear / bound } else { 0.0 })
 }

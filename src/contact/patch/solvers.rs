@@ -21,7 +21,7 @@ pub struct PatchSolvers {
     pub(super) normal: Normal,
     pub(super) friction: Friction,
     pub(super) response: SlipResponse,
-    /// Conditions that the response is adapted to: the weights, whether V ≥ 0, the strips that its transform serves.
+    /// StepConditions that the response is adapted to: the weights, whether V ≥ 0, the strips that its transform serves.
     pub(super) weights: Option<(SlipWeights, bool, usize)>,
     /// Strips that the transform of the response serves.
     pub(super) strips: usize,
@@ -30,12 +30,17 @@ pub struct PatchSolvers {
     pub(super) heat: StripHeatScratch,
     pub(super) wear_rate: Vec<f64>,
     pub(super) wear_steps: StripWearSteps,
-    /// On the grid: gap, softness by wear, lift by shear, u that does not come from shear, u before, slip without shear.
+    /// Gap at no penetration, on the grid, scaled.
     pub(super) gap: Vec<f64>,
-    pub(super) softness: Vec<f64>,
-    pub(super) lift: [Vec<f64>; 2],
+    /// Wear depth of the step per pressure, on the grid, scaled.
+    pub(super) wear_compliance: Vec<f64>,
+    /// Displacement by shear, on the grid, scaled: upward in the first component, or along x and y.
+    pub(super) shear_displacement: [Vec<f64>; 2],
+    /// Displacement u that does not come from shear, on the grid, scaled.
     pub(super) given: [Vec<f64>; 2],
+    /// Displacement u before the step, on the grid, scaled.
     pub(super) before: [Vec<f64>; 2],
+    /// Slip ahead of the cells without the response to shear, on the grid, `m/s`.
     pub(super) free_slip: [Vec<f64>; 2],
     pub(super) expansion: expansion::ExpansionBuffers,
     pub(super) nothing: Vec<f64>,
@@ -90,8 +95,8 @@ impl PatchSolvers {
             wear_rate: vec![0.0; cells],
             wear_steps: StripWearSteps::new(&operators.strips),
             gap: on_grid(),
-            softness: on_grid(),
-            lift: vectors(),
+            wear_compliance: on_grid(),
+            shear_displacement: vectors(),
             given: vectors(),
             before: vectors(),
             free_slip: vectors(),

@@ -7,7 +7,7 @@ use super::expansion;
 use super::fields::PatchFields;
 use super::memory;
 use super::operators::PatchOperators;
-use super::problem::{Problem, SlipWeights, rigid_slip};
+use super::problem::{PatchProblem, SlipWeights, rigid_slip};
 use super::response;
 use super::solvers::{PatchSolvers, PathScratch};
 use crate::body::influence::{self, Window};
@@ -18,13 +18,13 @@ use crate::error::Result;
 use crate::friction::path::PathLaw;
 use crate::heat::strips::StripHeatScratch;
 use crate::heat::surface::{ExchangeTangent, SurfaceExchange};
-use crate::mechanics::normal::problem::Constraint;
+use crate::mechanics::normal::normal_problem::Constraint;
 use crate::mechanics::patch::contact::Contact;
 use crate::mechanics::patch::friction::{
     Friction, FrictionChange, FrictionProblem, LEAST_CHANGE, PathOfCells, SlipResponse,
 };
 use crate::mechanics::patch::law::Vector;
-use crate::mechanics::patch::normal::{Normal, NormalProblem};
+use crate::mechanics::patch::normal::{Normal, PatchNormalProblem};
 use crate::numerics::dense::{add_multiple, largest};
 use crate::settings::Settings;
 
@@ -117,7 +117,7 @@ impl PatchTangent {
     /// [`crate::error::Error::SingularContactMatrix`].
     pub fn linearise(
         &mut self,
-        problem: &Problem,
+        problem: &PatchProblem,
         interface: &Interface,
         fields: &PatchFields,
         solvers: &PatchSolvers,
@@ -149,7 +149,7 @@ impl PatchTangent {
             }
         }
         for run in self.contact.runs() {
-            for (index, place) in run.own().zip(run.places(grid)) {
+            for (index, place) in run.indices().zip(run.places(grid)) {
                 self.bound[index] = fields.friction[place] * fields.pressure[place];
                 self.edge[index] = [0.0; 2];
             }
@@ -162,7 +162,7 @@ impl PatchTangent {
                 .edge_factors
                 .map(|factor| self.weights.strain_speed * factor * ratio);
         }
-        let own = f64::from(self.response.own[0][self.response.origin]);
+        let own = f64::from(self.response.strip_kernels[0][self.response.origin]);
         // At rest without a step before there is the law for the slip ahead, and no response to it.
         self.scheme = if own == 0.0 {
             [1.0, f64::INFINITY, problem.parameters.slip_regularisation]
@@ -185,7 +185,13 @@ impl PatchTangent {
     }
 
     /// Computes the separation of the cells.
-    fn separate(&mut self, problem: &Problem, interface: &Interface, fields: &PatchFields, solvers: &PatchSolvers) {
+    fn separate(
+        &mut self,
+        problem: &PatchProblem,
+        interface: &Interface,
+        fields: &PatchFields,
+        solvers: &PatchSolvers,
+    ) {
         let (operators, grid) = (problem.operators, &problem.operators.grid);
         for strip in 0..grid.strips {
             for (cell, place) in grid.row(strip).enumerate() {
@@ -193,7 +199,7 @@ impl PatchTangent {
                 self.gap[place] = operators.gap[place] + interface.gap()[index] - interface.displacement()[index];
             }
         }
-        let data = normal_problem(problem, &self.gap, &solvers.softness, problem.constraint(), 0.0);
+        let data = normal_problem(problem, &self.gap, &solvers.wear_compliance, problem.constraint(), 0.0);
         self.normal
             .separation_of(&data, &self.contact, &fields.pressure, fields.penetration);
         self.separation.copy_from_slice(&self.normal.separation);
@@ -206,7 +212,7 @@ impl PatchTangent {
     /// [`crate::error::Error::NormalNotConverged`], [`crate::error::Error::TangentialNotConverged`].
     pub fn tractions(
         &mut self,
-        problem: &Problem,
+        problem: &PatchProblem,
         (interface, fields, solvers): (&Interface, &PatchFields, &PatchSolvers),
         along: &Along,
         tangent: &mut PatchFields,
@@ -220,7 +226,7 @@ impl PatchTangent {
                 let index = strip * grid.cells + cell;
                 self.gap[place] = iterate.gap()[index] - iterate.displacement()[index];
                 let touches = fields.pressure[place] > 0.0;
-                let resting = if touches || self.path_law.is_some() {
+                let static_friction = if touches || self.path_law.is_some() {
                     let changes = [
                         iterate.temperature(index),
                         direction.inputs.ambient_temperature,
@@ -230,8 +236,8 @@ impl PatchTangent {
                 } else {
                     0.0
                 };
-                tangent.memory.now.resting[index] = resting;
-                tangent.friction[place] = if touches { resting } else { 0.0 };
+                tangent.memory.now.static_friction[index] = static_friction;
+                tangent.friction[place] = if touches { static_friction } else { 0.0 };
             }
         }
         let total = direction.inputs.normal_load / problem.unit_force();
@@ -241,11 +247,17 @@ impl PatchTangent {
         };
         let size = [
             largest(&tangent.pressure),
-            largest(&self.gap) / operators.approach.own,
+            largest(&self.gap) / operators.normal_influence.diagonal,
             total.abs() / self.contact.cells() as f64,
         ];
         let size = size.into_iter().fold(LEAST_CHANGE, f64::max);
-        let data = normal_problem(problem, &self.gap, &solvers.softness, constraint, tolerance * size);
+        let data = normal_problem(
+            problem,
+            &self.gap,
+            &solvers.wear_compliance,
+            constraint,
+            tolerance * size,
+        );
         tangent.penetration = self.normal.tangent(&data, &self.contact, &mut tangent.pressure)?;
         self.edges(problem, fields, direction, tangent);
         if let Some(path_law) = &self.path_law {
@@ -254,7 +266,7 @@ impl PatchTangent {
                 path_law,
                 fields,
                 direction.speed,
-                &tangent.memory.now.resting,
+                &tangent.memory.now.static_friction,
                 Some(&tangent.pressure),
                 &mut self.friction_change,
             );
@@ -295,16 +307,16 @@ impl PatchTangent {
     }
 
     /// Change of the slip w that does not count as slip: w follows the response of a cell to its own shear, and the peak pressure.
-    fn noise(&self, problem: &Problem, fields: &PatchFields, direction: &Direction, pressure: &[f64]) -> f64 {
+    fn noise(&self, problem: &PatchProblem, fields: &PatchFields, direction: &Direction, pressure: &[f64]) -> f64 {
         let [_, noise, _] = self.scheme;
         if !noise.is_finite() {
             return 0.0;
         }
-        let (kernel, origin) = (&problem.operators.own[0], self.response.origin);
+        let (kernel, origin) = (&problem.operators.strip_kernels[0], self.response.origin);
         let weights = problem.slip_weights_tangent(fields, direction.speed);
         let next = kernel[origin.wrapping_add_signed(leading(problem))];
         let own_change = weights.strain * (kernel[origin] - next) + weights.change * kernel[origin];
-        let own = f64::from(self.response.own[0][origin]);
+        let own = f64::from(self.response.strip_kernels[0][origin]);
         let places = self.contact.places(&problem.operators.grid);
         let peak = places.max_by(|a, b| fields.pressure[*a].total_cmp(&fields.pressure[*b]));
         let pressure = peak.map_or(0.0, |place| pressure[place] / fields.pressure[place]);
@@ -312,7 +324,7 @@ impl PatchTangent {
     }
 
     /// Computes the change of the slip per shear that the leading edge adds.
-    fn edges(&mut self, problem: &Problem, fields: &PatchFields, direction: &Direction, tangent: &PatchFields) {
+    fn edges(&mut self, problem: &PatchProblem, fields: &PatchFields, direction: &Direction, tangent: &PatchFields) {
         let ahead = leading(problem);
         let strain_speed = problem.slip_weights_tangent(fields, direction.speed).strain_speed;
         self.edge_change[..self.contact.cells()].fill([0.0; 2]);
@@ -331,7 +343,7 @@ impl PatchTangent {
     /// Computes the change of the slip ahead of the cells at an unchanged shear, but for the leading edge.
     fn free_slip(
         &mut self,
-        problem: &Problem,
+        problem: &PatchProblem,
         (fields, solvers): (&PatchFields, &PatchSolvers),
         along: &Along,
         pressure: &[f64],
@@ -375,11 +387,11 @@ impl PatchTangent {
     }
 
     /// Computes the change of the slip at the centres of the cells.
-    fn mean_slip(&self, problem: &Problem, fields: &PatchFields, tangent: &mut PatchFields) {
+    fn mean_slip(&self, problem: &PatchProblem, fields: &PatchFields, tangent: &mut PatchFields) {
         let grid = &problem.operators.grid;
         let behind = -leading(problem);
         for run in self.contact.runs() {
-            for (index, place) in run.own().zip(run.places(grid)) {
+            for (index, place) in run.indices().zip(run.places(grid)) {
                 let last = place.wrapping_add_signed(behind);
                 let (ahead, last_response) = (self.friction.response_at(place), self.friction.response_at(last));
                 for component in 0..2 {
@@ -395,29 +407,29 @@ impl PatchTangent {
 }
 
 /// 1 where the leading side is that of +x, −1 else.
-fn leading(problem: &Problem) -> isize {
+fn leading(problem: &PatchProblem) -> isize {
     if problem.is_forward() { 1 } else { -1 }
 }
 
 /// The leading cell of a run among all cells, and its place.
-fn leading_cell(problem: &Problem, run: &crate::mechanics::patch::contact::Run) -> (usize, usize) {
+fn leading_cell(problem: &PatchProblem, run: &crate::mechanics::patch::contact::CellRun) -> (usize, usize) {
     let last = if problem.is_forward() { run.cells - 1 } else { 0 };
     (run.offset + last, run.places(&problem.operators.grid).start + last)
 }
 
 fn normal_problem<'a>(
-    problem: &Problem<'a>,
+    problem: &PatchProblem<'a>,
     gap: &'a [f64],
-    softness: &'a [f64],
+    wear_compliance: &'a [f64],
     constraint: Constraint,
     tolerance: f64,
-) -> NormalProblem<'a> {
-    NormalProblem {
+) -> PatchNormalProblem<'a> {
+    PatchNormalProblem {
         grid: &problem.operators.grid,
         transform: &problem.operators.transform,
-        approach: &problem.operators.approach,
+        normal_influence: &problem.operators.normal_influence,
         gap,
-        softness,
+        wear_compliance,
         constraint,
         tolerance,
     }
@@ -432,7 +444,7 @@ fn path_of_cells(law: Option<PathLaw>, scratch: &PathScratch) -> Option<PathOfCe
 }
 
 fn friction_problem<'a>(
-    problem: &Problem<'a>,
+    problem: &PatchProblem<'a>,
     (contact, response, [scale, noise, regularisation]): (&'a Contact, &'a SlipResponse, [f64; 3]),
     (edge, bound, path): (&'a [Vector], &'a [f64], Option<PathOfCells<'a>>),
     slip: &'a [Vec<f64>; 2],
