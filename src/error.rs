@@ -137,7 +137,7 @@ pub enum Error {
         "the coupling of normal and tangential contact stopped after {iterations} sweeps at a change of {residual:e} (relative; {tolerance:e} is required)"
     )]
     MechanicsNotConverged {
-        /// Sweeps done.
+        /// Iterations done.
         iterations: usize,
         /// Last relative change of the tractions.
         residual: f64,

@@ -35,7 +35,7 @@
 //! | | equation | what | unit | where |
 //! |---|---|---|---|---|
 //! | (12), (13) | μ = μ₀ up to θ₀, linear to μ_F at θ_F, μ_F beyond | friction coefficient (the default law) | 1 | `friction` |
-//! | (16) | s = ∂u₁/∂t − V ∂u₁/∂x₁ + (ω r₀ − V) | slip velocity of the rail relative to the wheel; the paper drops ∂u₁/∂t | m/s | `mechanics::sweep`, `mechanics::transient` |
+//! | (16) | s = ∂u₁/∂t − V ∂u₁/∂x₁ + (ω r₀ − V) | slip velocity of the rail relative to the wheel; the paper drops ∂u₁/∂t | m/s | `mechanics::normal_tangential`, `mechanics::transient` |
 //! | (18), (27) | div σ(u) − ρV² u,₁₁ − α(3λ+2γ) ∇θ = 0 in Ω, u = 0 on Γ₀ | displacement of the rail | N/m³ | `body`, `heat::thermal_map` |
 //! | (16) of a patch | s = (V(ξ + φ y), −V(η + φ x)) − V ∂u/∂x + ∂u/∂t | the same across the rail too, with lateral creepage η and spin φ | m/s | `contact::patch::problem` |
 //! | (18) of a patch | u = ∫ Boussinesq's and Cerruti's influence · (τ, p) dA | displacement of half-spaces, rail against wheel | m | `body::half_space`, `body::influence` |

@@ -18,7 +18,7 @@ pub struct Settings {
     /// The tangential problem.
     pub tangential: TangentialSettings,
     /// The wear of a step inside the normal problem.
-    pub softening: SofteningSettings,
+    pub wear_compliance: WearComplianceSettings,
     /// The surface condition of the heat march, and the rim.
     pub heat: HeatSettings,
     /// Derivatives of the outputs.
@@ -74,7 +74,7 @@ pub struct SplitSettings {
     /// Tolerance of the mechanics where they are solved alone, for the initial state.
     pub mechanics_alone_tolerance: f64,
     /// A change of the thermal displacement below this share of `tolerance` is not handed to the mechanics.
-    pub unfelt: f64,
+    pub negligible: f64,
     /// Iterations after which Anderson's method takes part. Two plain ones settle most steps.
     pub accelerate_after: usize,
     /// Least temperature to which the change of the temperature is related, `K`.
@@ -94,9 +94,9 @@ pub struct SplitSettings {
 /// Normal and tangential problem in turn.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MechanicsSettings {
-    /// Limit of the sweeps over both problems. With the active-set method two or three do, with the paper's method some
+    /// Limit of the iterations over both problems. With the active-set method two or three do, with the paper's method some
     /// ten.
-    pub sweeps: usize,
+    pub iterations: usize,
     /// Overlap of wheel and rail, scaled, above which an end of the window counts as cut off.
     pub overlap: f64,
     /// Load over the largest one below which the wheel is lifted: the pressure that carries it would be of the size of round-off of
@@ -143,15 +143,15 @@ pub struct TangentialSettings {
     /// A factorisation is kept while each step is shorter than this share of the one before.
     pub slow_contraction: f64,
     /// Ratio of two steps that is expected of a fresh factorisation until a second step has shown it. Where that was too
-    /// hopeful, the next sweep starts from the residual that was left.
+    /// hopeful, the next iteration starts from the residual that was left.
     pub fresh_contraction: f64,
-    /// Where the methods above stall: ratio of two regularisations on the way from the largest slip to the law.
+    /// Ratio of two regularisations on the way from the largest slip to the law, where the methods above stall.
     pub continuation_ratio: f64,
     /// The last of them before the law itself, relative to the largest slip.
     pub least_regularisation: f64,
     /// Residual to which those before the law are solved, relative to the largest pressure.
     pub continuation_tolerance: f64,
-    /// Where that does not lead to the law: limit of the arcs along the path of solutions.
+    /// Limit of the arcs along the path of solutions, where that way does not lead to the law.
     pub arcs: usize,
     /// Newton steps back to the path after one of them.
     pub arc_corrections: usize,
@@ -171,11 +171,11 @@ pub struct TangentialSettings {
 
 /// The wear of a step inside the normal problem.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct SofteningSettings {
+pub struct WearComplianceSettings {
     /// Wear per pressure, relative to the smallest compliance, up to which the split converges fast with the wear of the
     /// iteration before.
     pub explicit: f64,
-    /// Relative change of the softening from which on it is computed anew.
+    /// Relative change of the wear compliance from which on it is computed anew.
     pub renewal: f64,
 }
 
@@ -242,7 +242,7 @@ impl Default for SplitSettings {
             mechanics_tolerance: 1e-4,
             last_mechanics_tolerance: 1e-12,
             mechanics_alone_tolerance: 1e-11,
-            unfelt: 0.1,
+            negligible: 0.1,
             accelerate_after: 1,
             least_temperature: 1.0,
             trusted_contraction: 0.3,
@@ -256,7 +256,7 @@ impl Default for SplitSettings {
 impl Default for MechanicsSettings {
     fn default() -> Self {
         MechanicsSettings {
-            sweeps: 200,
+            iterations: 200,
             overlap: 1e-9,
             least_load: 1e-12,
             linearisation_tolerance: 1e-10,
@@ -266,7 +266,7 @@ impl Default for MechanicsSettings {
 
 impl MechanicsSettings {
     /// The load that the contact carries: none where it is too small to be felt.
-    pub fn felt(&self, load: f64, largest_load: f64) -> f64 {
+    pub fn carried_load(&self, load: f64, largest_load: f64) -> f64 {
         if load < self.least_load * largest_load {
             0.0
         } else {
@@ -314,9 +314,9 @@ impl Default for TangentialSettings {
     }
 }
 
-impl Default for SofteningSettings {
+impl Default for WearComplianceSettings {
     fn default() -> Self {
-        SofteningSettings {
+        WearComplianceSettings {
             explicit: 0.05,
             renewal: 0.1,
         }
@@ -387,9 +387,9 @@ pub struct PatchSettings {
     pub tolerance: f64,
     /// The smallest that is asked of them.
     pub least_tolerance: f64,
-    /// Largest opening ahead of a cell over its pressure, in displacements of a cell under its own pressure: a cell that has just
+    /// Largest separation ahead of a cell over its pressure, in displacements of a cell under its own pressure: a cell that has just
     /// joined has next to none.
-    pub largest_opening: f64,
+    pub largest_separation_ratio: f64,
     /// Slip that does not count as slip, relative to that by which a cell's shear of the peak pressure answers.
     pub noise: f64,
     /// The least compliance of a pattern of pressures, over that of one cell by itself.
@@ -439,7 +439,7 @@ impl Default for PatchSettings {
             first_mechanics_tolerance: 1e-5,
             tolerance: 1e-9,
             least_tolerance: 1e-10,
-            largest_opening: 1e3,
+            largest_separation_ratio: 1e3,
             noise: 1e-4,
             least_compliance: 0.1,
             normal_passes: 60,

@@ -7,7 +7,7 @@ use crate::contact::line::operators::LineOperators;
 use crate::contact::patch::fields::PatchFields;
 #[cfg(feature = "verification")]
 use crate::contact::patch::operators::PatchOperators;
-use crate::contact::problem::{Conditions, Task};
+use crate::contact::problem::{StepConditions, Task};
 use crate::contact::{ContactState, ContactWorkspace, Operators};
 use crate::error::{Error, Result};
 use crate::friction;
@@ -48,7 +48,7 @@ pub struct State {
     pub outputs: Outputs,
     /// Rates of change of the outputs over the last committed sub-step, per second.
     pub output_rates: Outputs,
-    /// How the last step converged.
+    /// Convergence of the last step.
     pub convergence: Convergence,
 }
 
@@ -78,7 +78,7 @@ impl State {
 pub struct Interrupted {
     /// Time that was committed of the step, `s`; 0 when nothing was.
     pub committed: f64,
-    /// Why the next sub-step failed.
+    /// Error of the next sub-step.
     #[source]
     pub error: Error,
 }
@@ -92,7 +92,7 @@ impl Model {
         Model::with_settings(parameters, Settings::default())
     }
 
-    /// As [`Model::new`], with other limits and tolerances than the default ones.
+    /// Builds the model as [`Model::new`] does, with other limits and tolerances than the default ones.
     ///
     /// # Errors
     /// As [`Model::new`].
@@ -120,7 +120,7 @@ impl Model {
         Ok(self.line_operators()?.heat.displacement.size())
     }
 
-    /// What the line engine has computed once: mesh, compliance, thermal maps.
+    /// Operators of a line contact, computed once: mesh, compliance, thermal maps.
     ///
     /// # Errors
     /// [`Error::OtherContactModel`].
@@ -128,7 +128,7 @@ impl Model {
         self.operators.line()
     }
 
-    /// What the patch engine has computed once: grid, influence functions, depth modes.
+    /// Operators of a patch, computed once: grid, influence functions, depth modes.
     ///
     /// # Errors
     /// [`Error::OtherContactModel`].
@@ -302,7 +302,7 @@ impl Model {
         Task {
             parameters: &self.parameters,
             settings: &self.settings,
-            conditions: Conditions {
+            conditions: StepConditions {
                 inputs: *inputs,
                 motion: inputs.motion(&self.parameters),
                 duration,
@@ -364,7 +364,7 @@ impl Model {
             .sensitivities(&task, &mut workspace.contact, &state.contact, inputs)
     }
 
-    /// How the last step converged.
+    /// Convergence of the last step.
     pub fn convergence(&self, state: &State) -> Convergence {
         state.convergence
     }
@@ -460,7 +460,7 @@ mod tests {
         model.step(&mut model.workspace(), state, &JUMPED(), &Inputs::ZERO, duration)
     }
 
-    /// Whatever solver fails, wherever in the step: the state is that of the last committed sub-step, bit for bit.
+    /// Fails each solver somewhere in the step: the state is that of the last committed sub-step, bit for bit.
     #[test]
     fn a_step_that_fails_leaves_the_last_committed_state() {
         let mut later = 0;

@@ -6,7 +6,7 @@
 //! iteration that would only confirm it.
 
 use crate::error::Error;
-use crate::mechanics::sweep::Sweep;
+use crate::mechanics::normal_tangential::TractionChange;
 use crate::settings::SplitSettings;
 
 /// Test of the iterations on one interface vector.
@@ -22,7 +22,7 @@ pub struct ConvergenceTest {
 }
 
 impl ConvergenceTest {
-    /// Before the first iteration.
+    /// Test before the first iteration.
     pub fn new(settings: SplitSettings) -> ConvergenceTest {
         ConvergenceTest {
             settings,
@@ -42,21 +42,21 @@ impl ConvergenceTest {
     }
 
     /// Takes the change of an iteration and what its mechanics changed. Returns whether the vector has converged.
-    pub fn is_passed(&mut self, change: f64, sweep: &Sweep) -> bool {
+    pub fn is_passed(&mut self, change: f64, tractions: &TractionChange) -> bool {
         let contraction = self.contraction(change);
         if contraction == 1.0 && self.change.is_finite() {
             self.sharpened *= self.settings.sharpening;
         }
         self.change = change;
-        self.shear_change = sweep.shear_change;
+        self.shear_change = tractions.shear_change;
         // A node that comes and goes with next to no pressure holds nothing up.
-        let margin = if sweep.set_changed {
+        let margin = if tractions.set_changed {
             self.settings.set_margin
         } else {
             1.0
         };
         change * contraction <= margin * self.settings.tolerance
-            && sweep.shear_change * contraction <= margin * self.settings.shear_tolerance
+            && tractions.shear_change * contraction <= margin * self.settings.shear_tolerance
     }
 
     /// Ratio of this change to the last one, 1 where it cannot be trusted.

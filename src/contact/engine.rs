@@ -1,5 +1,6 @@
-//! What a contact offers to the step: its operators, built once, are an [`Engine`]. The line and the patch are two; a third one is
-//! another implementation, and the step ([`super::step`]) and its derivatives ([`super::sensitivity`]) stay as they are.
+//! Interface between a contact model and the step: the model's operators, built once, are an [`Engine`]. The line and the patch are
+//! two; a third one is another implementation, and the step ([`super::step`]) and its derivatives ([`super::sensitivity`]) stay as
+//! they are.
 
 use super::fields::Fields;
 use super::integrals::Integrals;
@@ -8,7 +9,7 @@ use super::problem::Problem;
 use super::profiles::{ContactNode, Profiles};
 use super::rim::HeatedNode;
 use crate::error::Result;
-use crate::mechanics::sweep::Sweep;
+use crate::mechanics::normal_tangential::TractionChange;
 use crate::parameters::Parameters;
 use crate::settings::{SensitivitySettings, Settings, SplitSettings};
 use crate::signals::{Inputs, Motion};
@@ -39,7 +40,7 @@ impl Direction {
 pub struct MaterialPath {
     /// Nodes, by their number.
     pub nodes: Range<usize>,
-    /// Their places in the fields of the tractions.
+    /// Places of the nodes in the fields of the tractions.
     pub places: Range<usize>,
 }
 
@@ -91,8 +92,8 @@ pub trait Engine: Sized + 'static {
     /// Force of a scaled traction of 1 on a node, `N`.
     fn unit_force(&self, parameters: &Parameters) -> f64;
 
-    /// Displacement of a node by a scaled shear of 1 on itself, `m`.
-    fn own_displacement(&self, parameters: &Parameters) -> f64;
+    /// Diagonal of the tangential compliance: displacement of a node by a scaled shear of 1 on itself, `m`.
+    fn diagonal_displacement(&self, parameters: &Parameters) -> f64;
 
     /// Distance of rolling on which a contact under the load of the given fields forgets its displacement, `m`.
     fn relaxation_length(problem: &Problem<Self>, fields: &Self::Fields) -> f64;
@@ -142,7 +143,7 @@ pub trait Engine: Sized + 'static {
         now: &mut Self::Fields,
         solvers: &mut Self::Solvers,
         tolerance: f64,
-    ) -> Result<Sweep>;
+    ) -> Result<TractionChange>;
 
     /// Work of the mechanics since the step began, in multiplications and additions.
     fn mechanics_work(solvers: &Self::Solvers) -> u64;
@@ -187,19 +188,20 @@ pub trait Engine: Sized + 'static {
     }
 
     /// Sets friction coefficient and shear of the fields to those at their temperature; traction over bound stays. The friction power
-    /// of the fields is then, to round-off, the one that heats rail and wheel.
-    fn close_friction(problem: &Problem<Self>, now: &mut Self::Fields, solvers: &Self::Solvers);
+    /// of the fields is then, to round-off, the friction power that heats rail and wheel.
+    fn finalise_friction(problem: &Problem<Self>, now: &mut Self::Fields, solvers: &Self::Solvers);
 
     /// Sets the displacement of the surface at the end of the step, and its change, from the tractions and the interface vector that
     /// they were solved for.
-    fn close_displacement(
+    fn finalise_displacement(
         problem: &Problem<Self>,
         interface: &Interface,
         now: &mut Self::Fields,
         solvers: &mut Self::Solvers,
     );
 
-    /// Computes what acts on nothing any more within the step: heat under the surface, rail behind the window.
+    /// Computes, from the converged fields, what no other equation of the step depends on: heat under the surface, rail behind the
+    /// window.
     ///
     /// # Errors
     /// [`crate::error::Error::SurfaceNotConverged`].

@@ -3,7 +3,7 @@
 use super::engine::Engine;
 use super::problem::Problem;
 use crate::friction::path::{PathLaw, PathStep};
-use crate::mechanics::normal::problem::Constraint;
+use crate::mechanics::normal::normal_problem::Constraint;
 use crate::mechanics::transient::Transient;
 use crate::parameters::Control;
 
@@ -17,7 +17,7 @@ impl<E: Engine> Problem<'_, E> {
                 duration: self.conditions.duration,
                 spacing: operators.spacing(),
                 speed: self.conditions.motion.rolling_speed,
-                displacement: operators.own_displacement(self.parameters),
+                displacement: operators.diagonal_displacement(self.parameters),
                 pressure: operators.pressure_scale(),
             },
         )
@@ -28,7 +28,7 @@ impl<E: Engine> Problem<'_, E> {
         match self.parameters.control {
             Control::Load => {
                 let load = self.conditions.inputs.normal_load;
-                let load = self.settings.mechanics.felt(load, self.parameters.largest_load);
+                let load = self.settings.mechanics.carried_load(load, self.parameters.largest_load);
                 Constraint::Total(load / self.unit_force())
             }
             Control::Penetration => {

@@ -21,21 +21,21 @@ pub enum Outputs {
 /// First guess of a field at the end of a step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Guess {
-    /// Its value at the beginning of the step.
+    /// Value of the field at the beginning of the step.
     Before,
-    /// Its value at the beginning, moved on at the rate of the step before.
+    /// Value of the field at the beginning of the step, moved on at the rate of the step before.
     Extrapolated,
-    /// None: the step computes it from the beginning of the step.
+    /// No guess: the step computes the field from its value at the beginning of the step.
     Computed,
 }
 
 /// Row of the table of fields.
-pub struct Row<F> {
+pub struct FieldRow<F> {
     /// The field.
     pub get: fn(&F) -> &Vec<f64>,
     /// The field, to be changed.
     pub get_mut: fn(&mut F) -> &mut Vec<f64>,
-    /// How the outputs depend on it.
+    /// Dependence of the outputs on the field.
     pub outputs: Outputs,
     /// First guess of a step.
     pub guess: Guess,
@@ -56,7 +56,7 @@ pub struct Number<F> {
 /// Declares a row: dependence of the outputs, first guess, the field.
 macro_rules! row {
     ($outputs:ident, $guess:ident, $($field:tt)+) => {
-        $crate::contact::fields::Row {
+        $crate::contact::fields::FieldRow {
             get: |fields| &fields.$($field)+,
             get_mut: |fields| &mut fields.$($field)+,
             outputs: $crate::contact::fields::Outputs::$outputs,
@@ -81,15 +81,15 @@ pub(super) use number;
 
 /// Fields of a contact, all that a step changes.
 pub trait Fields: Clone + PartialEq + std::fmt::Debug + Serialize + DeserializeOwned + 'static {
-    /// Table of the fields, but for what friction remembers.
-    const ROWS: &'static [Row<Self>];
+    /// Table of the fields, but for the history of friction.
+    const ROWS: &'static [FieldRow<Self>];
     /// Table of the numbers.
     const NUMBERS: &'static [Number<Self>];
 
-    /// What friction remembers.
+    /// History of friction.
     fn memory(&self) -> &Memory;
 
-    /// What friction remembers, to be changed.
+    /// History of friction, to be changed.
     fn memory_mut(&mut self) -> &mut Memory;
 
     /// Overwrites these fields with others of the same sizes, without allocating.
@@ -108,15 +108,15 @@ pub trait Fields: Clone + PartialEq + std::fmt::Debug + Serialize + DeserializeO
         }
     }
 
-    /// Copies the fields of some rows and what friction remembers.
-    fn copy(&mut self, other: &Self, included: impl Fn(&Row<Self>) -> bool) {
+    /// Copies the fields of some rows and the history of friction.
+    fn copy(&mut self, other: &Self, included: impl Fn(&FieldRow<Self>) -> bool) {
         for row in Self::ROWS.iter().filter(|row| included(row)) {
             (row.get_mut)(self).copy_from_slice((row.get)(other));
         }
         self.memory_mut().copy_from(other.memory());
     }
 
-    /// Sets everything to 0, but for what friction remembers.
+    /// Sets everything to 0, but for the history of friction.
     fn clear(&mut self) {
         for row in Self::ROWS {
             (row.get_mut)(self).fill(0.0);
@@ -139,7 +139,8 @@ pub trait Fields: Clone + PartialEq + std::fmt::Debug + Serialize + DeserializeO
         }
     }
 
-    /// Step of a central difference of the outputs along a change: it moves no field by more than its share of its largest value.
+    /// Step of a central difference of the outputs along a change: it moves no field by more than a small fraction of the field's
+    /// largest value, which the settings give.
     fn output_step(&self, change: &Self, settings: &SensitivitySettings) -> f64 {
         let step = Self::ROWS
             .iter()
@@ -175,18 +176,18 @@ pub trait Fields: Clone + PartialEq + std::fmt::Debug + Serialize + DeserializeO
 
 /// State of a contact: its fields and the rates at which they changed over the last step.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct State<F> {
+pub struct EngineState<F> {
     /// Temperature, wear, tractions.
     pub fields: F,
     /// Rates of change of the fields that are extrapolated, per second, in the order of their rows.
     pub rates: Vec<Vec<f64>>,
 }
 
-impl<F: Fields> State<F> {
+impl<F: Fields> EngineState<F> {
     /// State that does not change.
-    pub fn at_rest(fields: F) -> State<F> {
+    pub fn at_rest(fields: F) -> EngineState<F> {
         let rates = extrapolated::<F>().map(|row| vec![0.0; (row.get)(&fields).len()]);
-        State {
+        EngineState {
             rates: rates.collect(),
             fields,
         }
@@ -213,7 +214,7 @@ impl<F: Fields> State<F> {
     }
 
     /// Whether the state, of another source, has the sizes of `expected` and finite content.
-    pub fn is_valid(&self, expected: &State<F>) -> bool {
+    pub fn is_valid(&self, expected: &EngineState<F>) -> bool {
         let same = |own: &Vec<f64>, expected: &Vec<f64>| {
             own.len() == expected.len() && own.iter().all(|value| value.is_finite())
         };
@@ -228,6 +229,6 @@ impl<F: Fields> State<F> {
 }
 
 /// Rows that are extrapolated.
-fn extrapolated<F: Fields>() -> impl Iterator<Item = &'static Row<F>> {
+fn extrapolated<F: Fields>() -> impl Iterator<Item = &'static FieldRow<F>> {
     F::ROWS.iter().filter(|row| row.guess == Guess::Extrapolated)
 }

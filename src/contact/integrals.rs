@@ -1,4 +1,4 @@
-//! What the fields of a contact sum up to. The sums of two parts of a contact add up to those of the whole.
+//! Integrals of the fields over a contact. The sums of two parts of a contact add up to those of the whole.
 
 use super::rim::ContactHeat;
 use crate::friction::coulomb;
@@ -31,8 +31,8 @@ pub struct Node {
 /// Integrals over a contact, its extent, and what else the outputs are made of.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Integrals {
-    /// Sums over the nodes.
-    pub sums: Sums,
+    /// NodeSums over the nodes.
+    pub sums: NodeSums,
     /// Area that a node stands for, `m²`.
     pub node_area: f64,
     /// Unit of the scaled tractions, `Pa`.
@@ -59,9 +59,9 @@ pub struct Integrals {
     pub wheel_temperature: f64,
 }
 
-/// Sums and largest values over the nodes. Tractions are scaled; every node stands for the same area.
+/// NodeSums and largest values over the nodes. Tractions are scaled; every node stands for the same area.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Sums {
+pub struct NodeSums {
     /// Σ p.
     pub pressure: f64,
     /// Σ p x, `m`.
@@ -90,10 +90,10 @@ pub struct Sums {
     pub peak_shear: f64,
 }
 
-impl Sums {
-    /// Of the given nodes.
-    pub fn of(nodes: impl Iterator<Item = Node>) -> Sums {
-        let mut sum = Sums::default();
+impl NodeSums {
+    /// NodeSums over the given nodes.
+    pub fn of(nodes: impl Iterator<Item = Node>) -> NodeSums {
+        let mut sum = NodeSums::default();
         for node in nodes {
             sum.heat_flux += node.heat_flux;
             if node.pressure <= 0.0 {

@@ -1,5 +1,5 @@
-//! The interface vector x: what the mechanics see of heat and wear. One sweep of mechanics, heat and wear makes G(x) of it, and a
-//! step is solved where x = G(x).
+//! The interface vector x: what the mechanics see of heat and wear. One application of mechanics, heat and wear, a sweep, maps it to
+//! G(x), and a step is solved where x = G(x).
 
 use crate::numerics::dense::{largest, largest_change};
 
@@ -14,7 +14,8 @@ const TEMPERATURE_UNIT: f64 = 100.0;
 ///
 /// Temperatures are rises of the surface, the wheel's is absolute; both in units of 100 K. The displacement is that by heat, of a
 /// line along x₁ and then upward, with what its convective inertia adds; of a patch upward. The gap is opened by the wear that is not
-/// in the wear compliance, and closed by the lift that shear causes between unlike half-spaces. Displacement and gap are scaled.
+/// in the wear compliance, and closed by the upward displacement that shear causes between unlike half-spaces. Displacement and gap
+/// are scaled.
 #[derive(Debug, Clone)]
 pub struct Interface {
     values: Vec<f64>,

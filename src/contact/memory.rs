@@ -1,4 +1,4 @@
-//! Friction that depends on slip and on the past, on the paths of the rail's particles: what they bring into a step and take along.
+//! History of friction on the paths of the rail's particles: with what it begins a step, and with what it ends.
 
 use super::engine::Engine;
 use super::fields::Fields;
@@ -6,7 +6,7 @@ use super::problem::Problem;
 use crate::friction::memory::Memory;
 use crate::friction::path::PathLaw;
 
-/// Takes what the rail brings along from the step before.
+/// Begins a step with the history that the rail brings along from the step before.
 pub fn begin<E: Engine>(problem: &Problem<E>, before: &E::Fields, now: &mut E::Fields) {
     let remembers = Memory::is_kept(problem.parameters);
     let memory = now.memory_mut();
@@ -17,7 +17,7 @@ pub fn begin<E: Engine>(problem: &Problem<E>, before: &E::Fields, now: &mut E::F
     }
 }
 
-/// Sets what the rail takes along into the next step.
+/// Ends a step with the history that the rail takes along into the next one.
 pub fn end<E: Engine>(problem: &Problem<E>, now: &mut E::Fields) {
     let remembers = Memory::is_kept(problem.parameters);
     now.memory_mut().remembers = remembers;
@@ -26,17 +26,17 @@ pub fn end<E: Engine>(problem: &Problem<E>, now: &mut E::Fields) {
     };
     let (operators, law) = (problem.operators, problem.friction());
     let mut memory = std::mem::take(now.memory_mut());
-    for (resting, rise) in memory.now.resting.iter_mut().zip(operators.surface_rise(now)) {
-        *resting = law.coefficient(*rise).0;
+    for (static_friction, rise) in memory.now.static_friction.iter_mut().zip(operators.surface_rise(now)) {
+        *static_friction = law.coefficient(*rise).0;
     }
     for path in operators.paths() {
         let pressure = &E::pressure(now)[path.places];
         let before = memory.before.path(path.nodes.clone());
         let after = &mut memory.now;
         let touches = |node: usize| pressure[node] > 0.0;
-        path_law.close(
+        path_law.finalise(
             &before,
-            &after.resting[path.nodes.clone()],
+            &after.static_friction[path.nodes.clone()],
             touches,
             &mut after.friction[path.nodes],
         );
@@ -45,13 +45,13 @@ pub fn end<E: Engine>(problem: &Problem<E>, now: &mut E::Fields) {
 }
 
 /// Writes the change of μ at unchanged slip into `friction`, node by node: with that of |V| by `speed` `m/s`, with that of μ(θ) in
-/// `resting` and with that of the pressure.
+/// `static_friction` and with that of the pressure.
 pub fn tangent<E: Engine>(
     problem: &Problem<E>,
     law: &PathLaw,
     fields: &E::Fields,
     speed: f64,
-    resting: &[f64],
+    static_friction: &[f64],
     pressure_change: Option<&[f64]>,
     friction: &mut [f64],
 ) {
@@ -64,7 +64,7 @@ pub fn tangent<E: Engine>(
         law.tangent(
             (&before, &now),
             (pressure, |node| changes.map_or(0.0, |changes| changes[node])),
-            (speed, &resting[nodes.clone()]),
+            (speed, &static_friction[nodes.clone()]),
             &mut friction[nodes],
         );
     }

@@ -3,7 +3,7 @@
 //! [`engine`] says what a contact offers, [`mod@line`] and [`patch`] offer it: a contact resolved along the rail, and along and
 //! across it. All else is written once: the [`problem`] of a step, its [`fields`], the [`interface`] vector between mechanics and
 //! heat, the [`step`], [`newton`] for the hard ones, [`sensitivity`] and its [`linear`] system, [`integrals`] of the fields and
-//! [`outputs`] from them, [`profiles`] for plotting, what friction has in [`memory`], the wheel's [`rim`].
+//! [`outputs`] from them, [`profiles`] for plotting, the [`memory`] of friction, the wheel's [`rim`].
 
 pub mod convergence;
 pub mod engine;
@@ -30,7 +30,7 @@ use crate::parameters::{ContactModel, Parameters};
 use crate::settings::Settings;
 use crate::signals::Outputs;
 use engine::Engine;
-use fields::State;
+use fields::EngineState;
 use integrals::Integrals;
 use line::fields::LineFields;
 use line::operators::LineOperators;
@@ -39,7 +39,7 @@ use patch::operators::PatchOperators;
 use problem::{Convergence, Problem, Task};
 use profiles::{ContactNode, Profiles};
 use serde::{Deserialize, Serialize};
-use step::Workspace;
+use step::StepWorkspace;
 
 /// Operators of a contact, computed once.
 #[allow(clippy::large_enum_variant, reason = "there are few, and they are not moved")]
@@ -58,18 +58,18 @@ pub enum Operators {
 )]
 pub enum ContactState {
     /// Line contact.
-    Line(State<LineFields>),
+    Line(EngineState<LineFields>),
     /// Patch.
-    Patch(State<PatchFields>),
+    Patch(EngineState<PatchFields>),
 }
 
 /// Solvers and buffers of a step.
 #[allow(clippy::large_enum_variant, reason = "there are few, and they are not moved")]
 pub enum ContactWorkspace {
     /// Line contact.
-    Line(Workspace<LineOperators>),
+    Line(StepWorkspace<LineOperators>),
     /// Patch.
-    Patch(Workspace<PatchOperators>),
+    Patch(StepWorkspace<PatchOperators>),
 }
 
 /// Runs an expression with operators and state, and a workspace where one is given, of the same contact model. Those of different
@@ -106,8 +106,8 @@ impl Operators {
     /// Workspace for the steps.
     pub fn workspace(&self, settings: &Settings) -> ContactWorkspace {
         match self {
-            Operators::Line(operators) => ContactWorkspace::Line(Workspace::new(operators, settings)),
-            Operators::Patch(operators) => ContactWorkspace::Patch(Workspace::new(operators, settings)),
+            Operators::Line(operators) => ContactWorkspace::Line(StepWorkspace::new(operators, settings)),
+            Operators::Patch(operators) => ContactWorkspace::Patch(StepWorkspace::new(operators, settings)),
         }
     }
 
@@ -120,8 +120,8 @@ impl Operators {
         fn initial<E: Engine>(
             operators: &E,
             task: &Task,
-            workspace: &mut Workspace<E>,
-        ) -> Result<(State<E::Fields>, Integrals)> {
+            workspace: &mut StepWorkspace<E>,
+        ) -> Result<(EngineState<E::Fields>, Integrals)> {
             let problem = Problem::new(operators, task);
             let state = step::initial_state(&problem, workspace)?;
             let integrals = E::integrals(&problem, &state.fields);
@@ -152,8 +152,8 @@ impl Operators {
     ) -> Result<(Convergence, Integrals)> {
         fn solve<E: Engine>(
             problem: &Problem<E>,
-            workspace: &mut Workspace<E>,
-            state: &State<E::Fields>,
+            workspace: &mut StepWorkspace<E>,
+            state: &EngineState<E::Fields>,
             last_duration: f64,
         ) -> Result<(Convergence, Integrals)> {
             let convergence = step::solve(problem, state, last_duration, workspace)?;
@@ -197,7 +197,7 @@ impl Operators {
     /// Whether a state (of another source) has the sizes of these operators and finite content.
     pub fn accepts(&self, state: &ContactState) -> bool {
         with_model!(self, state, |operators, state| state
-            .is_valid(&State::at_rest(operators.fields())))
+            .is_valid(&EngineState::at_rest(operators.fields())))
         .unwrap_or(false)
     }
 
@@ -259,7 +259,7 @@ impl ContactState {
     /// # Errors
     /// [`Error::OtherContactModel`].
     #[cfg(feature = "verification")]
-    pub fn line(&self) -> Result<&State<LineFields>> {
+    pub fn line(&self) -> Result<&EngineState<LineFields>> {
         match self {
             ContactState::Line(state) => Ok(state),
             ContactState::Patch(_) => Err(Error::OtherContactModel),
@@ -271,7 +271,7 @@ impl ContactState {
     /// # Errors
     /// [`Error::OtherContactModel`].
     #[cfg(feature = "verification")]
-    pub fn patch(&self) -> Result<&State<PatchFields>> {
+    pub fn patch(&self) -> Result<&EngineState<PatchFields>> {
         match self {
             ContactState::Patch(state) => Ok(state),
             ContactState::Line(_) => Err(Error::OtherContactModel),
@@ -280,7 +280,7 @@ impl ContactState {
 
     /// State of a line contact, for tests that prepare one.
     #[cfg(test)]
-    pub fn line_mut(&mut self) -> &mut State<LineFields> {
+    pub fn line_mut(&mut self) -> &mut EngineState<LineFields> {
         match self {
             ContactState::Line(state) => state,
             ContactState::Patch(_) => panic!("the state of a patch"),

@@ -11,7 +11,7 @@ use super::problem::Problem;
 use super::rail_and_rim;
 use super::work::Work;
 use crate::error::Result;
-use crate::mechanics::sweep::Sweep;
+use crate::mechanics::normal_tangential::TractionChange;
 use crate::settings::Settings;
 
 /// Solvers and buffers of Newton's method, and of the derivatives of a step.
@@ -96,7 +96,7 @@ impl<E: Engine> Sweeps<'_, E> {
         let settings = &problem.settings.interface;
         let tolerance = E::split_settings(problem.settings).last_mechanics_tolerance;
         for _ in 0..settings.mechanics_sweeps {
-            let Sweep {
+            let TractionChange {
                 shear_change,
                 set_changed,
             } = E::solve_mechanics(problem, self.iterate, self.now, self.solvers, tolerance)?;
@@ -141,8 +141,6 @@ pub fn solve<E: Engine>(
     let (mut count, mut jumps) = (1, 0);
     for _ in 0..settings.newton_steps {
         let change = sweeps.iterate.change_to(sweeps.image, split.least_temperature);
-            eprintln!("newton {count} residual {residual:e} change {change:e}");
-        }
         test.amend(change);
         if change <= settings.newton_margin * split.tolerance {
             return Ok(count);
@@ -152,13 +150,11 @@ pub fn solve<E: Engine>(
         for (step, (iterate, image)) in step.values_mut().iter_mut().zip(values) {
             *step = image - iterate;
         }
-        E::close_displacement(problem, sweeps.iterate, sweeps.now, sweeps.solvers);
+        E::finalise_displacement(problem, sweeps.iterate, sweeps.now, sweeps.solvers);
         let tolerance = settings.krylov_tolerance;
         let mut at = Linearised::new(problem, sweeps.iterate, sweeps.now, sweeps.solvers, tangent, tolerance)?;
         // One correction: Newton's method takes a step that is not quite exact.
         system.solve(&mut at, step.values_mut(), settings.newton_krylov_tolerance, 1)?;
-            eprintln!("   linear {left:e} products {}", system.products());
-        }
         work.add(system.products() * problem.operators.sweep_work())?;
         let mut damping = 1.0;
         let mut falls = false;
@@ -171,11 +167,6 @@ pub fn solve<E: Engine>(
                 residual = trial;
                 falls = true;
                 break;
-            }
-                eprintln!(
-                    "   trial {trial:e} damping {damping} step {:e}",
-                    crate::numerics::dense::largest(step.values())
-                );
             }
             damping *= 0.5;
         }

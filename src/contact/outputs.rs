@@ -1,7 +1,7 @@
 //! The outputs, from the integrals over a contact.
 
 use super::integrals::Integrals;
-use super::problem::Conditions;
+use super::problem::StepConditions;
 use super::rim;
 use crate::friction;
 use crate::parameters::{ContactModel, Parameters};
@@ -36,7 +36,8 @@ impl Integrals {
         }
     }
 
-    /// Writes what a line contact has none of: forces across the rail and about its normal, the contact's extent across.
+    /// Writes the outputs that a patch has and a line contact does not: forces across the rail and about its normal, the contact's
+    /// extent across.
     fn add_patch(&self, motion: &Motion, outputs: &mut Outputs) {
         let force = self.unit_force();
         outputs.lateral_force = -force * self.sums.lateral_shear;
@@ -110,7 +111,7 @@ impl Integrals {
     }
 
     /// The outputs at the end of a step that began with the totals of `before`.
-    pub fn outputs_after(&self, parameters: &Parameters, conditions: &Conditions, before: &Outputs) -> Outputs {
+    pub fn outputs_after(&self, parameters: &Parameters, conditions: &StepConditions, before: &Outputs) -> Outputs {
         let mut outputs = self.outputs(parameters, &conditions.inputs);
         let rates = self.total_rates(parameters, &conditions.inputs);
         for total in Outputs::totals() {

@@ -7,9 +7,9 @@ use crate::settings::Settings;
 use crate::signals::{Inputs, Motion};
 use serde::{Deserialize, Serialize};
 
-/// Conditions that one implicit step holds fixed.
+/// StepConditions that one implicit step holds fixed.
 #[derive(Debug, Clone, Copy)]
-pub struct Conditions {
+pub struct StepConditions {
     /// Inputs at the end of the step.
     pub inputs: Inputs,
     /// Motion that they make.
@@ -25,8 +25,8 @@ pub struct Task<'a> {
     pub parameters: &'a Parameters,
     /// Limits and tolerances.
     pub settings: &'a Settings,
-    /// Conditions of the step.
-    pub conditions: Conditions,
+    /// StepConditions of the step.
+    pub conditions: StepConditions,
 }
 
 /// Convergence of a step.
@@ -49,8 +49,8 @@ pub struct Problem<'a, E> {
     pub parameters: &'a Parameters,
     /// Limits and tolerances.
     pub settings: &'a Settings,
-    /// Conditions of the step.
-    pub conditions: Conditions,
+    /// StepConditions of the step.
+    pub conditions: StepConditions,
 }
 
 impl<E> Clone for Problem<'_, E> {
@@ -72,10 +72,10 @@ impl<'a, E> Problem<'a, E> {
         }
     }
 
-    /// The same problem under other inputs.
+    /// Problem of the same step under other inputs.
     pub fn under(&self, inputs: Inputs) -> Problem<'a, E> {
         Problem {
-            conditions: Conditions {
+            conditions: StepConditions {
                 inputs,
                 motion: inputs.motion(self.parameters),
                 ..self.conditions

@@ -1,4 +1,4 @@
-//! Profiles for plotting, sampled at fixed numbers of points whatever the mesh is: what every engine fills in.
+//! Profiles for plotting, sampled at fixed numbers of points whatever the mesh is. Every engine fills them in.
 
 /// Points along the contact window.
 pub const PROFILE_POINTS: usize = 61;
@@ -29,7 +29,7 @@ pub struct Profiles {
     pub depth: Vec<f64>,
     /// Absolute temperature at that depth, `K`.
     pub depth_temperature: Vec<f64>,
-    /// Across the window.
+    /// Profiles across the window.
     pub strips: StripProfiles,
 }
 
@@ -49,7 +49,7 @@ pub struct StripProfiles {
 }
 
 impl StripProfiles {
-    /// Without strips: a line contact, or a rail that nothing has touched.
+    /// Profiles of a contact without strips: a line contact, or a rail that nothing has touched.
     pub fn none(ambient: f64) -> StripProfiles {
         StripProfiles {
             position: vec![0.0; STRIP_POINTS],
@@ -62,7 +62,7 @@ impl StripProfiles {
 }
 
 impl Profiles {
-    /// Of a rail that nothing has touched, all in one place.
+    /// Profiles of a rail that nothing has touched, all points in one place.
     pub fn untouched(ambient: f64) -> Profiles {
         let along = || vec![0.0; PROFILE_POINTS];
         Profiles {
@@ -79,7 +79,7 @@ impl Profiles {
     }
 }
 
-/// The values of evenly spaced nodes at evenly spaced points, both from the first node to the last, linear between the nodes.
+/// Samples the values of evenly spaced nodes at evenly spaced points, both from the first node to the last, linear between the nodes.
 pub fn sample(values: &[f64], points: usize) -> Vec<f64> {
     let n = values.len();
     (0..points)
@@ -92,7 +92,7 @@ pub fn sample(values: &[f64], points: usize) -> Vec<f64> {
         .collect()
 }
 
-/// The depths of [`Profiles::depth`] in a body of the given height, `m`. Their spacing grows with the square of the index: most
+/// Depths of [`Profiles::depth`] in a body of the given height, `m`. Their spacing grows with the square of the index: most
 /// lie in the heated skin.
 pub fn depths(height: f64) -> Vec<f64> {
     (0..DEPTH_POINTS)
@@ -100,7 +100,7 @@ pub fn depths(height: f64) -> Vec<f64> {
         .collect()
 }
 
-/// The fields at one surface node of the contact window, of a patch at the centre of a cell.
+/// Fields at one surface node of the contact window, of a patch at the centre of a cell.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ContactNode {
     /// x₁, `m`.
@@ -117,8 +117,8 @@ pub struct ContactNode {
     pub slip: f64,
     /// Slip velocity to the left, `m/s`; 0 of a line contact.
     pub lateral_slip: f64,
-    /// Share −τ/(μ p) of Coulomb's bound; of a patch |τ|/(μ p).
-    pub saturation: f64,
+    /// Traction utilisation −τ/(μ p), with the sign of the slip; of a patch its magnitude |τ|/(μ p).
+    pub utilisation: f64,
     /// Temperature rise over the ambient, `K`.
     pub temperature: f64,
     /// Wear depth, `m`.
@@ -126,7 +126,7 @@ pub struct ContactNode {
 }
 
 impl ContactNode {
-    /// A place that nothing has touched.
+    /// Node at a place that nothing has touched.
     pub const UNTOUCHED: ContactNode = ContactNode {
         position: 0.0,
         lateral_position: 0.0,
@@ -135,7 +135,7 @@ impl ContactNode {
         lateral_shear: 0.0,
         slip: 0.0,
         lateral_slip: 0.0,
-        saturation: 0.0,
+        utilisation: 0.0,
         temperature: 0.0,
         wear_depth: 0.0,
     };

@@ -28,7 +28,7 @@ pub fn march_heat<E: Engine>(
         // The wheel takes the friction power at the temperature of this march, not at that of the mechanics: so the heat balance
         // closes to round-off, whatever the tolerance of this iteration.
         if heating == WheelHeating::On {
-            E::close_friction(problem, now, solvers);
+            E::finalise_friction(problem, now, solvers);
         }
         warm_wheel(problem, before, now);
         if wheel.converges(E::wheel_temperature(now))? {
@@ -65,7 +65,8 @@ pub fn wheel_tangent<E: Engine>(at: &Linearised<E>, direction: &Direction, chang
     let temperature = rim::temperature_tangent(
         parameters,
         E::wheel_temperature(fields),
-        (ambient, direction.inputs.ambient_temperature),
+        ambient,
+        direction.inputs.ambient_temperature,
         problem.conditions.duration,
         &heat,
         &heat_tangent,

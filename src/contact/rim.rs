@@ -50,7 +50,7 @@ pub fn convection(parameters: &Parameters) -> f64 {
     parameters.wheel_heat_transfer * (tread + 2.0 * face(parameters))
 }
 
-/// What the contact gives to the wheel, or a change of it.
+/// Heat that the contact gives to the wheel, or a change of it.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct ContactHeat {
     /// (1 − ᾱ) b ∫ |τ s| dx, `W`.
@@ -61,7 +61,7 @@ pub struct ContactHeat {
     pub conductance: f64,
 }
 
-/// What heats the wheel at one surface node, or a change of it. Tractions are scaled.
+/// State of one surface node that heats the wheel, or a change of it. Tractions are scaled.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct HeatedNode {
     /// Pressure.
@@ -75,7 +75,7 @@ pub struct HeatedNode {
 }
 
 impl ContactHeat {
-    /// Of nodes of which a scaled traction of 1 has the given force, `N`.
+    /// Heat of nodes on which a scaled traction of 1 is the given force, `N`.
     pub fn new(parameters: &Parameters, unit_force: f64, nodes: impl Iterator<Item = HeatedNode>) -> ContactHeat {
         let weights = Weights::new(parameters, unit_force);
         let mut heat = ContactHeat::default();
@@ -87,7 +87,7 @@ impl ContactHeat {
         heat
     }
 
-    /// Its change: nodes, each with its change.
+    /// Change of the heat, from the nodes and the change of each.
     pub fn tangent(
         parameters: &Parameters,
         unit_force: f64,
@@ -141,7 +141,8 @@ pub fn temperature(parameters: &Parameters, before: f64, ambient: f64, duration:
 pub fn temperature_tangent(
     parameters: &Parameters,
     wheel_temperature: f64,
-    (ambient, ambient_tangent): (f64, f64),
+    ambient: f64,
+    ambient_tangent: f64,
     duration: f64,
     heat: &ContactHeat,
     tangent: &ContactHeat,
@@ -167,7 +168,7 @@ pub struct FixedPoint {
 }
 
 impl FixedPoint {
-    /// From a first guess, `K`.
+    /// Iteration from a first guess, `K`.
     pub fn new(guess: f64, settings: HeatSettings) -> FixedPoint {
         FixedPoint {
             settings,
@@ -177,12 +178,12 @@ impl FixedPoint {
         }
     }
 
-    /// The iterate, `K`.
+    /// Iterate, `K`.
     pub fn temperature(&self) -> f64 {
         self.temperature
     }
 
-    /// Takes the iterate's `image` `K`. Whether it is the iterate itself; otherwise there is a next iterate.
+    /// Takes the iterate's `image` `K`. Returns whether it is the iterate itself; otherwise there is a next iterate.
     ///
     /// # Errors
     /// [`Error::WheelHeatNotConverged`].
@@ -285,7 +286,7 @@ mod tests {
         });
         let heat = ContactHeat::new(&parameters, 1e3, nodes(0.0).into_iter());
         let tangent = ContactHeat::tangent(&parameters, 1e3, nodes(0.0).into_iter().zip(changes));
-        let exact = temperature_tangent(&parameters, at(0.0), (295.0, 2.0), 0.1, &heat, &tangent);
+        let exact = temperature_tangent(&parameters, at(0.0), 295.0, 2.0, 0.1, &heat, &tangent);
         let difference = (at(h) - at(-h)) / (2.0 * h);
         // Round-off of 300 K over h.
         assert!(

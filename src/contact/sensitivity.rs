@@ -8,7 +8,7 @@
 use super::engine::{Direction, Engine, Linearised};
 use super::fields::Fields;
 use super::problem::Problem;
-use super::step::Workspace;
+use super::step::StepWorkspace;
 use crate::error::Result;
 use crate::signals::{INPUTS, Inputs, OUTPUTS, OutputKind, Outputs};
 
@@ -20,10 +20,10 @@ use crate::signals::{INPUTS, Inputs, OUTPUTS, OutputKind, Outputs};
 pub fn outputs<E: Engine>(
     problem: &Problem<E>,
     fields: &E::Fields,
-    workspace: &mut Workspace<E>,
+    workspace: &mut StepWorkspace<E>,
     inputs: impl IntoIterator<Item = usize>,
 ) -> Result<Vec<Outputs>> {
-    let Workspace {
+    let StepWorkspace {
         solvers,
         trial,
         iterate,
@@ -95,7 +95,7 @@ fn output_tangent<E: Engine>(
         let difference = (signal.get)(&ahead) - (signal.get)(&behind);
         (signal.set)(&mut derivative, difference / (2.0 * step));
     }
-    // It follows from the motion alone, whose tangent is exact.
+    // The distance follows from the motion alone, whose tangent is exact.
     derivative.distance = direction.speed * conditions.duration;
     if problem.is_unloaded() {
         derivative.penetration = 0.0;

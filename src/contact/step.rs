@@ -5,7 +5,7 @@
 
 use super::convergence::ConvergenceTest;
 use super::engine::Engine;
-use super::fields::{Fields, State};
+use super::fields::{EngineState, Fields};
 use super::interface::Interface;
 use super::memory;
 use super::newton::{self, Newton, Sweeps};
@@ -13,29 +13,29 @@ use super::problem::{Convergence, Problem};
 use super::rail_and_rim;
 use super::work::Work;
 use crate::error::{Error, Result};
-use crate::mechanics::sweep::Sweep;
+use crate::mechanics::normal_tangential::TractionChange;
 use crate::numerics::anderson::Anderson;
 use crate::settings::Settings;
 
 /// Solvers and buffers of a step and of its derivatives. What a step leaves in them changes no result of another one.
-pub struct Workspace<E: Engine> {
+pub struct StepWorkspace<E: Engine> {
     pub(super) solvers: E::Solvers,
     /// Fields that a step works on, its solution until it is committed.
     pub(super) trial: E::Fields,
     /// Interface vector that the mechanics see in this sweep.
     pub(super) iterate: Interface,
-    /// What the sweep makes of it.
+    /// Image of the interface vector under the sweep.
     pub(super) image: Interface,
     anderson: Anderson,
     work: Work,
     pub(super) newton: Newton<E>,
 }
 
-impl<E: Engine> Workspace<E> {
+impl<E: Engine> StepWorkspace<E> {
     /// Workspace for the steps of a contact.
-    pub fn new(operators: &E, settings: &Settings) -> Workspace<E> {
+    pub fn new(operators: &E, settings: &Settings) -> StepWorkspace<E> {
         let interface = operators.interface();
-        Workspace {
+        StepWorkspace {
             solvers: operators.solvers(settings),
             trial: operators.fields(),
             anderson: Anderson::new(interface.values().len()),
@@ -57,7 +57,7 @@ impl<E: Engine> Workspace<E> {
     }
 
     /// Makes the solution of a step of `duration` `s` the state.
-    pub fn commit(&mut self, state: &mut State<E::Fields>, duration: f64) {
+    pub fn commit(&mut self, state: &mut EngineState<E::Fields>, duration: f64) {
         state.commit(&mut self.trial, duration);
     }
 }
@@ -69,13 +69,13 @@ impl<E: Engine> Workspace<E> {
 /// The first solver that did not converge, or [`Error::ContactLeavesWindow`].
 pub fn solve<E: Engine>(
     problem: &Problem<E>,
-    state: &State<E::Fields>,
+    state: &EngineState<E::Fields>,
     last_duration: f64,
-    workspace: &mut Workspace<E>,
+    workspace: &mut StepWorkspace<E>,
 ) -> Result<Convergence> {
     let settings = E::split_settings(problem.settings);
     let before = &state.fields;
-    let Workspace {
+    let StepWorkspace {
         solvers,
         trial: now,
         iterate,
@@ -97,9 +97,9 @@ pub fn solve<E: Engine>(
     let mut newton_sweeps = 0;
     for iterations in 1..=settings.iterations {
         let before_mechanics = E::mechanics_work(solvers);
-        let sweep = E::solve_mechanics(problem, iterate, now, solvers, test.mechanics_tolerance());
+        let tractions = E::solve_mechanics(problem, iterate, now, solvers, test.mechanics_tolerance());
         work.add(problem.operators.sweep_work() + E::mechanics_work(solvers).saturating_sub(before_mechanics))?;
-        let sweep = sweep?;
+        let tractions = tractions?;
         E::march_wear(problem, before, now, solvers);
         rail_and_rim::march_heat(problem, before, iterate, now, solvers)?;
         // Newton's method has solved the step for the wear compliance that there is.
@@ -114,12 +114,12 @@ pub fn solve<E: Engine>(
             f64::INFINITY
         };
         let change = iterate.change_to(image, settings.least_temperature);
-        let passes = test.is_passed(change.max(pending), &sweep);
+        let passes = test.is_passed(change.max(pending), &tractions);
         if passes || newton_sweeps > 0 && change.max(pending) <= settings.stalled_tolerance {
             let iterations = iterations + newton_sweeps;
             return finish(problem, before, iterate, now, solvers, iterations, &test);
         }
-        if pending > settings.unfelt * settings.tolerance {
+        if pending > settings.negligible * settings.tolerance {
             E::map_displacement(problem, now, solvers, image);
             test.amend(iterate.change_to(image, settings.least_temperature));
         }
@@ -155,9 +155,9 @@ fn finish<E: Engine>(
     test: &ConvergenceTest,
 ) -> Result<Convergence> {
     let fills_window = fills_window(problem, now, solvers)?;
-    E::close_friction(problem, now, solvers);
+    E::finalise_friction(problem, now, solvers);
     memory::end(problem, now);
-    E::close_displacement(problem, interface, now, solvers);
+    E::finalise_displacement(problem, interface, now, solvers);
     E::finalise(problem, before, now, solvers)?;
     rail_and_rim::warm_wheel(problem, before, now);
     Ok(Convergence {
@@ -171,28 +171,31 @@ fn finish<E: Engine>(
 ///
 /// # Errors
 /// The first solver that did not converge, or [`Error::ContactLeavesWindow`].
-pub fn initial_state<E: Engine>(problem: &Problem<E>, workspace: &mut Workspace<E>) -> Result<State<E::Fields>> {
+pub fn initial_state<E: Engine>(
+    problem: &Problem<E>,
+    workspace: &mut StepWorkspace<E>,
+) -> Result<EngineState<E::Fields>> {
     let settings = E::split_settings(problem.settings);
     let tolerance = settings.mechanics_alone_tolerance;
-    let Workspace { solvers, iterate, .. } = workspace;
+    let StepWorkspace { solvers, iterate, .. } = workspace;
     let mut now = problem.operators.fields();
     E::set_wheel_temperature(&mut now, problem.conditions.inputs.ambient_temperature);
     now.memory_mut().start_steady();
     E::begin(problem, None, &mut now, solvers)?;
-    let mut sweep = Sweep::NONE;
+    let mut tractions = TractionChange::NONE;
     for _ in 0..settings.iterations {
         E::read(problem, &now, solvers, iterate);
-        sweep = E::solve_mechanics(problem, iterate, &mut now, solvers, tolerance)?;
-        if sweep.rests(tolerance) {
+        tractions = E::solve_mechanics(problem, iterate, &mut now, solvers, tolerance)?;
+        if tractions.has_converged(tolerance) {
             fills_window(problem, &now, solvers)?;
-            E::close_displacement(problem, iterate, &mut now, solvers);
+            E::finalise_displacement(problem, iterate, &mut now, solvers);
             memory::end(problem, &mut now);
-            return Ok(State::at_rest(now));
+            return Ok(EngineState::at_rest(now));
         }
     }
     Err(Error::MechanicsNotConverged {
         iterations: settings.iterations,
-        residual: sweep.shear_change,
+        residual: tractions.shear_change,
         tolerance,
     })
 }

@@ -7,33 +7,33 @@ use std::f64::consts::FRAC_2_PI;
 /// Traction utilisation φ(s) = (2/π) arctan(s/ε): τ = −μ p φ(s). The factor 2/π, which (30) lacks, keeps |τ| within Coulomb's
 /// bound.
 #[inline(always)]
-pub fn saturation(slip: f64, regularisation: f64) -> f64 {
+pub fn utilisation(slip: f64, regularisation: f64) -> f64 {
     FRAC_2_PI * arctangent(slip / regularisation)
 }
 
 /// Computes φ of each slip.
-pub fn saturations(slip: &[f64], regularisation: f64, out: &mut [f64]) {
+pub fn utilisations(slip: &[f64], regularisation: f64, out: &mut [f64]) {
     dense::vectorised(
         #[inline(always)]
         |_| {
             for (out, slip) in out.iter_mut().zip(slip) {
-                *out = saturation(*slip, regularisation);
+                *out = utilisation(*slip, regularisation);
             }
         },
     );
 }
 
 /// Derivative dφ/ds, `s/m`.
-pub fn saturation_slope(slip: f64, regularisation: f64) -> f64 {
+pub fn utilisation_slope(slip: f64, regularisation: f64) -> f64 {
     FRAC_2_PI * regularisation / (regularisation * regularisation + slip * slip)
 }
 
 /// Limit of |φ| below which a node sticks by the regularised law: |s| < 6.3 ε. By Coulomb's own law the limit is 1.
-pub const STICK_SATURATION: f64 = 0.9;
+pub const STICK_UTILISATION: f64 = 0.9;
 
-/// Whether a node that takes this share of Coulomb's bound counts as sticking.
-pub fn sticks(saturation: f64, regularisation: f64) -> bool {
-    saturation.abs() < if regularisation > 0.0 { STICK_SATURATION } else { 1.0 }
+/// Whether a node of this traction utilisation, of either sign, counts as sticking.
+pub fn sticks(utilisation: f64, regularisation: f64) -> bool {
+    utilisation.abs() < if regularisation > 0.0 { STICK_UTILISATION } else { 1.0 }
 }
 
 /// Friction power −τ s where it is positive. Friction takes power; the slip of a node is a mean over its two cells, and
@@ -96,35 +96,41 @@ pub struct Sliding {
 }
 
 impl Sliding {
-    /// Sliding at a slip velocity s `m/s` and φ = −τ/(μ p).
-    pub fn new(slip: f64, saturation: f64) -> Sliding {
+    /// Sliding at a slip velocity s `m/s` and the traction utilisation φ = −τ/(μ p).
+    pub fn new(slip: f64, utilisation: f64) -> Sliding {
         Sliding {
             speed: slip.abs(),
-            power: power(-saturation, slip),
+            power: power(-utilisation, slip),
         }
     }
 
     /// Change of [`Sliding::new`].
-    pub fn tangent(slip: f64, saturation: f64, slip_change: f64, saturation_change: f64) -> Sliding {
+    pub fn tangent(slip: f64, utilisation: f64, slip_change: f64, utilisation_change: f64) -> Sliding {
         Sliding {
             speed: slip.signum() * slip_change,
-            power: power_tangent(-saturation, slip, -saturation_change, slip_change),
+            power: power_tangent(-utilisation, slip, -utilisation_change, slip_change),
         }
     }
 
-    /// Sliding at a slip velocity along the rail and across it, `m/s`, and τ/(μ p).
-    pub fn of_vectors(slip: [f64; 2], share: [f64; 2]) -> Sliding {
+    /// Sliding at a slip velocity along the rail and across it, `m/s`, and the traction utilisation −τ/(μ p).
+    pub fn of_vectors(slip: [f64; 2], utilisation: [f64; 2]) -> Sliding {
         Sliding {
             speed: magnitude(slip),
-            power: vector_power(share, slip),
+            power: vector_power(utilisation.map(|u| -u), slip),
         }
     }
 
     /// Change of [`Sliding::of_vectors`].
-    pub fn vector_tangent(slip: [f64; 2], share: [f64; 2], slip_change: [f64; 2], share_change: [f64; 2]) -> Sliding {
+    pub fn vector_tangent(
+        slip: [f64; 2],
+        utilisation: [f64; 2],
+        slip_change: [f64; 2],
+        utilisation_change: [f64; 2],
+    ) -> Sliding {
+        let (shear, shear_change) = (utilisation.map(|u| -u), utilisation_change.map(|u| -u));
         Sliding {
             speed: magnitude_tangent(slip, slip_change),
-            power: vector_power_tangent(share, slip, share_change, slip_change),
+            power: vector_power_tangent(shear, slip, shear_change, slip_change),
         }
     }
 }
@@ -134,7 +140,7 @@ impl Sliding {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Resisted {
     /// t/(μ p).
-    pub saturation: f64,
+    pub utilisation: f64,
     /// t.
     pub shear: f64,
     /// dt/dz.
@@ -144,18 +150,18 @@ pub struct Resisted {
 }
 
 impl Resisted {
-    /// With the bound μ p, r > 0, ε > 0, and z ≥ 0, all in units of the shear but r, shear per slip, and ε, slip.
+    /// Solves with the bound μ p, r > 0, ε > 0, and z ≥ 0, all in units of the shear but r, shear per slip, and ε, slip.
     pub fn new(bound: f64, scale: f64, regularisation: f64, length: f64) -> Resisted {
         let relative = relative_slip(bound, scale * regularisation, length);
-        let saturation = FRAC_2_PI * relative.atan();
+        let utilisation = FRAC_2_PI * relative.atan();
         // dt/dσ.
         let slope = bound * FRAC_2_PI / (regularisation * (1.0 + relative * relative));
         let by_length = slope / (slope + scale);
         Resisted {
-            saturation,
-            shear: bound * saturation,
+            utilisation,
+            shear: bound * utilisation,
             by_length,
-            by_bound: saturation * (1.0 - by_length),
+            by_bound: utilisation * (1.0 - by_length),
         }
     }
 }
@@ -195,8 +201,8 @@ mod tests {
     fn the_slope_is_the_derivative() {
         for slip in [-0.1, 0.0, 1e-4, 3e-3] {
             let h = 1e-8;
-            let difference = (saturation(slip + h, 1e-3) - saturation(slip - h, 1e-3)) / (2.0 * h);
-            assert!((saturation_slope(slip, 1e-3) / difference - 1.0).abs() < 1e-4);
+            let difference = (utilisation(slip + h, 1e-3) - utilisation(slip - h, 1e-3)) / (2.0 * h);
+            assert!((utilisation_slope(slip, 1e-3) / difference - 1.0).abs() < 1e-4);
         }
     }
 

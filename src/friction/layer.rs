@@ -31,7 +31,7 @@ pub struct Yielding {
     /// The bound over the pressure.
     pub coefficient: f64,
     /// The layer's own bound over the pressure; 0 without one.
-    pub cap: f64,
+    pub layer_bound: f64,
     /// Derivative of the coefficient by μ of the surfaces: 1, or 0 where the layer flows only.
     pub by_friction: f64,
     /// Derivative of the coefficient by u_pl, `1/m`: 0 where the surfaces slip.
@@ -58,7 +58,7 @@ impl Yielding {
     pub fn none(coefficient: f64) -> Yielding {
         Yielding {
             coefficient,
-            cap: 0.0,
+            layer_bound: 0.0,
             by_friction: 1.0,
             by_flow: 0.0,
             by_pressure: 0.0,
@@ -106,7 +106,7 @@ impl LayerLaw {
         let first = self.strength + self.hardening * advected;
         let last = first + self.hardening * time * speed;
         let none = Yielding {
-            cap: if pressure > 0.0 { last / pressure } else { 0.0 },
+            layer_bound: if pressure > 0.0 { last / pressure } else { 0.0 },
             ..Yielding::none(coefficient)
         };
         if bound <= first {

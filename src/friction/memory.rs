@@ -12,7 +12,7 @@ pub struct Brought {
     /// Slip velocity s, the magnitude of the law's slip velocity, `m/s`, 0 outside the contact.
     pub speed: Vec<f64>,
     /// Static coefficient μ(θ), that at this temperature and no slip.
-    pub resting: Vec<f64>,
+    pub static_friction: Vec<f64>,
     /// Way u_pl that the layer has flowed, `m`, 0 outside the contact.
     pub flow: Vec<f64>,
 }
@@ -22,7 +22,7 @@ impl Brought {
         Brought {
             friction: vec![0.0; nodes],
             speed: vec![0.0; nodes],
-            resting: vec![0.0; nodes],
+            static_friction: vec![0.0; nodes],
             flow: vec![0.0; nodes],
         }
     }
@@ -30,7 +30,7 @@ impl Brought {
     fn copy_from(&mut self, other: &Brought) {
         self.friction.copy_from_slice(&other.friction);
         self.speed.copy_from_slice(&other.speed);
-        self.resting.copy_from_slice(&other.resting);
+        self.static_friction.copy_from_slice(&other.static_friction);
         self.flow.copy_from_slice(&other.flow);
     }
 }
@@ -47,7 +47,7 @@ pub struct Memory {
     /// Derivative of μ of the surfaces by μ(θ) at the node's temperature.
     pub share: Vec<f64>,
     /// Bound of a layer that may flow, over the pressure; 0 without one.
-    pub cap: Vec<f64>,
+    pub layer_bound: Vec<f64>,
 }
 
 impl Memory {
@@ -58,7 +58,7 @@ impl Memory {
             now: Brought::new(nodes),
             before: Brought::new(nodes),
             share: vec![1.0; nodes],
-            cap: vec![0.0; nodes],
+            layer_bound: vec![0.0; nodes],
         }
     }
 
@@ -74,14 +74,14 @@ impl Memory {
         [
             &now.friction,
             &now.speed,
-            &now.resting,
+            &now.static_friction,
             &now.flow,
             &before.friction,
             &before.speed,
-            &before.resting,
+            &before.static_friction,
             &before.flow,
             &self.share,
-            &self.cap,
+            &self.layer_bound,
         ]
     }
 
@@ -91,44 +91,49 @@ impl Memory {
         self.now.copy_from(&other.now);
         self.before.copy_from(&other.before);
         self.share.copy_from_slice(&other.share);
-        self.cap.copy_from_slice(&other.cap);
+        self.layer_bound.copy_from_slice(&other.layer_bound);
     }
 
     /// Law of μ of a node in contact as a function of its temperature.
     pub fn point_law(&self, node: usize) -> PointLaw {
         let share = self.share[node];
         PointLaw {
-            base: self.now.friction[node] - share * self.now.resting[node],
+            base: self.now.friction[node] - share * self.now.static_friction[node],
             share,
-            cap: self.cap[node],
+            layer_bound: self.layer_bound[node],
         }
     }
 
     /// Derivative of the coefficient of a node in contact by μ(θ).
     pub fn share_at(&self, node: usize) -> f64 {
-        self.point_law(node).share_at(self.now.resting[node])
+        self.point_law(node).share_at(self.now.static_friction[node])
     }
 
-    /// Takes μ(θ) of a node in contact at its final temperature. Returns the coefficient.
-    pub fn close(&mut self, node: usize, resting: f64) -> f64 {
+    /// Sets μ(θ) of a node in contact to that at its final temperature. Returns the coefficient.
+    pub fn at_final_temperature(&mut self, node: usize, static_friction: f64) -> f64 {
         let law = self.point_law(node);
-        let surfaces = PointLaw { cap: 0.0, ..law }.of((resting, 0.0)).0;
-        (self.now.friction[node], self.now.resting[node]) = (surfaces, resting);
-        law.of((resting, 0.0)).0
+        let surfaces = PointLaw {
+            layer_bound: 0.0,
+            ..law
+        }
+        .of((static_friction, 0.0))
+        .0;
+        (self.now.friction[node], self.now.static_friction[node]) = (surfaces, static_friction);
+        law.of((static_friction, 0.0)).0
     }
 
     /// Begins a step from the memory at its beginning. Rail that has remembered nothing yet has rested, at μ(θ) of the nodes then.
-    pub fn start_from(&mut self, last: &Memory, resting: impl Fn(usize) -> f64) {
+    pub fn start_from(&mut self, last: &Memory, static_friction: impl Fn(usize) -> f64) {
         if last.remembers {
             self.before.copy_from(&last.now);
             return;
         }
         self.before.speed.fill(0.0);
         self.before.flow.fill(0.0);
-        for node in 0..self.before.resting.len() {
-            self.before.resting[node] = resting(node);
+        for node in 0..self.before.static_friction.len() {
+            self.before.static_friction[node] = static_friction(node);
         }
-        self.before.friction.copy_from_slice(&self.before.resting);
+        self.before.friction.copy_from_slice(&self.before.static_friction);
     }
 
     /// Begins without a step before.
@@ -136,7 +141,7 @@ impl Memory {
         for values in [
             &mut self.before.friction,
             &mut self.before.speed,
-            &mut self.before.resting,
+            &mut self.before.static_friction,
             &mut self.before.flow,
         ] {
             values.fill(0.0);
@@ -152,7 +157,7 @@ pub struct ParticlePath<'a> {
     /// Slip velocity s, `m/s`.
     pub speed: &'a [f64],
     /// Static μ(θ).
-    pub resting: &'a [f64],
+    pub static_friction: &'a [f64],
     /// Way of flow u_pl, `m`.
     pub flow: &'a [f64],
 }
@@ -163,7 +168,7 @@ impl Brought {
         ParticlePath {
             friction: &self.friction[nodes.clone()],
             speed: &self.speed[nodes.clone()],
-            resting: &self.resting[nodes.clone()],
+            static_friction: &self.static_friction[nodes.clone()],
             flow: &self.flow[nodes],
         }
     }

@@ -125,7 +125,7 @@ impl FrictionState<'_> {
 }
 
 /// Law of μ at a point as a function of its temperature at given slip and history: `base` + `share` μ(θ), but no more than the
-/// `cap`.
+/// `layer_bound`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PointLaw {
     /// Part of μ that does not depend on the temperature.
@@ -133,28 +133,28 @@ pub struct PointLaw {
     /// Share of μ(θ).
     pub share: f64,
     /// The strength of a layer over the pressure; 0 where there is none.
-    pub cap: f64,
+    pub layer_bound: f64,
 }
 
 impl PointLaw {
     /// Coefficient and its derivative, from those of μ(θ).
     pub fn of(&self, (mu, slope): (f64, f64)) -> (f64, f64) {
         let surfaces = self.base + self.share * mu;
-        if self.caps(surfaces) {
-            (self.cap, 0.0)
+        if self.exceeds_layer_bound(surfaces) {
+            (self.layer_bound, 0.0)
         } else {
             (surfaces, self.share * slope)
         }
     }
 
     /// Whether the layer's bound is below that of surfaces of this μ.
-    fn caps(&self, surfaces: f64) -> bool {
-        self.cap > 0.0 && surfaces > self.cap
+    fn exceeds_layer_bound(&self, surfaces: f64) -> bool {
+        self.layer_bound > 0.0 && surfaces > self.layer_bound
     }
 
     /// The derivative by μ(θ), from μ(θ).
     pub fn share_at(&self, mu: f64) -> f64 {
-        if self.caps(self.base + self.share * mu) {
+        if self.exceeds_layer_bound(self.base + self.share * mu) {
             0.0
         } else {
             self.share
@@ -168,7 +168,7 @@ impl Default for PointLaw {
         PointLaw {
             base: 0.0,
             share: 1.0,
-            cap: 0.0,
+            layer_bound: 0.0,
         }
     }
 }

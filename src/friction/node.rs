@@ -75,8 +75,8 @@ impl NodeFriction {
     }
 
     /// The layer's bound over the pressure; 0 without a layer.
-    pub fn cap(&self) -> f64 {
-        self.layer.cap
+    pub fn layer_bound(&self) -> f64 {
+        self.layer.layer_bound
     }
 
     /// Derivative of the coefficient by the node's own slip velocity, `s/m`.

@@ -190,11 +190,11 @@ impl PathLaw {
     }
 
     /// A node and the one upstream of it, with μ(θ) of all.
-    fn node(&self, path: &ParticlePath, resting: &[f64], node: usize, upstream: usize) -> PathNode {
+    fn node(&self, path: &ParticlePath, static_friction: &[f64], node: usize, upstream: usize) -> PathNode {
         let start = |values: &[f64]| self.passage.start(values[upstream], values[node]);
         let layer = self.layer.as_ref().map(|layer| &layer.passage);
         PathNode {
-            steady: resting[node],
+            steady: static_friction[node],
             advected: start(path.friction),
             courant_weight: self.passage.upstream,
             speed: start(path.speed),
@@ -214,13 +214,13 @@ impl PathLaw {
     pub fn prepare(
         &self,
         path: &ParticlePath,
-        resting: &[f64],
+        static_friction: &[f64],
         in_contact: impl Fn(usize) -> bool,
         mut give: impl FnMut(usize, PathNode),
     ) {
         if !self.remembers() {
-            for node in self.order(resting.len()).filter(|&node| in_contact(node)) {
-                let steady = resting[node];
+            for node in self.order(static_friction.len()).filter(|&node| in_contact(node)) {
+                let steady = static_friction[node];
                 give(
                     node,
                     PathNode {
@@ -232,11 +232,11 @@ impl PathLaw {
             return;
         }
         // μ upstream is a constant and a share of that of the last node in contact.
-        let mut order = self.order(resting.len());
+        let mut order = self.order(static_friction.len());
         let Some(mut upstream) = order.next() else {
             return;
         };
-        let (mut constant, mut share) = (resting[upstream], 0.0);
+        let (mut constant, mut share) = (static_friction[upstream], 0.0);
         let mut touched = in_contact(upstream);
         if touched {
             let entering = PathNode {
@@ -248,7 +248,7 @@ impl PathLaw {
             (constant, share) = (0.0, 1.0);
         }
         for node in order {
-            let own = self.node(path, resting, node, upstream);
+            let own = self.node(path, static_friction, node, upstream);
             let touches = in_contact(node);
             if touches {
                 give(
@@ -270,55 +270,55 @@ impl PathLaw {
         }
     }
 
-    /// Computes μ of the nodes outside the contact at the end of the step; `friction` and `resting` hold all the others.
-    pub fn close(
+    /// Computes μ of the nodes outside the contact at the end of the step; `friction` and `static_friction` hold all the others.
+    pub fn finalise(
         &self,
         path: &ParticlePath,
-        resting: &[f64],
+        static_friction: &[f64],
         in_contact: impl Fn(usize) -> bool,
         friction: &mut [f64],
     ) {
-        let mut order = self.order(resting.len());
+        let mut order = self.order(static_friction.len());
         let Some(mut upstream) = order.next() else {
             return;
         };
         if !in_contact(upstream) {
-            friction[upstream] = resting[upstream];
+            friction[upstream] = static_friction[upstream];
         }
         for node in order {
             if !in_contact(node) {
-                let own = self.node(path, resting, node, upstream);
+                let own = self.node(path, static_friction, node, upstream);
                 friction[node] = self.idle(&own, friction[upstream]);
             }
             upstream = node;
         }
     }
 
-    /// Change of the coefficient of all nodes at unchanged slip, with that of |V| by `speed` `m/s`, that of μ(θ), `resting`, and that of the
+    /// Change of the coefficient of all nodes at unchanged slip, with that of |V| by `speed` `m/s`, that of μ(θ), `static_friction`, and that of the
     /// pressure; `now` is the solution.
     pub fn tangent(
         &self,
         (path, now): (&ParticlePath, &ParticlePath),
         (pressure, pressure_change): (&[f64], impl Fn(usize) -> f64),
-        (speed, resting): (f64, &[f64]),
+        (speed, static_friction): (f64, &[f64]),
         friction: &mut [f64],
     ) {
         let in_contact = |node: usize| pressure[node] > 0.0;
-        let mut order = self.order(resting.len());
+        let mut order = self.order(static_friction.len());
         let Some(mut upstream) = order.next() else {
             return;
         };
         let mut passed = Passed {
-            friction: resting[upstream],
+            friction: static_friction[upstream],
             ..Passed::default()
         };
-        friction[upstream] = resting[upstream];
+        friction[upstream] = static_friction[upstream];
         if !self.remembers() {
-            order = self.order(resting.len());
+            order = self.order(static_friction.len());
         }
         let (passage, change) = (&self.passage, &self.passage_tangent);
         for node in order {
-            let own = self.node(path, now.resting, node, upstream);
+            let own = self.node(path, now.static_friction, node, upstream);
             let moved = |change: &Passage, now: &[f64], before: &[f64]| {
                 speed * (change.upstream * now[upstream] + change.start(before[upstream], before[node]))
             };
@@ -339,7 +339,7 @@ impl PathLaw {
             };
             let by_effective_slip = (1.0 - relaxation) * own.steady * factor_slope + relaxation_slope * more;
             let by_residence = -effective_slip.max(self.least_speed) * relaxation * more;
-            let surfaces = (1.0 - relaxation) * factor * resting[node]
+            let surfaces = (1.0 - relaxation) * factor * static_friction[node]
                 + relaxation * advected_change
                 + by_effective_slip * slid
                 + by_residence * speed * change.residence;

@@ -237,7 +237,7 @@ mod tests {
         fn the_flux_satisfies_the_condition(
             pressure in 1e7..1e9,
             speed in 0.0..1.0_f64,
-            saturation in 0.0..1.0_f64,
+            utilisation in 0.0..1.0_f64,
             wheel_rise in -20.0..200.0,
             unheated in -5.0..150.0,
             response in 1e-8..1e-6,
@@ -245,12 +245,12 @@ mod tests {
         ) {
             let parameters = parameters(10.0_f64.powf(log_resistance));
             let condition = condition(&parameters);
-            let exchange = SurfaceExchange::new(&parameters, pressure, Sliding::new(-speed, -saturation), wheel_rise);
+            let exchange = SurfaceExchange::new(&parameters, pressure, Sliding::new(-speed, -utilisation), wheel_rise);
             let flux = condition.flux(&exchange, SurfaceRise { unheated, response }, f64::INFINITY, 0.0).unwrap();
             // (23), written out.
             let rise = unheated + response * flux;
             let mu = 0.9 * friction::coefficient(&parameters, 293.15 + rise).0;
-            let power = mu * pressure * saturation * speed;
+            let power = mu * pressure * utilisation * speed;
             let debris = parameters.wear_coefficient * 7.8e3 * 460.0 * rise * speed * pressure;
             let conducted = (rise - wheel_rise) * pressure / parameters.contact_thermal_resistance;
             let expected = 0.5 * (power - debris - conducted);

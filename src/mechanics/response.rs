@@ -1,4 +1,4 @@
-//! How pressure, penetration, displacement and gap respond to the shear while the active set stays.
+//! Response of pressure, penetration, displacement and gap to the shear while the active set stays.
 //!
 //! On the active nodes the separation is zero, so that pressure and penetration are affine functions of the shear. With
 //! Π = C_AA⁻¹ where the penetration is given, and Π = C_AA⁻¹ − C_AA⁻¹1 1ᵀC_AA⁻¹ / (1ᵀC_AA⁻¹1) where the load is,
@@ -6,17 +6,17 @@
 //! ∂p/∂τ = Π C_nt,  ∂u₁/∂τ = C_tt − C_tn ∂p/∂τ,  ∂w/∂τ = C_nn ∂p/∂τ − C_nt − ∂δ/∂τ.
 
 use super::normal::active_set::ActiveSet;
-use super::problem::{MechanicsProblem, node_ahead};
+use super::traction_problem::{TractionProblem, node_ahead};
 use crate::numerics::dense;
 use std::ops::Range;
 
-/// The response on the m nodes under pressure, of n contact nodes.
+/// Response on the m nodes under pressure, of n contact nodes.
 #[derive(Debug, Clone)]
 pub struct Response {
-    /// What it was computed for; another kind of problem has another response.
-    kind: Kind,
+    /// Kind of problem that it was computed for; another kind has another response.
+    kind: ResponseKind,
     nodes: Vec<usize>,
-    /// The nodes under pressure, those between them, and one more on either side.
+    /// Range of the nodes under pressure, those between them, and one more on either side.
     span: Range<usize>,
     /// ∂p/∂τ, m × m.
     pressure: Vec<f64>,
@@ -29,13 +29,13 @@ pub struct Response {
     /// Displacement along x₁ under the shear on one node and the pressure that follows, n.
     moved: Vec<f64>,
     /// Upward displacement of the nodes under pressure by the shear on one node, m.
-    lift: Vec<f64>,
+    upward: Vec<f64>,
     /// Normal compliance of the node ahead of the leading one, m.
     ahead: Vec<f64>,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq)]
-struct Kind {
+struct ResponseKind {
     forward: bool,
     load_given: bool,
     /// Whether the pressure follows the shear, or stays as in the paper's alternation.
@@ -46,7 +46,7 @@ impl Response {
     /// Room for `nodes` contact nodes.
     pub fn new(nodes: usize) -> Response {
         Response {
-            kind: Kind {
+            kind: ResponseKind {
                 forward: true,
                 load_given: true,
                 follows: true,
@@ -58,7 +58,7 @@ impl Response {
             displacement: vec![0.0; nodes * nodes],
             gap: vec![0.0; nodes],
             moved: vec![0.0; nodes],
-            lift: vec![0.0; nodes],
+            upward: vec![0.0; nodes],
             ahead: vec![0.0; nodes],
         }
     }
@@ -83,7 +83,7 @@ impl Response {
         &self.gap[..self.nodes.len()]
     }
 
-    /// The nodes under pressure, those between them, and one more on either side: none of the window's ends is under
+    /// Range of the nodes under pressure, those between them, and one more on either side: none of the window's ends is under
     /// pressure.
     pub fn span(&self) -> Range<usize> {
         self.span.clone()
@@ -94,7 +94,7 @@ impl Response {
         &self.displacement
     }
 
-    /// The node ahead of the leading one.
+    /// Node ahead of the leading one.
     pub fn node_ahead_of_the_contact(&self) -> Option<usize> {
         let leading = if self.kind.forward {
             self.nodes.last()
@@ -108,12 +108,12 @@ impl Response {
     /// to follow. Returns whether it changed.
     pub fn update(
         &mut self,
-        problem: &MechanicsProblem,
+        problem: &TractionProblem,
         nodes: &[usize],
         active_set: &ActiveSet,
         follows: bool,
     ) -> bool {
-        let kind = Kind {
+        let kind = ResponseKind {
             forward: problem.is_forward(),
             load_given: problem.load_is_given(),
             follows,
@@ -132,7 +132,7 @@ impl Response {
         true
     }
 
-    fn compute(&mut self, problem: &MechanicsProblem, active_set: &ActiveSet) {
+    fn compute(&mut self, problem: &TractionProblem, active_set: &ActiveSet) {
         let compliance = problem.compliance;
         let node_ahead = self.node_ahead_of_the_contact();
         let nodes = &self.nodes;
@@ -150,10 +150,10 @@ impl Response {
             self.penetration[column] = 0.0;
             self.gap[column] = 0.0;
             if self.kind.follows {
-                for (lift, &node) in self.lift.iter_mut().zip(nodes) {
-                    *lift = compliance.normal_tangential[(node, loaded)];
+                for (upward, &node) in self.upward.iter_mut().zip(nodes) {
+                    *upward = compliance.normal_tangential[(node, loaded)];
                 }
-                dense::multiply(inverse, m, &self.lift, pressure);
+                dense::multiply(inverse, m, &self.upward, pressure);
                 if self.kind.load_given {
                     let total = pressure.iter().sum::<f64>() / unit_sum;
                     dense::add_multiple(unit, -total, pressure);

@@ -1,4 +1,4 @@
-//! The derivative of the mechanics: how the tractions change with the data of the problem, at unchanged sets of nodes
+//! Derivative of the mechanics: the change of the tractions with the data of the problem, at unchanged sets of nodes
 //! under pressure and, by Coulomb's law, of nodes that slip.
 //!
 //! The implicit function theorem on (37) and the friction law, a dτ + b ds + c dp + e dμ = 0 at each node. With dp and ds at
@@ -6,20 +6,20 @@
 //!
 //! (a + b ∂s/∂τ + c ∂p/∂τ) dτ = −(e dμ + c dp + b ds).
 
-use super::front::Edge;
-use super::problem::{MechanicsProblem, ProblemTangent, Tractions, node_ahead};
-use super::sweep::Mechanics;
+use super::leading_edge::EdgeValues;
+use super::normal_tangential::Mechanics;
+use super::traction_problem::{TractionProblem, TractionProblemTangent, Tractions, node_ahead};
 use crate::error::{Error, Result};
 use crate::numerics::dense;
 use crate::parameters::NormalSolver;
 
 impl Mechanics {
-    /// Solves from tractions at rest and factorises there, for [`Mechanics::tangent`].
+    /// Solves from converged tractions and factorises there, for [`Mechanics::tangent`].
     ///
     /// # Errors
-    /// As [`Mechanics::solve`], and [`Error::SingularContactMatrix`].
-    pub fn linearise(&mut self, problem: &MechanicsProblem, tractions: &mut Tractions) -> Result<()> {
-        let problem = MechanicsProblem {
+    /// Those of [`Mechanics::solve`], and [`Error::SingularContactMatrix`].
+    pub fn linearise(&mut self, problem: &TractionProblem, tractions: &mut Tractions) -> Result<()> {
+        let problem = TractionProblem {
             normal_solver: NormalSolver::ActiveSet,
             ..*problem
         };
@@ -37,19 +37,19 @@ impl Mechanics {
     }
 
     /// Change of the tractions with the data of the problem, at the point of [`Mechanics::linearise`].
-    pub fn tangent(&mut self, problem: &MechanicsProblem, change: &ProblemTangent, tractions: &mut Tractions) {
+    pub fn tangent(&mut self, problem: &TractionProblem, change: &TractionProblemTangent, tractions: &mut Tractions) {
         let m = self.nodes.len();
-        let lift = self.pressure_tangent(problem, change, tractions);
-        self.shear_tangent(problem, change, tractions, lift);
+        let penetration = self.pressure_tangent(problem, change, tractions);
+        self.shear_tangent(problem, change, tractions, penetration);
 
-        // What follows the change of the shear.
+        // The pressure follows the change of the shear.
         let local = &mut self.local;
         dense::multiply(self.response.pressure(), m, &local.shear, &mut local.following);
         dense::add_multiple(&local.following[..m], 1.0, &mut local.pressure[..m]);
         tractions.pressure.fill(0.0);
         tractions.shear.fill(0.0);
         tractions.slip.fill(0.0);
-        tractions.saturation.fill(0.0);
+        tractions.utilisation.fill(0.0);
         for (row, &node) in self.nodes.iter().enumerate() {
             tractions.pressure[node] = local.pressure[row];
             tractions.shear[node] = local.shear[row];
@@ -60,7 +60,7 @@ impl Mechanics {
         }
         self.friction_tangent(problem, change, tractions.friction);
         for (row, &node) in self.nodes.iter().enumerate() {
-            tractions.saturation[node] = self.saturation_tangent(problem, tractions.friction, row);
+            tractions.utilisation[node] = self.utilisation_tangent(problem, tractions.friction, row);
         }
         // δ from any closed node: dδ = (C dp − db) there.
         *tractions.penetration = match self.nodes.first() {
@@ -82,11 +82,11 @@ impl Mechanics {
         };
     }
 
-    /// dp at unchanged shear, on the nodes under pressure and as tractions; returns dδ.
+    /// Computes dp at unchanged shear, on the nodes under pressure and as tractions. Returns dδ.
     fn pressure_tangent(
         &mut self,
-        problem: &MechanicsProblem,
-        change: &ProblemTangent,
+        problem: &TractionProblem,
+        change: &TractionProblemTangent,
         tractions: &mut Tractions,
     ) -> f64 {
         let m = self.nodes.len();
@@ -96,26 +96,26 @@ impl Mechanics {
         }
         let (inverse, unit) = self.active_set.inverse();
         dense::multiply(inverse, m, &local.profile, &mut local.pressure);
-        let mut lift = 0.0;
+        let mut penetration = 0.0;
         if problem.load_is_given() {
-            lift = (change.total - local.pressure[..m].iter().sum::<f64>()) / unit.iter().sum::<f64>();
-            dense::add_multiple(unit, lift, &mut local.pressure[..m]);
+            penetration = (change.total - local.pressure[..m].iter().sum::<f64>()) / unit.iter().sum::<f64>();
+            dense::add_multiple(unit, penetration, &mut local.pressure[..m]);
         }
         tractions.pressure.fill(0.0);
         tractions.shear.fill(0.0);
         for (row, &node) in self.nodes.iter().enumerate() {
             tractions.pressure[node] = local.pressure[row];
         }
-        lift
+        penetration
     }
 
-    /// dτ.
+    /// Computes dτ.
     fn shear_tangent(
         &mut self,
-        problem: &MechanicsProblem,
-        change: &ProblemTangent,
+        problem: &TractionProblem,
+        change: &TractionProblemTangent,
         tractions: &mut Tractions,
-        lift: f64,
+        penetration: f64,
     ) {
         let m = self.nodes.len();
         self.displacement_tangent(problem, change, tractions);
@@ -126,24 +126,27 @@ impl Mechanics {
                 .iter()
                 .map(|&node| row[node] * tractions.pressure[node])
                 .sum();
-            lowered - change.profile[ahead] - lift
+            lowered - change.profile[ahead] - penetration
         });
         for (row, &node) in self.nodes.iter().enumerate() {
             self.local.slip[row] = self.law_slip_tangent(problem, change, node);
         }
-        let edge = self.leading_edge(problem);
+        let leading = self.leading_rows(problem);
         let point = self.tangential.point(m);
-        let edge_change = Edge {
-            pressure: edge.rows.map(|row| self.local.pressure[row]),
+        let edge_change = EdgeValues {
+            pressure: leading.rows.map(|row| self.local.pressure[row]),
             shear: [0.0; 3],
-            friction: self.nodes.get(edge.rows[0]).map_or(0.0, |&node| change.friction[node]),
+            friction: self
+                .nodes
+                .get(leading.rows[0])
+                .map_or(0.0, |&node| change.friction[node]),
             gap,
         };
         let speed = problem.strain_speed.abs();
-        for (added, row) in point.added.iter().zip(edge.rows) {
-            // What is added is proportional to the strain speed.
-            let per_speed = if speed > 0.0 { added.slip / speed } else { 0.0 };
-            self.local.slip[row] += added.change(&edge_change) + change.strain_speed * per_speed;
+        for (correction, row) in point.corrections.iter().zip(leading.rows) {
+            // The correction is proportional to the strain speed.
+            let per_speed = if speed > 0.0 { correction.slip / speed } else { 0.0 };
+            self.local.slip[row] += correction.change(&edge_change) + change.strain_speed * per_speed;
         }
         for (row, &node) in self.nodes.iter().enumerate() {
             self.local.friction[row] = change.friction_of_slip[node];
@@ -163,21 +166,21 @@ impl Mechanics {
         self.tangential.solve_linear(&mut self.local.shear[..m]);
     }
 
-    /// dμ, with the law's slip and the pressure under the change of the shear.
-    fn friction_tangent(&mut self, problem: &MechanicsProblem, change: &ProblemTangent, friction: &mut [f64]) {
+    /// Computes dμ, with the law's slip and the pressure under the change of the shear.
+    fn friction_tangent(&mut self, problem: &TractionProblem, change: &TractionProblemTangent, friction: &mut [f64]) {
         friction.copy_from_slice(change.friction_of_slip);
         let Some((law, _)) = &problem.path else {
             return;
         };
         let m = self.nodes.len();
-        // That at unchanged shear is still there.
+        // The change of the slip at unchanged shear is still there.
         let mut slip = std::mem::take(&mut self.local.slip);
         dense::multiply_columns(&self.slip_response, m, &self.local.shear[..m], &mut slip);
-        let edge = self.leading_edge(problem);
-        let added = self.tangential.point(m).added;
+        let leading = self.leading_rows(problem);
+        let corrections = self.tangential.point(m).corrections;
         for (column, shear) in self.local.shear[..m].iter().enumerate() {
-            let response = edge.response(added, self.response.pressure(), column);
-            for (response, row) in response.iter().zip(edge.rows) {
+            let response = leading.response(corrections, self.response.pressure(), column);
+            for (response, row) in response.iter().zip(leading.rows) {
                 slip[row] += response * shear;
             }
         }
@@ -189,16 +192,21 @@ impl Mechanics {
         self.local.slip = slip;
     }
 
-    /// du₁ of the changes of pressure and shear, n.
-    fn displacement_tangent(&mut self, problem: &MechanicsProblem, change: &ProblemTangent, tractions: &Tractions) {
+    /// Computes du₁ by the changes of pressure and shear, n.
+    fn displacement_tangent(
+        &mut self,
+        problem: &TractionProblem,
+        change: &TractionProblemTangent,
+        tractions: &Tractions,
+    ) {
         self.moved.copy_from_slice(change.displacement);
         problem
             .compliance
             .add_along(1.0, tractions.pressure, tractions.shear, &mut self.moved);
     }
 
-    /// Change of the law's slip with the data and with du₁, without what the leading edge adds.
-    fn law_slip_tangent(&self, problem: &MechanicsProblem, change: &ProblemTangent, node: usize) -> f64 {
+    /// Change of the law's slip with the data and with du₁, without the leading-edge correction.
+    fn law_slip_tangent(&self, problem: &TractionProblem, change: &TractionProblemTangent, node: usize) -> f64 {
         let ahead = node_ahead(node, problem.is_forward());
         let strain = |u: &[f64]| u[node] - u[ahead];
         let (by_strain, by_displacement) = problem.slip_weights();
@@ -214,7 +222,7 @@ impl Mechanics {
     }
 
     /// Change of the mean slip with the data and with du₁.
-    fn mean_slip_tangent(&self, problem: &MechanicsProblem, change: &ProblemTangent, node: usize) -> f64 {
+    fn mean_slip_tangent(&self, problem: &TractionProblem, change: &TractionProblemTangent, node: usize) -> f64 {
         let sign = if problem.is_forward() { 1.0 } else { -1.0 };
         let strain = |u: &[f64]| 0.5 * (u[node - 1] - u[node + 1]);
         change.rigid_slip
@@ -224,11 +232,11 @@ impl Mechanics {
             + problem.transient.rate * self.moved[node]
     }
 
-    /// dφ of φ = −τ/(μ p); none where a node slips by Coulomb's law.
-    fn saturation_tangent(&self, problem: &MechanicsProblem, friction: &[f64], row: usize) -> f64 {
+    /// Change of the traction utilisation φ = −τ/(μ p); none where a node slips by Coulomb's law.
+    fn utilisation_tangent(&self, problem: &TractionProblem, friction: &[f64], row: usize) -> f64 {
         let point = self.tangential.point(self.nodes.len());
         let node = self.nodes[row];
-        let (mu, pressure, phi) = (point.friction[row], point.pressure[row], point.saturation[row]);
+        let (mu, pressure, phi) = (point.friction[row], point.pressure[row], point.utilisation[row]);
         let slips = problem.regularisation == 0.0 && phi.abs() == 1.0;
         if slips || mu * pressure == 0.0 {
             return 0.0;

@@ -6,23 +6,23 @@
 //! exponential that is the solution, Δt* = (ℓ/|V|)(exp(|V|Δt/ℓ) − 1): exact for ∂u/∂t + |V|u/ℓ = F, Δt where the step is
 //! short, and without trace where it is long. At rest Δt* = Δt.
 
-/// How the displacement's rate of change enters the slip.
+/// Weights with which the displacement's rate of change enters the slip.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Transient {
     /// 1/Δt* times the displacement scale: slip velocity per scaled change of displacement, `m/s`.
     pub rate: f64,
-    /// θ: share of the node ahead in the change. The strain is the difference of a node and the one ahead of it, centred
-    /// between them, and so should the change be: θ = ½. At rest no strain is there to tell nodes whose shear alternates, and
-    /// θ = ½ would leave them without stiffness; θ = ½ |V|Δt/(|V|Δt + Δx) is between.
+    /// Weight θ of the node ahead in the change of the displacement. The strain is the difference of a node and the one ahead of it,
+    /// centred between them, and so should the change be: θ = ½. At rest there is no strain that resists a shear alternating from
+    /// node to node, and θ = ½ would leave it without stiffness; θ = ½ |V|Δt/(|V|Δt + Δx) is between.
     pub centring: f64,
 }
 
-/// Beyond this |V|Δt/ℓ nothing of the step before is left that a number in double precision would show.
+/// Largest |V|Δt/ℓ at which the step before still leaves a trace in double precision.
 const FORGOTTEN: f64 = 60.0;
 
 impl Transient {
-    /// Over a step of `duration` `s` at |V| = `speed` `m/s`, with nodes `spacing` `m` apart and a relaxation length `length`
-    /// `m`. None, as in steady rolling, where the step is infinite or 0: a state without a step before it.
+    /// Weights for a step of `duration` `s` at |V| = `speed` `m/s`, with nodes `spacing` `m` apart and a relaxation length `length`
+    /// `m`. They are 0, as in steady rolling, where the step is infinite or 0: a state without a step before it.
     pub fn new(duration: f64, speed: f64, spacing: f64, length: f64, displacement_scale: f64) -> Transient {
         let travelled = speed * duration;
         if !(duration > 0.0 && duration.is_finite()) || travelled > FORGOTTEN * length {
@@ -34,7 +34,7 @@ impl Transient {
         }
     }
 
-    /// Its change with |V|, per `m/s`.
+    /// Change of the weights with |V|, per `m/s`.
     pub fn tangent(&self, duration: f64, speed: f64, spacing: f64, length: f64) -> Transient {
         if self.rate == 0.0 {
             return Transient::default();
@@ -97,11 +97,11 @@ mod tests {
         );
     }
 
-    /// The change is centred between the nodes where the step is long, and not at all where it is short.
+    /// Checks that the change is centred between the nodes where the step is long, and not at all where it is short.
     #[test]
     fn the_change_is_centred_as_far_as_the_step_goes() {
-        for (cells, share) in [(0.0, 0.0), (1.0, 0.25), (4.0, 0.4), (99.0, 0.495)] {
-            assert!((at(cells * SPACING / 1e-3, 1e-3).centring - share).abs() < 1e-15);
+        for (cells, centring) in [(0.0, 0.0), (1.0, 0.25), (4.0, 0.4), (99.0, 0.495)] {
+            assert!((at(cells * SPACING / 1e-3, 1e-3).centring - centring).abs() < 1e-15);
         }
     }
 

@@ -5,8 +5,8 @@ use crate::parameters::{
     ContactModel, Control, FrictionLaw, Parameters, SlipSource, TABLE_POINTS, Wheel, WheelHeating,
 };
 
-/// How much wider the contact window must fit the limits of [`Parameters::validate`]: for runs with a window wider than
-/// usual.
+/// Factor by which the contact window may be widened within the limits of [`Parameters::validate`]: for runs with a window wider
+/// than usual.
 pub const WIDEST_WINDOW: f64 = 3.0;
 
 /// Parameters that can be together. Those that are refused are drawn again.
@@ -23,7 +23,7 @@ pub fn parameters(random: &mut Random, contact_model: ContactModel) -> Parameter
     }
 }
 
-/// The same with `factor` times the window, at the same spacing of the nodes: the window of a line grows with the root of
+/// Parameters with `factor` times the window, at the same spacing of the nodes: the window of a line grows with the root of
 /// `largest_load`, that of a patch with its cube root.
 pub fn with_window(parameters: &Parameters, factor: f64) -> Parameters {
     let widened = |count: usize| (factor * count as f64).round() as usize;
@@ -100,7 +100,7 @@ fn draw(random: &mut Random) -> Parameters {
     parameters
 }
 
-/// What a patch has besides: transverse curvatures, of hollow wheels among them, a layer, cells and strips.
+/// Draws the parameters that a patch has besides: transverse curvatures, of hollow wheels among them, a layer, cells and strips.
 fn patch(random: &mut Random, parameters: &mut Parameters) {
     parameters.contact_model = ContactModel::Patch;
     // B/A, from a contact four times as long as broad to one seven times as broad as long.

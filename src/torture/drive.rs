@@ -16,13 +16,13 @@ const LARGEST_SHARE: f64 = 0.98;
 pub struct DriveStep {
     /// Inputs at its beginning.
     pub inputs: Inputs,
-    /// Their rates, per second.
+    /// Rates of the inputs, per second.
     pub rates: Inputs,
-    /// Its length, `s`.
+    /// Length of the step, `s`.
     pub duration: f64,
 }
 
-/// How the inputs go to those of the next stretch.
+/// Course of the inputs to those of the next stretch.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Course {
     Jump,

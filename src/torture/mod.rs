@@ -33,7 +33,7 @@ const RUNS_PER_MODEL: u64 = 4;
 /// properties are constants here, so that well above 1000 K the model answers for nothing.
 pub const LARGEST_TEMPERATURE: f64 = 1373.15;
 
-/// Which contact models are tortured.
+/// Contact models that are tortured.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Engines {
     /// The line contact.
@@ -58,10 +58,10 @@ pub struct Torture {
     pub engines: Engines,
 }
 
-/// How a run failed.
+/// Failure of a run.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Failure {
-    /// No model, no first state or no step.
+pub enum RunFailure {
+    /// Error of the model: it could not be built, or had no first state, or a step failed.
     Model(Error),
     /// A step that left the state neither as it was nor as far on as it said.
     Changed,
@@ -71,22 +71,22 @@ pub enum Failure {
     State,
 }
 
-impl fmt::Display for Failure {
+impl fmt::Display for RunFailure {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         match self {
-            Failure::Model(error) => write!(f, "{error}"),
-            Failure::Changed => write!(f, "a step that failed has changed the state"),
-            Failure::Output(name, value) => write!(f, "the output {name} is {value}"),
-            Failure::State => write!(f, "the model does not accept the state"),
+            RunFailure::Model(error) => write!(f, "{error}"),
+            RunFailure::Changed => write!(f, "a step that failed has changed the state"),
+            RunFailure::Output(name, value) => write!(f, "the output {name} is {value}"),
+            RunFailure::State => write!(f, "the model does not accept the state"),
         }
     }
 }
 
-impl Failure {
-    /// The kind: the name of the error.
+impl RunFailure {
+    /// Kind of the failure: the name of the error.
     pub fn kind(&self) -> String {
         let text = match self {
-            Failure::Model(error) => format!("{error:?}"),
+            RunFailure::Model(error) => format!("{error:?}"),
             other => format!("{other:?}"),
         };
         let end = text.find([' ', '(', '{']).unwrap_or(text.len());
@@ -94,7 +94,7 @@ impl Failure {
     }
 }
 
-/// What one step took.
+/// Time and iterations that one step took.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct StepTime {
     /// Number of the run.
@@ -107,7 +107,7 @@ pub struct StepTime {
     pub iterations: usize,
 }
 
-/// Where a run stood after a step.
+/// Extent, load and temperature of a run after a step.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Reach {
     /// Outermost node under pressure in units of the Hertz half-length at `largest_load`.
@@ -118,21 +118,21 @@ pub struct Reach {
     pub temperature: f64,
 }
 
-/// One run.
+/// Result of one run.
 #[derive(Debug, Clone)]
 pub struct Run {
-    /// Its number.
+    /// Number of the run.
     pub number: u64,
     /// The steps that were taken.
     pub steps: Vec<StepTime>,
-    /// Where it stood after them.
+    /// Extent, load and temperature after each step.
     pub reach: Vec<Reach>,
-    /// How often the rail was replaced by a cold one, after a step or because of one that failed.
+    /// Number of times that the rail was replaced by a cold one, after a step or because of one that failed.
     pub replaced: usize,
     /// Steps until it ended, those that found the rail too hot included.
     pub length: usize,
-    /// How it ended, unless after all steps.
-    pub failure: Option<Failure>,
+    /// Failure that ended the run, unless it ended after all steps.
+    pub failure: Option<RunFailure>,
 }
 
 impl Torture {
@@ -184,9 +184,9 @@ impl Torture {
                 let outcome = match &mut built {
                     Ok(model) => model
                         .retune(&self.parameters(number))
-                        .map_err(Failure::Model)
+                        .map_err(RunFailure::Model)
                         .and_then(|()| self.follow(model, &mut run)),
-                    Err(error) => Err(Failure::Model(error.clone())),
+                    Err(error) => Err(RunFailure::Model(error.clone())),
                 };
                 run.failure = outcome.err();
                 run
@@ -195,14 +195,14 @@ impl Torture {
     }
 
     /// Takes the steps of a run.
-    fn follow(&self, model: &Model, run: &mut Run) -> Result<(), Failure> {
+    fn follow(&self, model: &Model, run: &mut Run) -> Result<(), RunFailure> {
         // Those without the wider window.
         let parameters = self.parameters(run.number);
         let mut drive = self.drive(run.number, &parameters);
         let mut workspace = model.workspace();
         let mut state = model
             .initial_state(&mut workspace, drive.inputs())
-            .map_err(Failure::Model)?;
+            .map_err(RunFailure::Model)?;
         for number in 0..self.steps {
             run.length = number;
             let step = drive.step();
@@ -213,10 +213,10 @@ impl Torture {
             if let Err((committed, error)) = &outcome {
                 let stays = state.time == before.time + committed && (*committed > 0.0 || state == before);
                 if !stays {
-                    return Err(Failure::Changed);
+                    return Err(RunFailure::Changed);
                 }
                 if !is_refused(model, error) && !is_too_hot(model, &before, &step) {
-                    return Err(Failure::Model(error.clone()));
+                    return Err(RunFailure::Model(error.clone()));
                 }
             } else {
                 check(model, &state)?;
@@ -232,7 +232,7 @@ impl Torture {
                 run.replaced += 1;
                 state = model
                     .initial_state(&mut workspace, drive.inputs())
-                    .map_err(Failure::Model)?;
+                    .map_err(RunFailure::Model)?;
             }
         }
         run.length = self.steps;
@@ -271,23 +271,23 @@ fn take(model: &Model, workspace: &mut Workspace, state: &mut State, step: &Driv
 }
 
 /// Outputs within their bounds, a state that can be saved and resumed.
-fn check(model: &Model, state: &State) -> Result<(), Failure> {
+fn check(model: &Model, state: &State) -> Result<(), RunFailure> {
     for signal in OUTPUTS {
         let value = (signal.get)(&state.outputs);
         let above = signal.minimum.is_none_or(|minimum| value >= minimum);
         let below = signal.maximum.is_none_or(|maximum| value <= maximum);
         if !(value.is_finite() && above && below) {
-            return Err(Failure::Output(signal.name, value));
+            return Err(RunFailure::Output(signal.name, value));
         }
     }
     if model.accepts(state) {
         Ok(())
     } else {
-        Err(Failure::State)
+        Err(RunFailure::State)
     }
 }
 
-/// How far the contact reaches along the rail, under which load.
+/// Extent of the contact along the rail, its load and its temperature.
 fn reach(model: &Model, parameters: &Parameters, state: &State) -> Reach {
     let nodes = model.contact_nodes(state);
     let pressed = || nodes.iter().filter(|node| node.pressure > 0.0);

@@ -26,7 +26,7 @@ impl Random {
         low + (high - low) * (self.bits() >> 11) as f64 / (1_u64 << 53) as f64
     }
 
-    /// Between two positive numbers, every decade alike.
+    /// Random number between two positive ones, every decade alike.
     pub fn decades(&mut self, low: f64, high: f64) -> f64 {
         self.between(low.ln(), high.ln()).exp().clamp(low, high)
     }
@@ -46,7 +46,7 @@ impl Random {
         values[self.count(0, values.len() - 1)]
     }
 
-    /// From `low` up to and with `high`.
+    /// Random count from `low` up to and with `high`.
     pub fn count(&mut self, low: usize, high: usize) -> usize {
         low + (self.bits() % (high - low + 1) as u64) as usize
     }

@@ -1,4 +1,4 @@
-//! What makes a step slow: it is taken again without one of the methods for hard steps at a time.
+//! Search for what makes a step slow: the step is taken again without one of the methods for hard steps at a time.
 
 use super::{StepTime, Torture, draw, is_hot, take};
 use crate::error::Result;
@@ -9,9 +9,9 @@ use std::time::Instant;
 /// A step under the magnifying glass.
 #[derive(Debug, Clone)]
 pub struct Slow {
-    /// What it took.
+    /// Time and iterations that the step took.
     pub taken: StepTime,
-    /// Its length, `s`.
+    /// Length of the step, `s`.
     pub duration: f64,
     /// Rolling speed at its end, `m/s`.
     pub rolling_speed: f64,

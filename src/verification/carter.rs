@@ -104,7 +104,7 @@ fn stick_zone(run: &mut Simulation, inputs: &Inputs) -> Result<Vec<Row>> {
     let sticks: Vec<f64> = nodes
         .iter()
         .filter(|node| node.pressure > 0.0)
-        .filter(|node| coulomb::sticks(node.saturation, parameters.slip_regularisation))
+        .filter(|node| coulomb::sticks(node.utilisation, parameters.slip_regularisation))
         .map(|node| node.position)
         .collect();
     let rear = sticks.first().copied().unwrap_or(f64::NAN) - 0.5 * spacing;

@@ -1,7 +1,7 @@
 //! The wear depth of the strips of a patch: the march of [`super::WearMarch`] in all strips at once.
 //!
 //! Depths are kept in blocks of [`LANES`] strips side by side. [`StripWearMarch::advance`] is the rail ahead and the window, as often
-//! as the wear rate changes; [`StripWearMarch::finish`] is the rail behind, which does not act back. What strips have in
+//! as the wear rate changes; [`StripWearMarch::finalise`] is the rail behind, which does not act back. What strips have in
 //! common with the rail ahead and behind is in [`crate::transport::strips`].
 
 use super::{WearChange, WearMarch, WearSteps};
@@ -126,7 +126,7 @@ impl StripWearMarch<'_> {
     }
 
     /// The rail behind, over a contact of breadth B `breadth` `m`. Without a contact, at 0, it is that of the last step with one.
-    pub fn finish(&self, breadth: f64, before: &StripWear, after: &mut StripWear, steps: &mut StripWearSteps) {
+    pub fn finalise(&self, breadth: f64, before: &StripWear, after: &mut StripWear, steps: &mut StripWearSteps) {
         let (ahead, behind) = self.strips.ends(self.speed);
         let inflow = self.strips.window(self.speed).inflow();
         let lanes = self.strips.blocks() * LANES;
@@ -199,9 +199,9 @@ impl StripWearMarch<'_> {
         self.read_cells(tangent);
     }
 
-    /// The change of [`StripWearMarch::finish`], with those of |V|, by `speed_change` `m/s`, and of B, by `breadth_change` `m`, 0
+    /// The change of [`StripWearMarch::finalise`], with those of |V|, by `speed_change` `m/s`, and of B, by `breadth_change` `m`, 0
     /// without a contact.
-    pub fn finish_tangent(&self, speed_change: f64, breadth_change: f64, after: &StripWear, tangent: &mut StripWear) {
+    pub fn finalise_tangent(&self, speed_change: f64, breadth_change: f64, after: &StripWear, tangent: &mut StripWear) {
         let (_, behind) = self.strips.ends(self.speed);
         let outflow = self.strips.window(self.speed).outflow();
         let at = |field: &StripWear, strip: usize| field.window[self.place(strip, outflow)];

@@ -84,7 +84,7 @@ fn difference(
         let nodes = model.contact_nodes(state);
         nodes
             .iter()
-            .map(|node| (node.pressure > 0.0, node.saturation.abs() > SLIDES))
+            .map(|node| (node.pressure > 0.0, node.utilisation.abs() > SLIDES))
             .collect()
     };
     let smooth_set = [&ahead, &behind, &further_ahead, &further_behind]

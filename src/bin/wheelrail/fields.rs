@@ -18,7 +18,7 @@ const COLUMNS: [Column; 10] = [
     ("slip_x", "m/s", |node, _| node.slip),
     ("slip_y", "m/s", |node, _| node.lateral_slip),
     // That of a line contact has a sign, which the shear has too.
-    ("saturation", "1", |node, _| node.saturation.abs()),
+    ("saturation", "1", |node, _| node.utilisation.abs()),
     ("temperature", "K", |node, ambient| ambient + node.temperature),
     ("wear_depth", "m", |node, _| node.wear_depth),
 ];

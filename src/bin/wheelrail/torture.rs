@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use std::io::{self, Write};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Mutex, PoisonError};
-use wheelrail::torture::{Engines, Failure, LARGEST_TEMPERATURE, Run, Slow, StepTime, Torture, explain};
+use wheelrail::torture::{Engines, LARGEST_TEMPERATURE, Run, RunFailure, Slow, StepTime, Torture, explain};
 
 /// Options of `torture`.
 #[derive(Args)]
@@ -81,7 +81,7 @@ struct Summary {
     /// The slowest, longest first.
     slowest: Vec<StepTime>,
     /// Failures by their kind, with run and step.
-    failures: BTreeMap<String, Vec<(u64, usize, Failure)>>,
+    failures: BTreeMap<String, Vec<(u64, usize, RunFailure)>>,
     /// Rails that were too hot.
     replaced: usize,
     /// Outermost contact in units of the half-length at `largest_load`.

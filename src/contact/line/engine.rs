@@ -3,7 +3,7 @@
 use super::fields::LineFields;
 use super::heat_and_wear;
 use super::integrals;
-use super::mechanics::{self, Problem};
+use super::mechanics::{self, LineProblem};
 use super::operators::LineOperators;
 use super::profiles;
 use super::solvers::LineSolvers;
@@ -15,7 +15,7 @@ use crate::contact::interface::Interface;
 use crate::contact::profiles::{ContactNode, Profiles};
 use crate::contact::rim::HeatedNode;
 use crate::error::Result;
-use crate::mechanics::sweep::Sweep;
+use crate::mechanics::normal_tangential::TractionChange;
 use crate::parameters::Parameters;
 use crate::settings::{SensitivitySettings, Settings, SplitSettings};
 use std::iter;
@@ -77,11 +77,11 @@ impl Engine for LineOperators {
         self.node_area(parameters) * self.scales.pressure
     }
 
-    fn own_displacement(&self, parameters: &Parameters) -> f64 {
+    fn diagonal_displacement(&self, parameters: &Parameters) -> f64 {
         self.near_field.direct * self.scales.displacement + parameters.layer_compliance * self.scales.pressure
     }
 
-    fn relaxation_length(problem: &Problem, fields: &LineFields) -> f64 {
+    fn relaxation_length(problem: &LineProblem, fields: &LineFields) -> f64 {
         let (load, relaxation) = (problem.load(fields), &problem.operators.relaxation);
         if load > 0.0 {
             let half_length = problem.parameters.hertz_half_length(load);
@@ -116,7 +116,7 @@ impl Engine for LineOperators {
     }
 
     fn begin(
-        problem: &Problem,
+        problem: &LineProblem,
         before: Option<&LineFields>,
         now: &mut LineFields,
         solvers: &mut LineSolvers,
@@ -135,17 +135,17 @@ impl Engine for LineOperators {
         Ok(())
     }
 
-    fn read(problem: &Problem, fields: &LineFields, solvers: &mut LineSolvers, interface: &mut Interface) {
+    fn read(problem: &LineProblem, fields: &LineFields, solvers: &mut LineSolvers, interface: &mut Interface) {
         heat_and_wear::read(problem, fields, solvers, interface);
     }
 
     fn solve_mechanics(
-        problem: &Problem,
+        problem: &LineProblem,
         interface: &Interface,
         now: &mut LineFields,
         solvers: &mut LineSolvers,
         tolerance: f64,
-    ) -> Result<Sweep> {
+    ) -> Result<TractionChange> {
         mechanics::solve(problem, interface, now, solvers, tolerance)
     }
 
@@ -166,12 +166,12 @@ impl Engine for LineOperators {
         }
     }
 
-    fn march_wear(problem: &Problem, before: &LineFields, now: &mut LineFields, solvers: &mut LineSolvers) {
+    fn march_wear(problem: &LineProblem, before: &LineFields, now: &mut LineFields, solvers: &mut LineSolvers) {
         heat_and_wear::march_wear(problem, before, now, solvers);
     }
 
     fn march_heat(
-        problem: &Problem,
+        problem: &LineProblem,
         before: &LineFields,
         wheel_rise: f64,
         now: &mut LineFields,
@@ -180,49 +180,59 @@ impl Engine for LineOperators {
         heat_and_wear::march_heat(problem, before, wheel_rise, now, solvers)
     }
 
-    fn update_wear_compliance(problem: &Problem, now: &LineFields, solvers: &mut LineSolvers) {
+    fn update_wear_compliance(problem: &LineProblem, now: &LineFields, solvers: &mut LineSolvers) {
         heat_and_wear::update_wear_compliance(problem, now, solvers);
     }
 
-    fn pending_displacement(problem: &Problem, now: &LineFields, solvers: &LineSolvers) -> f64 {
+    fn pending_displacement(problem: &LineProblem, now: &LineFields, solvers: &LineSolvers) -> f64 {
         heat_and_wear::pending_displacement(problem, now, solvers)
     }
 
-    fn map_displacement(problem: &Problem, now: &mut LineFields, solvers: &mut LineSolvers, interface: &mut Interface) {
+    fn map_displacement(
+        problem: &LineProblem,
+        now: &mut LineFields,
+        solvers: &mut LineSolvers,
+        interface: &mut Interface,
+    ) {
         heat_and_wear::map_displacement(problem, now, solvers, interface);
     }
 
-    fn close_friction(problem: &Problem, now: &mut LineFields, _solvers: &LineSolvers) {
+    fn finalise_friction(problem: &LineProblem, now: &mut LineFields, _solvers: &LineSolvers) {
         let law = problem.friction();
         let first = problem.operators.mesh.first_contact;
         let of_slip = problem.path_law().is_some();
         for node in 0..now.pressure.len() {
-            let resting = law.coefficient(now.surface_temperature[first + node]).0;
-            let mut mu = resting;
+            let static_friction = law.coefficient(now.surface_temperature[first + node]).0;
+            let mut mu = static_friction;
             if of_slip && now.pressure[node] > 0.0 {
-                mu = now.memory.close(node, resting);
+                mu = now.memory.at_final_temperature(node, static_friction);
             }
             now.friction[node] = mu;
             if now.pressure[node] > 0.0 {
-                now.shear[node] = -mu * now.pressure[node] * now.saturation[node];
+                now.shear[node] = -mu * now.pressure[node] * now.utilisation[node];
             }
         }
     }
 
-    fn close_displacement(problem: &Problem, interface: &Interface, now: &mut LineFields, solvers: &mut LineSolvers) {
-        mechanics::close_displacement(problem, interface, now, &solvers.data);
+    fn finalise_displacement(
+        problem: &LineProblem,
+        interface: &Interface,
+        now: &mut LineFields,
+        solvers: &mut LineSolvers,
+    ) {
+        mechanics::finalise_displacement(problem, interface, now, &solvers.data);
     }
 
-    fn finalise(_: &Problem, _: &LineFields, _: &mut LineFields, _: &mut LineSolvers) -> Result<()> {
+    fn finalise(_: &LineProblem, _: &LineFields, _: &mut LineFields, _: &mut LineSolvers) -> Result<()> {
         Ok(())
     }
 
-    fn is_cut_off(_problem: &Problem, now: &LineFields, solvers: &LineSolvers) -> bool {
+    fn is_cut_off(_problem: &LineProblem, now: &LineFields, solvers: &LineSolvers) -> bool {
         solvers.mechanics.is_cut_off() && now.pressure.iter().any(|&p| p > 0.0)
     }
 
     fn heated_nodes<'f>(
-        problem: &'f Problem,
+        problem: &'f LineProblem,
         _fields: &'f LineFields,
         values: &'f LineFields,
     ) -> impl Iterator<Item = HeatedNode> + 'f {
@@ -235,7 +245,7 @@ impl Engine for LineOperators {
         })
     }
 
-    fn begin_linearisation(problem: &Problem, fields: &LineFields, solvers: &mut LineSolvers) {
+    fn begin_linearisation(problem: &LineProblem, fields: &LineFields, solvers: &mut LineSolvers) {
         let nodes = fields.displacement.iter().zip(&fields.displacement_change);
         for (before, (now, change)) in solvers.data.displacement_before.iter_mut().zip(nodes) {
             *before = now - change;
@@ -246,7 +256,7 @@ impl Engine for LineOperators {
     }
 
     fn linearise(
-        problem: &Problem,
+        problem: &LineProblem,
         interface: &Interface,
         fields: &mut LineFields,
         solvers: &mut LineSolvers,
@@ -256,7 +266,7 @@ impl Engine for LineOperators {
     }
 
     fn begin_direction(
-        _problem: &Problem,
+        _problem: &LineProblem,
         _fields: &LineFields,
         _direction: &Direction,
         change: &mut LineFields,
@@ -278,11 +288,11 @@ impl Engine for LineOperators {
 
     fn finalise_tangent(_: &mut Linearised<Self>, _: &Direction, _: &mut LineFields) {}
 
-    fn integrals(problem: &Problem, fields: &LineFields) -> Integrals {
+    fn integrals(problem: &LineProblem, fields: &LineFields) -> Integrals {
         integrals::integrals(problem, fields)
     }
 
-    fn profiles(problem: &Problem, fields: &LineFields) -> Profiles {
+    fn profiles(problem: &LineProblem, fields: &LineFields) -> Profiles {
         let ambient = problem.conditions.inputs.ambient_temperature;
         profiles::profiles(problem.operators, fields, ambient)
     }

@@ -1,7 +1,7 @@
 //! The fields of a line contact, all that a step changes.
 
 use super::operators::LineOperators;
-use crate::contact::fields::{Fields, Number, Row, number, row};
+use crate::contact::fields::{FieldRow, Fields, Number, number, row};
 use crate::friction::memory::Memory;
 use serde::{Deserialize, Serialize};
 
@@ -16,8 +16,8 @@ pub struct LineFields {
     pub thermal_displacement: Vec<f64>,
     /// Wear depth at the columns, `m`.
     pub wear: Vec<f64>,
-    /// What stood in the inflow column before the step: its modal amplitudes, then its wear depth, modes + 1. The derivatives of
-    /// the step need it.
+    /// Content of the inflow column before the step, which the derivatives of the step need: its modal amplitudes, then its wear
+    /// depth, modes + 1.
     pub replaced_inflow: Vec<f64>,
     /// Pressure, scaled, n.
     pub pressure: Vec<f64>,
@@ -25,19 +25,19 @@ pub struct LineFields {
     pub shear: Vec<f64>,
     /// Slip velocity, `m/s`, 0 outside the contact, n.
     pub slip: Vec<f64>,
-    /// Share −τ/(μ p) of Coulomb's bound that the shear takes, n.
-    pub saturation: Vec<f64>,
+    /// Traction utilisation −τ/(μ p), with the sign of the slip, n.
+    pub utilisation: Vec<f64>,
     /// Friction coefficient; where a layer flows, its bound over the pressure, n.
     pub friction: Vec<f64>,
     /// Heat flux into the rail, `W/m²`, n.
     pub heat_flux: Vec<f64>,
     /// Displacement of the contact nodes along x₁, scaled, n.
     pub displacement: Vec<f64>,
-    /// Its change over the last step, n.
+    /// Change of the displacement along x₁ over the last step, scaled, n.
     pub displacement_change: Vec<f64>,
-    /// What friction remembers, n.
+    /// History of friction, n.
     pub memory: Memory,
-    /// The way of rolling on which the last step took the displacement to be forgotten, `m`.
+    /// Relaxation length of the displacement in the last step, `m`: the distance of rolling on which a change of it decays.
     pub relaxation_length: f64,
     /// Penetration δ, scaled; 0 when lifted.
     pub penetration: f64,
@@ -58,7 +58,7 @@ impl LineFields {
             pressure: vec![0.0; n],
             shear: vec![0.0; n],
             slip: vec![0.0; n],
-            saturation: vec![0.0; n],
+            utilisation: vec![0.0; n],
             friction: vec![0.0; n],
             heat_flux: vec![0.0; n],
             displacement: vec![0.0; n],
@@ -78,7 +78,7 @@ impl LineFields {
 }
 
 impl Fields for LineFields {
-    const ROWS: &'static [Row<LineFields>] = &[
+    const ROWS: &'static [FieldRow<LineFields>] = &[
         row!(Linear, Computed, temperature),
         row!(Linear, Extrapolated, surface_temperature),
         row!(Linear, Extrapolated, thermal_displacement),
@@ -87,7 +87,7 @@ impl Fields for LineFields {
         row!(Nonlinear, Before, pressure),
         row!(Nonlinear, Extrapolated, shear),
         row!(Nonlinear, Before, slip),
-        row!(Nonlinear, Before, saturation),
+        row!(Nonlinear, Before, utilisation),
         row!(Nonlinear, Before, friction),
         row!(Linear, Before, heat_flux),
         row!(Independent, Before, displacement),

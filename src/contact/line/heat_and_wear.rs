@@ -1,7 +1,7 @@
 //! Heat and wear of the line for given tractions: the marches across the columns, the thermal displacement, the wear compliance.
 
 use super::fields::LineFields;
-use super::mechanics::Problem;
+use super::mechanics::LineProblem;
 use super::solvers::LineSolvers;
 use crate::contact::interface::Interface;
 use crate::error::Result;
@@ -12,7 +12,7 @@ use crate::numerics::dense::{largest, largest_change, relative};
 use crate::transport::{CellStep, Upwind};
 use crate::wear::WearMarch;
 
-impl<'a> Problem<'a> {
+impl<'a> LineProblem<'a> {
     /// Order in which material crosses the columns.
     pub fn upwind(&self) -> Upwind<'a> {
         Upwind::new(&self.operators.mesh.x, self.conditions.motion.rolling_speed)
@@ -46,7 +46,7 @@ impl<'a> Problem<'a> {
         let of_slip = self.path_law().is_some();
         for (node, exchange) in exchange.iter_mut().enumerate() {
             let pressure = fields.pressure[node] * self.operators.scales.pressure;
-            let sliding = Sliding::new(fields.slip[node], fields.saturation[node]);
+            let sliding = Sliding::new(fields.slip[node], fields.utilisation[node]);
             *exchange = SurfaceExchange::new(self.parameters, pressure, sliding, wheel_rise);
             if of_slip && pressure > 0.0 {
                 exchange.law = fields.memory.point_law(node);
@@ -55,8 +55,8 @@ impl<'a> Problem<'a> {
     }
 }
 
-/// Keeps what stands in the inflow column before something new enters there.
-pub fn keep_inflow(problem: &Problem, before: &LineFields, now: &mut LineFields) {
+/// Keeps the content of the inflow column before new rail enters there.
+pub fn keep_inflow(problem: &LineProblem, before: &LineFields, now: &mut LineFields) {
     let inflow = problem.upwind().inflow();
     let modes = problem.operators.heat.basis.len();
     now.replaced_inflow[..modes].copy_from_slice(before.column(problem.operators, inflow));
@@ -64,7 +64,7 @@ pub fn keep_inflow(problem: &Problem, before: &LineFields, now: &mut LineFields)
 }
 
 /// Marches the wear (24).
-pub fn march_wear(problem: &Problem, before: &LineFields, now: &mut LineFields, solvers: &mut LineSolvers) {
+pub fn march_wear(problem: &LineProblem, before: &LineFields, now: &mut LineFields, solvers: &mut LineSolvers) {
     let nodes = now.pressure.iter().zip(&now.slip);
     for (rate, (pressure, slip)) in solvers.wear_rate.iter_mut().zip(nodes) {
         *rate = problem.parameters.wear_coefficient * slip.abs() * pressure * problem.operators.scales.pressure;
@@ -79,7 +79,7 @@ pub fn march_wear(problem: &Problem, before: &LineFields, now: &mut LineFields, 
 /// # Errors
 /// [`crate::error::Error::SurfaceNotConverged`].
 pub fn march_heat(
-    problem: &Problem,
+    problem: &LineProblem,
     before: &LineFields,
     wheel_rise: f64,
     now: &mut LineFields,
@@ -98,7 +98,7 @@ pub fn march_heat(
 }
 
 /// Adapts the normal compliance to the wear of the step.
-pub fn update_wear_compliance(problem: &Problem, now: &LineFields, solvers: &mut LineSolvers) {
+pub fn update_wear_compliance(problem: &LineProblem, now: &LineFields, solvers: &mut LineSolvers) {
     let (operators, transport) = (problem.operators, problem.upwind());
     let changed = solvers.wear_compliance.update(
         &operators.compliance.at_rest.normal_normal,
@@ -116,31 +116,36 @@ pub fn update_wear_compliance(problem: &Problem, now: &LineFields, solvers: &mut
     }
 }
 
-/// Bound of the thermal displacement that the heat of this iteration would add if the thermal map were applied. The flux
-/// has changed by some share since the map was applied last; the displacement changes by less than that share, because
-/// most of the heat was there before; and the same holds of the share by which the surface temperature has changed, which tells
-/// the noise of next to no flux from heat. The bound spares the last iteration of a step the map, the
-/// largest part of its work: the fields keep the displacement that the tractions have felt.
-pub fn pending_displacement(problem: &Problem, now: &LineFields, solvers: &LineSolvers) -> f64 {
-    let share = |now: &[f64], mapped: &[f64]| relative(largest_change(now, mapped), largest(mapped));
+/// Bound of the thermal displacement that the heat of this iteration would add if the thermal map were applied. Since the map
+/// was applied last the flux has changed by some ratio; the displacement changes by a smaller one, because most of the heat was
+/// there before. The ratio by which the surface temperature has changed is a bound as well, and the better one where the flux is
+/// next to none and its changes are noise. The bound spares the last iteration of a step the map, the largest part of its work:
+/// the fields keep the displacement that the tractions were solved for.
+pub fn pending_displacement(problem: &LineProblem, now: &LineFields, solvers: &LineSolvers) -> f64 {
+    let ratio = |now: &[f64], mapped: &[f64]| relative(largest_change(now, mapped), largest(mapped));
     let temperature = &now.surface_temperature[problem.operators.mesh.window()];
-    // Without slip flux and temperature in the window may be nothing but round-off, and each iteration has another one, while the heat of the
-    // rail beside the window displaces it: a share of that is no measure.
+    // Without slip flux and temperature in the window may be nothing but round-off, which changes from iteration to iteration,
+    // while the heat of the rail beside the window displaces it: a ratio to that is no measure.
     let settings = &problem.settings.split;
-    let unfelt = settings.unfelt * settings.tolerance * settings.least_temperature;
-    if largest_change(temperature, &solvers.mapped_temperature) <= unfelt {
+    let negligible = settings.negligible * settings.tolerance * settings.least_temperature;
+    if largest_change(temperature, &solvers.mapped_temperature) <= negligible {
         return 0.0;
     }
-    let share = share(&now.heat_flux, &solvers.mapped_flux).min(share(temperature, &solvers.mapped_temperature));
-    if share.is_infinite() {
-        share
+    let ratio = ratio(&now.heat_flux, &solvers.mapped_flux).min(ratio(temperature, &solvers.mapped_temperature));
+    if ratio.is_infinite() {
+        ratio
     } else {
-        share * largest(&now.thermal_displacement)
+        ratio * largest(&now.thermal_displacement)
     }
 }
 
 /// Applies the thermal map, for the fields and their interface vector.
-pub fn map_displacement(problem: &Problem, now: &mut LineFields, solvers: &mut LineSolvers, interface: &mut Interface) {
+pub fn map_displacement(
+    problem: &LineProblem,
+    now: &mut LineFields,
+    solvers: &mut LineSolvers,
+    interface: &mut Interface,
+) {
     let displacement = &mut now.thermal_displacement;
     let map = &problem.operators.heat.displacement;
     map.apply(&now.temperature, &mut solvers.moments, displacement);
@@ -153,7 +158,7 @@ pub fn map_displacement(problem: &Problem, now: &mut LineFields, solvers: &mut L
 }
 
 /// Writes the interface vector of the fields, or of a change of them.
-pub fn read(problem: &Problem, fields: &LineFields, solvers: &LineSolvers, interface: &mut Interface) {
+pub fn read(problem: &LineProblem, fields: &LineFields, solvers: &LineSolvers, interface: &mut Interface) {
     let mut parts = interface.parts();
     let window = problem.operators.mesh.window();
     parts.set_temperatures(&fields.surface_temperature[window.clone()], fields.wheel_temperature);
@@ -167,7 +172,7 @@ pub fn read(problem: &Problem, fields: &LineFields, solvers: &LineSolvers, inter
 }
 
 /// Writes the displacement by heat and by the convective inertia of the tractions.
-fn read_displacement(problem: &Problem, fields: &LineFields, displacement: &mut [f64]) {
+fn read_displacement(problem: &LineProblem, fields: &LineFields, displacement: &mut [f64]) {
     displacement.copy_from_slice(&fields.thermal_displacement);
     let (along, upward) = displacement.split_at_mut(fields.pressure.len());
     problem.add_inertia(problem.rho_v2(), &fields.pressure, &fields.shear, along, upward);

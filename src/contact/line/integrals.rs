@@ -1,21 +1,21 @@
-//! What is read off the fields of a line contact for the outputs.
+//! Integrals over a line contact, its extent, and the profiles' values that the outputs are made of.
 
 use super::fields::LineFields;
-use super::mechanics::Problem;
+use super::mechanics::LineProblem;
 use super::operators::LineOperators;
 use crate::contact::engine::Engine;
 use crate::contact::integrals::Integrals;
-use crate::contact::integrals::{Node, Sums};
+use crate::contact::integrals::{Node, NodeSums};
 use crate::contact::rim::ContactHeat;
 use crate::friction::coulomb;
 
-/// Of the given fields under the problem's conditions.
-pub fn integrals(problem: &Problem, fields: &LineFields) -> Integrals {
+/// Integrals of the given fields under the problem's conditions.
+pub fn integrals(problem: &LineProblem, fields: &LineFields) -> Integrals {
     let (operators, parameters) = (problem.operators, problem.parameters);
     let transport = problem.upwind();
     let surface = fields.surface_temperature.iter();
     Integrals {
-        sums: Sums::of(nodes(problem, fields)),
+        sums: NodeSums::of(nodes(problem, fields)),
         node_area: operators.node_area(parameters),
         pressure_scale: operators.scales.pressure,
         penetration: fields.penetration * operators.scales.displacement,
@@ -37,7 +37,7 @@ pub fn integrals(problem: &Problem, fields: &LineFields) -> Integrals {
     }
 }
 
-fn nodes(problem: &Problem, fields: &LineFields) -> impl Iterator<Item = Node> {
+fn nodes(problem: &LineProblem, fields: &LineFields) -> impl Iterator<Item = Node> {
     let mesh = &problem.operators.mesh;
     let regularisation = problem.parameters.slip_regularisation;
     (0..mesh.contact_nodes).map(move |node| {
@@ -52,7 +52,7 @@ fn nodes(problem: &Problem, fields: &LineFields) -> impl Iterator<Item = Node> {
             lateral_slip: 0.0,
             friction: fields.friction[node],
             heat_flux: fields.heat_flux[node],
-            sticks: pressure > 0.0 && coulomb::sticks(fields.saturation[node], regularisation),
+            sticks: pressure > 0.0 && coulomb::sticks(fields.utilisation[node], regularisation),
         }
     })
 }

@@ -7,14 +7,14 @@ use super::solvers::MechanicsData;
 use crate::contact::engine::Engine;
 use crate::contact::interface::Interface;
 use crate::error::Result;
-use crate::mechanics::problem::{MechanicsProblem, Tractions};
-use crate::mechanics::softening::Softening;
-use crate::mechanics::sweep::Sweep;
+use crate::mechanics::normal_tangential::TractionChange;
+use crate::mechanics::traction_problem::{TractionProblem, Tractions};
+use crate::mechanics::wear_compliance::WearCompliance;
 
 /// Problem of a step of the line.
-pub type Problem<'a> = crate::contact::problem::Problem<'a, LineOperators>;
+pub type LineProblem<'a> = crate::contact::problem::Problem<'a, LineOperators>;
 
-impl Problem<'_> {
+impl LineProblem<'_> {
     /// Strain of a scaled displacement over the node spacing.
     pub fn strain_scale(&self) -> f64 {
         self.operators.scales.displacement / self.operators.spacing()
@@ -38,35 +38,35 @@ impl Problem<'_> {
 /// # Errors
 /// The first solver that does not converge.
 pub fn solve(
-    problem: &Problem,
+    problem: &LineProblem,
     interface: &Interface,
     now: &mut LineFields,
     solvers: &mut LineSolvers,
     tolerance: f64,
-) -> Result<Sweep> {
+) -> Result<TractionChange> {
     if problem.is_unloaded() {
         for values in [
             &mut now.pressure,
             &mut now.shear,
             &mut now.slip,
-            &mut now.saturation,
+            &mut now.utilisation,
             &mut now.memory.now.speed,
             &mut now.memory.now.flow,
         ] {
             values.fill(0.0);
         }
         now.penetration = 0.0;
-        return Ok(Sweep::NONE);
+        return Ok(TractionChange::NONE);
     }
     set_data(problem, interface, &mut solvers.data);
     let (data, wear_compliance) = (&solvers.data, &solvers.wear_compliance);
     let (mechanics, mut tractions) = mechanics_problem(problem, interface, now, data, wear_compliance);
     let of_slip = mechanics.path.is_some();
-    let sweep = solvers.mechanics.sweep(&mechanics, &mut tractions, tolerance)?;
+    let change = solvers.mechanics.iterate(&mechanics, &mut tractions, tolerance)?;
     if of_slip {
-        now.memory.now.resting.copy_from_slice(&solvers.data.friction);
+        now.memory.now.static_friction.copy_from_slice(&solvers.data.friction);
     }
-    Ok(sweep)
+    Ok(change)
 }
 
 /// Factorises the mechanics at fields that were solved for the interface vector.
@@ -74,7 +74,7 @@ pub fn solve(
 /// # Errors
 /// Mechanics that do not converge, or a singular matrix.
 pub fn linearise(
-    problem: &Problem,
+    problem: &LineProblem,
     interface: &Interface,
     fields: &mut LineFields,
     solvers: &mut LineSolvers,
@@ -86,29 +86,29 @@ pub fn linearise(
 }
 
 /// Sets friction coefficient and profile to those of the interface vector.
-fn set_data(problem: &Problem, interface: &Interface, data: &mut MechanicsData) {
+fn set_data(problem: &LineProblem, interface: &Interface, data: &mut MechanicsData) {
     let friction = problem.friction();
     for (mu, temperature) in data.friction.iter_mut().zip(interface.temperatures()) {
         *mu = friction.coefficient(temperature).0;
     }
     let (_, upward) = interface.displacement().split_at(data.profile.len());
     let gap = problem.operators.profile.iter().zip(interface.gap()).zip(upward);
-    for (profile, ((wheel, opening), lift)) in data.profile.iter_mut().zip(gap) {
-        *profile = wheel - opening + lift;
+    for (profile, ((wheel, worn), upward)) in data.profile.iter_mut().zip(gap) {
+        *profile = wheel - worn + upward;
     }
 }
 
 /// Mechanics problem over its data, and the tractions that it is solved from.
 pub fn mechanics_problem<'s>(
-    problem: &Problem<'s>,
+    problem: &LineProblem<'s>,
     interface: &'s Interface,
     fields: &'s mut LineFields,
     data: &'s MechanicsData,
-    wear_compliance: &'s Softening,
-) -> (MechanicsProblem<'s>, Tractions<'s>) {
+    wear_compliance: &'s WearCompliance,
+) -> (TractionProblem<'s>, Tractions<'s>) {
     let (operators, motion) = (problem.operators, &problem.conditions.motion);
     let (along, _) = interface.displacement().split_at(data.profile.len());
-    let mechanics = MechanicsProblem {
+    let mechanics = TractionProblem {
         compliance: &operators.compliance.at_rest,
         normal_compliance: wear_compliance.compliance(),
         profile: &data.profile,
@@ -130,20 +130,20 @@ pub fn mechanics_problem<'s>(
         pressure: &mut fields.pressure,
         shear: &mut fields.shear,
         slip: &mut fields.slip,
-        saturation: &mut fields.saturation,
+        utilisation: &mut fields.utilisation,
         friction: &mut fields.friction,
         surfaces: &mut fields.memory.now.friction,
         flow: &mut fields.memory.now.flow,
         speed: &mut fields.memory.now.speed,
         share: &mut fields.memory.share,
-        cap: &mut fields.memory.cap,
+        layer_bound: &mut fields.memory.layer_bound,
         penetration: &mut fields.penetration,
     };
     (mechanics, tractions)
 }
 
 /// Sets the displacement along x₁ at the end of the step, and its change over the step.
-pub fn close_displacement(problem: &Problem, interface: &Interface, now: &mut LineFields, data: &MechanicsData) {
+pub fn finalise_displacement(problem: &LineProblem, interface: &Interface, now: &mut LineFields, data: &MechanicsData) {
     let nodes = now.displacement.len();
     now.displacement.copy_from_slice(&interface.displacement()[..nodes]);
     let compliance = &problem.operators.compliance.at_rest;

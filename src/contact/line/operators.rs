@@ -1,4 +1,4 @@
-//! The rail: everything that is computed once, at initialisation.
+//! Operators of a line contact: everything that is computed once, at initialisation.
 
 use super::relaxation::Relaxation;
 use crate::body::compliance::{RollingCompliance, Scales};
@@ -7,10 +7,10 @@ use crate::body::mesh::Mesh;
 use crate::body::pair;
 use crate::error::Result;
 use crate::heat::Heat;
-use crate::mechanics::front::NearField;
+use crate::mechanics::leading_edge::NearField;
 use crate::parameters::Parameters;
 
-/// The rail and the wheel's profile, built at initialisation.
+/// Discretised rail and the wheel's profile, built at initialisation.
 pub struct LineOperators {
     /// Triangulation.
     pub mesh: Mesh,
@@ -20,9 +20,9 @@ pub struct LineOperators {
     pub compliance: RollingCompliance,
     /// The half-planes as one cell sees them, scaled.
     pub near_field: NearField,
-    /// How far rolling takes the displacement along.
+    /// Relaxation length of the displacement, by the contact's half-length.
     pub relaxation: Relaxation,
-    /// What the heat needs: depth basis, entering profile, thermal displacement.
+    /// Operators of the heat: depth basis, entering profile, thermal displacement.
     pub heat: Heat,
     /// Profile of the wheel √(r₀² − x²) − r₀ at the contact nodes, scaled. The u₁ in (9) is dropped: it moves the contact
     /// by its own size, some µm, against a half-length of some mm.
@@ -30,7 +30,7 @@ pub struct LineOperators {
 }
 
 impl LineOperators {
-    /// Mesh, compliance, thermal maps.
+    /// Computes mesh, compliance and thermal maps.
     ///
     /// # Errors
     /// [`crate::error::Error::StiffnessNotPositiveDefinite`], [`crate::error::Error::DepthBasis`].
@@ -41,7 +41,7 @@ impl LineOperators {
         let heat = Heat::new(&mesh, &thermal, parameters)?;
         let near_field = NearField::new(&HalfPlanes::of_pair(parameters), mesh.contact_spacing(), &scales);
         let layer = scales.compliance(parameters.layer_compliance);
-        let relaxation = Relaxation::new(parameters, &mesh, (&compliance.at_rest, layer), near_field);
+        let relaxation = Relaxation::new(parameters, &mesh, &compliance.at_rest, layer, near_field);
         let near_field = near_field.with_layer(layer);
         if layer > 0.0 {
             // A node's own shear alone moves the layer over it.

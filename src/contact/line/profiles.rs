@@ -53,7 +53,7 @@ pub fn contact_nodes(operators: &LineOperators, fields: &LineFields) -> Vec<Cont
             pressure: fields.pressure[i] * scale,
             shear: fields.shear[i] * scale,
             slip: fields.slip[i],
-            saturation: fields.saturation[i],
+            utilisation: fields.utilisation[i],
             temperature: fields.surface_temperature[mesh.contact_column(i)],
         })
         .collect()

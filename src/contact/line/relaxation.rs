@@ -1,5 +1,5 @@
-//! How far a contact must roll until the displacement along x₁ has forgotten a change: for the fitted step of ∂u₁/∂t
-//! ([`crate::mechanics::transient`]).
+//! Relaxation length of the displacement along x₁, the distance of rolling on which a change of it decays: for the fitted step of
+//! ∂u₁/∂t ([`crate::mechanics::transient`]).
 //!
 //! A change of the shear force per width by ΔF changes u₁ in the contact by Λ direct/π ΔF, and rolling brings in material that
 //! has not moved, so that the change decays as exp(−x/ℓ). Kalker's transients have ℓ ≈ a/2 ... a for the contact alone; the
@@ -11,12 +11,12 @@
 
 use crate::body::compliance::Compliance;
 use crate::body::mesh::Mesh;
-use crate::mechanics::front::NearField;
+use crate::mechanics::leading_edge::NearField;
 use crate::parameters::Parameters;
 use std::f64::consts::PI;
 
-/// ℓ/(a Λ).
-const SHARE: f64 = 0.75;
+/// ℓ/(a Λ), fitted (see the heading).
+const FITTED_FACTOR: f64 = 0.75;
 
 /// The relaxation length as a function of the contact's half-length.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -31,11 +31,12 @@ pub struct Relaxation {
 }
 
 impl Relaxation {
-    /// Of a pair's compliance, with a layer of the given one, scaled, besides.
+    /// Relaxation length of bodies with the given compliance, and of a layer with the compliance `layer`, scaled, between them.
     pub fn new(
         parameters: &Parameters,
         mesh: &Mesh,
-        (compliance, layer): (&Compliance, f64),
+        compliance: &Compliance,
+        layer: f64,
         near_field: NearField,
     ) -> Relaxation {
         let half_length = parameters.hertz_half_length(parameters.largest_load);
@@ -66,7 +67,7 @@ impl Relaxation {
     pub fn length(&self, half_length: f64) -> f64 {
         let layer = self.layer / half_length;
         let body = self.compliance + (self.half_length / half_length).ln();
-        SHARE * half_length * ((body + layer) / (1.0 + layer))
+        FITTED_FACTOR * half_length * ((body + layer) / (1.0 + layer))
     }
 }
 
@@ -77,14 +78,14 @@ mod tests {
     use crate::body::half_plane::HalfPlanes;
     use crate::parameters::Wheel;
 
-    /// Of half-planes alone, whose displacement is that at 1 m from the load less.
+    /// Relaxation length of half-planes alone, their displacement measured against that at 1 m from the load.
     fn of_half_planes(parameters: &Parameters) -> Relaxation {
         let (mesh, scales) = (Mesh::new(parameters), Scales::new(parameters));
         let half_planes = HalfPlanes::of_pair(parameters);
         let displacement = half_planes.surface_displacement(mesh.contact_nodes, mesh.contact_spacing());
         let compliance = Compliance::from_blocks(&(displacement * scales.compliance(1.0)), true);
         let near_field = NearField::new(&half_planes, mesh.contact_spacing(), &scales);
-        Relaxation::new(parameters, &mesh, (&compliance, 0.0), near_field)
+        Relaxation::new(parameters, &mesh, &compliance, 0.0, near_field)
     }
 
     /// An elliptic shear of force Q per width on a half-plane displaces by direct/π Q (ln(2/a) + ½ − x²/a²) (Johnson, Contact

@@ -3,14 +3,14 @@
 use super::operators::LineOperators;
 use crate::heat::factors::CellFactors;
 use crate::heat::surface::SurfaceExchange;
-use crate::mechanics::softening::Softening;
-use crate::mechanics::sweep::Mechanics;
+use crate::mechanics::normal_tangential::Mechanics;
+use crate::mechanics::wear_compliance::WearCompliance;
 use crate::settings::Settings;
 use crate::wear::WearSteps;
 
 /// Solvers and buffers of a step; n contact nodes.
 pub struct LineSolvers {
-    pub(super) wear_compliance: Softening,
+    pub(super) wear_compliance: WearCompliance,
     pub(super) mechanics: Mechanics,
     pub(super) data: MechanicsData,
     pub(super) exchange: Vec<SurfaceExchange>,
@@ -41,7 +41,7 @@ impl LineSolvers {
     pub fn new(operators: &LineOperators, settings: &Settings) -> LineSolvers {
         let n = operators.mesh.contact_nodes;
         LineSolvers {
-            wear_compliance: Softening::new(&operators.compliance.at_rest.normal_normal, settings.softening),
+            wear_compliance: WearCompliance::new(&operators.compliance.at_rest.normal_normal, settings.wear_compliance),
             mechanics: Mechanics::new(n, settings),
             data: MechanicsData {
                 profile: vec![0.0; n],

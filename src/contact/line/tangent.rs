@@ -8,7 +8,7 @@ use crate::contact::memory;
 use crate::friction::coulomb::Sliding;
 use crate::heat::march::{Heated, MarchChange};
 use crate::heat::surface::{CommonChange, ExchangeChange, ExchangeTangent, SurfaceExchange};
-use crate::mechanics::problem::{ProblemTangent, Tractions};
+use crate::mechanics::traction_problem::{TractionProblemTangent, Tractions};
 use crate::mechanics::transient::Transient;
 use crate::parameters::WheelHeating;
 use crate::wear::WearChange;
@@ -52,9 +52,9 @@ pub fn mechanics(at: &mut Linearised<LineOperators>, step: &Along, change: &mut 
     } = &mut *at.tangent;
     let law = problem.friction();
     let common = [direction.inputs.ambient_temperature, direction.inputs.friction_scale];
-    let resting = &mut change.memory.now.resting;
+    let static_friction = &mut change.memory.now.static_friction;
     let rises = at.interface.temperatures().zip(step.interface.temperatures());
-    for (mu, (rise, change)) in resting.iter_mut().zip(rises) {
+    for (mu, (rise, change)) in static_friction.iter_mut().zip(rises) {
         *mu = law.coefficient_tangent(rise, [change, common[0], common[1]]);
     }
     match problem.path_law() {
@@ -64,27 +64,27 @@ pub fn mechanics(at: &mut Linearised<LineOperators>, step: &Along, change: &mut 
                 &path_law,
                 fields,
                 direction.speed,
-                resting,
+                static_friction,
                 None,
                 friction_of_slip,
             );
         }
-        None => friction_of_slip.copy_from_slice(resting),
+        None => friction_of_slip.copy_from_slice(static_friction),
     }
     let (thermal_along, thermal_upward) = step.interface.displacement().split_at(along.len());
     along.copy_from_slice(thermal_along);
-    for (upward, (lift, opening)) in upward.iter_mut().zip(thermal_upward.iter().zip(step.interface.gap())) {
-        *upward = lift - opening;
+    for (upward, (thermal, worn)) in upward.iter_mut().zip(thermal_upward.iter().zip(step.interface.gap())) {
+        *upward = thermal - worn;
     }
     // d(ρV² C₁ f) = 2ρV dV C₁ f + ρV² C₁ df; the second part is in the interface vector.
     let (density, speed) = (problem.parameters.density, problem.conditions.motion.rolling_speed);
     let rho_v2_change = 2.0 * density * speed * direction.motion.rolling_speed;
     problem.add_inertia(rho_v2_change, &fields.pressure, &fields.shear, along, upward);
     let per_speed = problem.transient_per_speed(fields.relaxation_length);
-    let data = ProblemTangent {
+    let data = TractionProblemTangent {
         profile: upward,
         displacement: along,
-        friction: &change.memory.now.resting,
+        friction: &change.memory.now.static_friction,
         friction_of_slip,
         total: direction.inputs.normal_load / problem.unit_force(),
         rigid_slip: direction.motion.rigid_slip,
@@ -98,13 +98,13 @@ pub fn mechanics(at: &mut Linearised<LineOperators>, step: &Along, change: &mut 
         pressure: &mut change.pressure,
         shear: &mut change.shear,
         slip: &mut change.slip,
-        saturation: &mut change.saturation,
+        utilisation: &mut change.utilisation,
         friction: &mut change.friction,
         surfaces: &mut change.memory.now.friction,
         flow: &mut change.memory.now.flow,
         speed: &mut change.memory.now.speed,
         share: &mut change.memory.share,
-        cap: &mut change.memory.cap,
+        layer_bound: &mut change.memory.layer_bound,
         penetration: &mut change.penetration,
     };
     let solvers = &mut *at.solvers;
@@ -149,18 +149,18 @@ pub fn heat(at: &mut Linearised<LineOperators>, along: &Along, change: &mut Line
     problem.exchange(fields, wheel_rise, exchange);
     let of_slip = problem.path_law().is_some();
     for (node, exchange_change) in exchange_change.iter_mut().enumerate() {
-        let (slip, saturation) = (fields.slip[node], fields.saturation[node]);
+        let (slip, utilisation) = (fields.slip[node], fields.utilisation[node]);
         let node_change = ExchangeChange {
             pressure: change.pressure[node] * scale,
-            sliding: Sliding::tangent(slip, saturation, change.slip[node], change.saturation[node]),
+            sliding: Sliding::tangent(slip, utilisation, change.slip[node], change.utilisation[node]),
             wheel_rise: wheel_rise_change,
             coefficient: if of_slip && fields.pressure[node] > 0.0 {
-                change.friction[node] - fields.memory.share_at(node) * change.memory.now.resting[node]
+                change.friction[node] - fields.memory.share_at(node) * change.memory.now.static_friction[node]
             } else {
                 0.0
             },
         };
-        let (pressure, sliding) = (fields.pressure[node] * scale, Sliding::new(slip, saturation));
+        let (pressure, sliding) = (fields.pressure[node] * scale, Sliding::new(slip, utilisation));
         *exchange_change = SurfaceExchange::tangent(parameters, pressure, sliding, wheel_rise, &node_change);
     }
     let solution = Heated {

@@ -1,4 +1,4 @@
-//! What must hold of the fields of a running simulation.
+//! Tests of the fields of a running simulation: balances, signs, symmetry.
 
 use super::fields::LineFields;
 use crate::numerics::dense;
@@ -13,7 +13,7 @@ fn largest_difference(a: &[f64], b: &[f64]) -> f64 {
     dense::largest_change(a, b) / dense::largest(a)
 }
 
-/// What the wear depth on the rail grows by in a step, ∫(W − Wⁿ) dx as the march balances it, `m²`.
+/// Growth of the worn area on the rail in a step, ∫(W − Wⁿ) dx as the march balances it, `m²`.
 fn deposited(x: &[f64], speed: f64, duration: f64, before: &[f64], after: &[f64]) -> f64 {
     let transport = Upwind::new(x, speed);
     let growth = |i: usize| after[i] - before[i];
@@ -134,7 +134,7 @@ mod solvers {
         let fields = &mut run.state.contact.line_mut().fields;
         let mean = fields.pressure.iter().sum::<f64>() / fields.pressure.len() as f64;
         fields.pressure.fill(mean);
-        for start in [&mut fields.shear, &mut fields.slip, &mut fields.saturation] {
+        for start in [&mut fields.shear, &mut fields.slip, &mut fields.utilisation] {
             start.fill(0.0);
         }
         for rates in &mut run.state.contact.line_mut().rates {

@@ -6,7 +6,7 @@ use super::integrals;
 use super::march_tangent;
 use super::mechanics;
 use super::operators::PatchOperators;
-use super::problem::Problem;
+use super::problem::PatchProblem;
 use super::profiles;
 use super::solvers::PatchSolvers;
 use super::tangent::PatchTangent;
@@ -16,8 +16,8 @@ use crate::contact::interface::Interface;
 use crate::contact::profiles::{ContactNode, Profiles};
 use crate::contact::rim::HeatedNode;
 use crate::error::Result;
+use crate::mechanics::normal_tangential::TractionChange;
 use crate::mechanics::patch::normal;
-use crate::mechanics::sweep::Sweep;
 use crate::parameters::Parameters;
 use crate::settings::{SensitivitySettings, Settings, SplitSettings};
 
@@ -78,12 +78,12 @@ impl Engine for PatchOperators {
         self.grid.cell_area() * self.scales.pressure
     }
 
-    fn own_displacement(&self, _parameters: &Parameters) -> f64 {
-        self.scales.displacement * self.own[0][self.grid.stride()]
+    fn diagonal_displacement(&self, _parameters: &Parameters) -> f64 {
+        self.scales.displacement * self.strip_kernels[0][self.grid.stride()]
     }
 
-    /// In the ratio of the contact's length.
-    fn relaxation_length(problem: &Problem, fields: &PatchFields) -> f64 {
+    /// Scales the relaxation length at the largest load by the ratio of the contact's lengths.
+    fn relaxation_length(problem: &PatchProblem, fields: &PatchFields) -> f64 {
         let load = problem.load(fields);
         let ratio = (load / problem.parameters.largest_load).cbrt().min(1.0);
         problem.operators.relaxation_length * if load > 0.0 { ratio } else { 1.0 }
@@ -114,7 +114,7 @@ impl Engine for PatchOperators {
     }
 
     fn begin(
-        problem: &Problem,
+        problem: &PatchProblem,
         before: Option<&PatchFields>,
         now: &mut PatchFields,
         solvers: &mut PatchSolvers,
@@ -130,7 +130,7 @@ impl Engine for PatchOperators {
         }
         solvers.normal.start_step();
         solvers.friction.start_step();
-        solvers.softness.fill(0.0);
+        solvers.wear_compliance.fill(0.0);
         let grid = &problem.operators.grid;
         solvers.contact.list(grid, |place| now.pressure[place] > 0.0);
         let strips = solvers.contact.window(grid, 0).strips.len();
@@ -144,24 +144,24 @@ impl Engine for PatchOperators {
         Ok(())
     }
 
-    /// What was not under pressure is not extrapolated into it.
+    /// Takes off the first guess the pressure of cells that were not under pressure before.
     fn limit_guess(before: &PatchFields, now: &mut PatchFields) {
         for (pressure, before) in now.pressure.iter_mut().zip(&before.pressure) {
             *pressure = if *before > 0.0 { pressure.max(0.0) } else { 0.0 };
         }
     }
 
-    fn read(problem: &Problem, fields: &PatchFields, solvers: &mut PatchSolvers, interface: &mut Interface) {
+    fn read(problem: &PatchProblem, fields: &PatchFields, solvers: &mut PatchSolvers, interface: &mut Interface) {
         heat_and_wear::read(problem, fields, solvers, interface);
     }
 
     fn solve_mechanics(
-        problem: &Problem,
+        problem: &PatchProblem,
         interface: &Interface,
         now: &mut PatchFields,
         solvers: &mut PatchSolvers,
         tolerance: f64,
-    ) -> Result<Sweep> {
+    ) -> Result<TractionChange> {
         mechanics::solve(problem, interface, now, solvers, tolerance)
     }
 
@@ -180,12 +180,12 @@ impl Engine for PatchOperators {
         }
     }
 
-    fn march_wear(problem: &Problem, before: &PatchFields, now: &mut PatchFields, solvers: &mut PatchSolvers) {
+    fn march_wear(problem: &PatchProblem, before: &PatchFields, now: &mut PatchFields, solvers: &mut PatchSolvers) {
         heat_and_wear::march_wear(problem, before, now, solvers);
     }
 
     fn march_heat(
-        problem: &Problem,
+        problem: &PatchProblem,
         _before: &PatchFields,
         wheel_rise: f64,
         now: &mut PatchFields,
@@ -194,37 +194,37 @@ impl Engine for PatchOperators {
         heat_and_wear::march_heat(problem, wheel_rise, now, solvers)
     }
 
-    fn update_wear_compliance(problem: &Problem, now: &PatchFields, solvers: &mut PatchSolvers) {
+    fn update_wear_compliance(problem: &PatchProblem, now: &PatchFields, solvers: &mut PatchSolvers) {
         heat_and_wear::update_wear_compliance(problem, now, solvers);
     }
 
-    fn close_friction(problem: &Problem, now: &mut PatchFields, solvers: &PatchSolvers) {
-        heat_and_wear::close_friction(problem, now, &solvers.contact);
+    fn finalise_friction(problem: &PatchProblem, now: &mut PatchFields, solvers: &PatchSolvers) {
+        heat_and_wear::finalise_friction(problem, now, &solvers.contact);
     }
 
-    fn close_displacement(
-        problem: &Problem,
+    fn finalise_displacement(
+        problem: &PatchProblem,
         _interface: &Interface,
         now: &mut PatchFields,
         solvers: &mut PatchSolvers,
     ) {
-        mechanics::close_displacement(problem, now, solvers);
+        mechanics::finalise_displacement(problem, now, solvers);
     }
 
     fn finalise(
-        problem: &Problem,
+        problem: &PatchProblem,
         before: &PatchFields,
         now: &mut PatchFields,
         solvers: &mut PatchSolvers,
     ) -> Result<()> {
         let breadth = problem.breadth(now);
         let (heat, wear) = (problem.heat_march(), problem.wear_march());
-        heat.finish(&before.heat, breadth, &mut now.heat, &mut solvers.heat)?;
-        wear.finish(breadth, &before.wear, &mut now.wear, &mut solvers.wear_steps);
+        heat.finalise(&before.heat, breadth, &mut now.heat, &mut solvers.heat)?;
+        wear.finalise(breadth, &before.wear, &mut now.wear, &mut solvers.wear_steps);
         Ok(())
     }
 
-    fn is_cut_off(problem: &Problem, now: &PatchFields, solvers: &PatchSolvers) -> bool {
+    fn is_cut_off(problem: &PatchProblem, now: &PatchFields, solvers: &PatchSolvers) -> bool {
         let grid = &problem.operators.grid;
         let overlap = problem.settings.mechanics.overlap;
         let at_side = |place: usize| {
@@ -239,7 +239,7 @@ impl Engine for PatchOperators {
     }
 
     fn heated_nodes<'f>(
-        problem: &'f Problem,
+        problem: &'f PatchProblem,
         fields: &'f PatchFields,
         values: &'f PatchFields,
     ) -> impl Iterator<Item = HeatedNode> + 'f {
@@ -256,7 +256,7 @@ impl Engine for PatchOperators {
         })
     }
 
-    fn begin_linearisation(problem: &Problem, fields: &PatchFields, solvers: &mut PatchSolvers) {
+    fn begin_linearisation(problem: &PatchProblem, fields: &PatchFields, solvers: &mut PatchSolvers) {
         for component in 0..2 {
             let nodes = fields.displacement[component]
                 .iter()
@@ -269,7 +269,7 @@ impl Engine for PatchOperators {
     }
 
     fn linearise(
-        problem: &Problem,
+        problem: &PatchProblem,
         interface: &Interface,
         fields: &mut PatchFields,
         solvers: &mut PatchSolvers,
@@ -279,7 +279,7 @@ impl Engine for PatchOperators {
     }
 
     fn begin_direction(
-        problem: &Problem,
+        problem: &PatchProblem,
         fields: &PatchFields,
         direction: &Direction,
         change: &mut PatchFields,
@@ -310,11 +310,11 @@ impl Engine for PatchOperators {
         march_tangent::finalise(at, direction, change);
     }
 
-    fn integrals(problem: &Problem, fields: &PatchFields) -> Integrals {
+    fn integrals(problem: &PatchProblem, fields: &PatchFields) -> Integrals {
         integrals::integrals(problem, fields)
     }
 
-    fn profiles(problem: &Problem, fields: &PatchFields) -> Profiles {
+    fn profiles(problem: &PatchProblem, fields: &PatchFields) -> Profiles {
         let ambient = problem.conditions.inputs.ambient_temperature;
         profiles::profiles(problem, fields, ambient)
     }

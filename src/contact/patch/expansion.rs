@@ -13,31 +13,31 @@ use crate::parameters::Parameters;
 use crate::transport::strips::Side;
 use std::f64::consts::PI;
 
-/// The displacement by heat contents.
+/// Displacement by heat contents.
 pub struct Expansion {
-    /// Lift by the heat content of a cell, scaled, per `K m`.
+    /// Upward displacement by the heat content of a cell, scaled, per `K m`.
     pub bulge: f64,
-    /// u by the heat content of the cells, scaled, per `K m`.
+    /// Displacement u along x and y by the heat content of the cells, scaled, per `K m`.
     cells: Tables<f64>,
-    /// The same by that of the rail left and right of the window, along x and y: for a strip that is 0, 1, … strips to the left of
-    /// the hot one a row over its cells.
+    /// Displacement u by the heat content of the rail left and right of the window, along x and y, scaled, per `K m`: for a strip
+    /// that is 0, 1, … strips to the left of the hot one, a row over its cells.
     outside: [[Vec<f64>; 2]; 2],
 }
 
-/// Buffers.
-pub struct Scratch {
-    /// u on the grid, along x and y.
+/// Buffers of [`Expansion::displace`].
+pub struct ExpansionBuffers {
+    /// Displacement u on the grid, along x and y, scaled.
     pub displacement: [Vec<f64>; 2],
     content: Vec<f64>,
     nothing: Vec<f64>,
     products: influence::ProductScratch<f64>,
 }
 
-impl Scratch {
-    /// For a grid.
-    pub fn new(grid: &Grid, transform: &Transform) -> Scratch {
+impl ExpansionBuffers {
+    /// Buffers for a grid.
+    pub fn new(grid: &Grid, transform: &Transform) -> ExpansionBuffers {
         let on_grid = || vec![0.0; grid.len()];
-        Scratch {
+        ExpansionBuffers {
             displacement: [on_grid(), on_grid()],
             content: on_grid(),
             nothing: on_grid(),
@@ -47,7 +47,7 @@ impl Scratch {
 }
 
 impl Expansion {
-    /// For a rail of the given half-length `m`, with displacements in units of `scale` `m`.
+    /// Displacement of a rail of the given half-length `m`, with displacements in units of `scale` `m`.
     pub fn new(parameters: &Parameters, grid: &Grid, transform: &Transform, rail: f64, scale: f64) -> Expansion {
         let body = HalfPlane::new(parameters.lame_lambda, parameters.shear_modulus);
         let swelling = (1.0 + body.poisson_ratio) * parameters.thermal_expansion / scale;
@@ -84,42 +84,42 @@ impl Expansion {
         }
     }
 
-    /// u by the heat that lifts the cells by `lift`, strip by strip, or its change by that of the lift. Returns whether there is any; it is in
-    /// the scratch.
-    pub fn displace(&self, grid: &Grid, transform: &Transform, lift: &[f64], scratch: &mut Scratch) -> bool {
-        if self.bulge == 0.0 || largest(lift) == 0.0 {
+    /// Computes into the buffers the displacement u by the heat that displaces the cells upward by `upward`, strip by strip, or the
+    /// change of u by a change of `upward`. Returns whether there is any.
+    pub fn displace(&self, grid: &Grid, transform: &Transform, upward: &[f64], buffers: &mut ExpansionBuffers) -> bool {
+        if self.bulge == 0.0 || largest(upward) == 0.0 {
             return false;
         }
-        for (strip, lifts) in lift.chunks_exact(grid.cells).enumerate() {
-            for (content, lift) in scratch.content[grid.row(strip)].iter_mut().zip(lifts) {
-                *content = lift / self.bulge;
+        for (strip, upward) in upward.chunks_exact(grid.cells).enumerate() {
+            for (content, upward) in buffers.content[grid.row(strip)].iter_mut().zip(upward) {
+                *content = upward / self.bulge;
             }
         }
-        let [x, y] = &mut scratch.displacement;
+        let [x, y] = &mut buffers.displacement;
         transform.apply(
             &self.cells,
             &Window::whole(grid),
-            [&scratch.content, &scratch.nothing],
+            [&buffers.content, &buffers.nothing],
             [x, y],
-            &mut scratch.products,
+            &mut buffers.products,
         );
         for (side, end) in [(Side::Left, 0), (Side::Right, grid.cells - 1)] {
             let [along, across] = &self.outside[side as usize];
             for hot in 0..grid.strips {
-                let content = scratch.content[grid.place(hot, end)];
+                let content = buffers.content[grid.place(hot, end)];
                 if content == 0.0 {
                     continue;
                 }
                 for strip in 0..grid.strips {
-                    let (kernel, own) = (grid.row(strip.abs_diff(hot)), grid.row(strip));
+                    let (kernel, row) = (grid.row(strip.abs_diff(hot)), grid.row(strip));
                     // u_y is odd across the strips.
                     let sideways = if strip >= hot { content } else { -content };
                     add_multiple(
                         &along[kernel.clone()],
                         content,
-                        &mut scratch.displacement[0][own.clone()],
+                        &mut buffers.displacement[0][row.clone()],
                     );
-                    add_multiple(&across[kernel], sideways, &mut scratch.displacement[1][own]);
+                    add_multiple(&across[kernel], sideways, &mut buffers.displacement[1][row]);
                 }
             }
         }

@@ -2,7 +2,7 @@
 
 use super::operators::PatchOperators;
 
-/// The size of a contact.
+/// Size of a contact.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Extent {
     /// Largest length along a strip, `m`.
@@ -13,13 +13,13 @@ pub struct Extent {
     pub area: f64,
 }
 
-/// How far before the centre of a cell the contact ends when that cell joins it, in cells.
+/// Distance between the centre of a cell and the end of the contact when that cell joins the contact, in cells.
 const JOINS: f64 = 0.156;
 
-/// How far the contact reaches beyond the place where its last cell has joined, in cells, 0 to 1: r + 0.77 r³ of the ratio r of that
-/// cell's pressure to the next one's. Towards an end the pressure falls like the root of the distance, and what uniform
-/// cells make of that depends on nothing but where the end lies between them; the polynomial and [`JOINS`] are fitted to Hertz's
-/// ellipses, whose ends it gives to 0.03 of a cell.
+/// Distance of the contact's end beyond the place where its last cell has joined, in cells, 0 to 1: r + 0.77 r³ of the ratio r of
+/// that cell's pressure to the next one's. Towards an end the pressure falls like the root of the distance, and the ratio that
+/// uniform cells make of that depends on nothing but the place of the end between them; the polynomial and [`JOINS`] are fitted to
+/// Hertz's ellipses, whose ends it gives to 0.03 of a cell.
 fn reach(edge: f64, inside: f64) -> f64 {
     if edge >= inside {
         return 1.0;
@@ -49,10 +49,10 @@ fn length(operators: &PatchOperators, pressure: &[f64], strip: usize) -> f64 {
     operators.grid.length * distance(operators.grid.cells, |cell| row[cell])
 }
 
-/// Area of the contact, `m²`. In strips the midpoint rule would miss what ends like a root at the sides: the outermost strip on either
-/// side, whose own length is that of an edge, is replaced by the area under the root that begins at the side and has
-/// the length L of the next strip at its centre, a distance d strips from the side. From that strip's edge on it is ⅔ L (d − ½)^{3/2}/√d, and
-/// what the midpoint rule overstates from there inwards is L/(48 √(d (d − ½))).
+/// Area of the contact, `m²`. Towards a side the length of the strips falls like the root of the distance, which the midpoint rule
+/// over strips would miss. So the outermost strip on either side is replaced by the area under the root that begins at the side
+/// and has the length L of the next strip at that strip's centre, a distance d strips from the side: from that strip's edge
+/// outwards ⅔ L (d − ½)^{3/2}/√d, less L/(48 √(d (d − ½))), by which the midpoint rule is too large from there inwards.
 fn area(operators: &PatchOperators, pressure: &[f64]) -> f64 {
     let grid = &operators.grid;
     let largest = |strip: usize| {

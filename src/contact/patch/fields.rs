@@ -1,13 +1,13 @@
 //! The fields of a patch, all that a step changes.
 
 use super::operators::PatchOperators;
-use crate::contact::fields::{Fields, Number, Row, number, row};
+use crate::contact::fields::{FieldRow, Fields, Number, number, row};
 use crate::friction::memory::Memory;
 use crate::heat::strips::StripTemperature;
 use crate::wear::strips::StripWear;
 use serde::{Deserialize, Serialize};
 
-/// The fields at one instant. Those of the cells stand on the grid ([`crate::body::grid`]).
+/// Fields of the patch at one instant. Those of the cells stand on the grid ([`crate::body::grid`]).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct PatchFields {
     /// Temperature of the rail.
@@ -24,11 +24,11 @@ pub struct PatchFields {
     pub friction: Vec<f64>,
     /// Displacement of the rail's surface less that of the wheel's along x and y, scaled.
     pub displacement: [Vec<f64>; 2],
-    /// Its change over the last step.
+    /// Change of the displacement over the last step, scaled.
     pub displacement_change: [Vec<f64>; 2],
-    /// What friction remembers, of the cells, strip by strip.
+    /// History of friction of the cells, strip by strip.
     pub memory: Memory,
-    /// The way of rolling on which the last step took the displacement to be forgotten, `m`.
+    /// Relaxation length of the displacement in the last step, `m`: the distance of rolling on which a change of it decays.
     pub relaxation_length: f64,
     /// Penetration δ, scaled; 0 when lifted.
     pub penetration: f64,
@@ -37,7 +37,7 @@ pub struct PatchFields {
 }
 
 impl PatchFields {
-    /// A cold, unworn rail without contact; the wheel's temperature is 0 K.
+    /// Fields of a cold, unworn rail without contact; the wheel's temperature is 0 K.
     pub fn new(operators: &PatchOperators) -> PatchFields {
         let on_grid = || vec![0.0; operators.grid.len()];
         let vectors = || [on_grid(), on_grid()];
@@ -59,7 +59,7 @@ impl PatchFields {
 }
 
 impl Fields for PatchFields {
-    const ROWS: &'static [Row<PatchFields>] = &[
+    const ROWS: &'static [FieldRow<PatchFields>] = &[
         row!(Nonlinear, Extrapolated, shear[0]),
         row!(Nonlinear, Extrapolated, shear[1]),
         row!(Nonlinear, Extrapolated, pressure),

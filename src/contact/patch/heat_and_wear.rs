@@ -1,7 +1,7 @@
 //! Heat and wear of the patch for given tractions: the marches along the strips, the wear compliance, the interface vector.
 
 use super::fields::PatchFields;
-use super::problem::Problem;
+use super::problem::PatchProblem;
 use super::solvers::PatchSolvers;
 use crate::body::influence::Window;
 use crate::contact::interface::Interface;
@@ -16,14 +16,14 @@ fn slip_speed(fields: &PatchFields, place: usize) -> f64 {
 }
 
 /// Wear of the step per scaled pressure at a slip of 1 m/s, scaled.
-fn wear_compliance_per_slip(problem: &Problem) -> f64 {
+fn wear_compliance_per_slip(problem: &PatchProblem) -> f64 {
     let (operators, speed) = (problem.operators, problem.conditions.motion.rolling_speed.abs());
     let own = CellStep::new(1.0 / problem.conditions.duration, operators.grid.length, speed).diagonal;
     problem.wear_per_slip() * (own / operators.scales.displacement)
 }
 
 /// Marches the wear (24).
-pub fn march_wear(problem: &Problem, before: &PatchFields, now: &mut PatchFields, solvers: &mut PatchSolvers) {
+pub fn march_wear(problem: &PatchProblem, before: &PatchFields, now: &mut PatchFields, solvers: &mut PatchSolvers) {
     let (grid, per_slip) = (&problem.operators.grid, problem.wear_per_slip());
     for (strip, rates) in solvers.wear_rate.chunks_exact_mut(grid.cells).enumerate() {
         for (rate, place) in rates.iter_mut().zip(grid.row(strip)) {
@@ -41,32 +41,32 @@ pub fn march_wear(problem: &Problem, before: &PatchFields, now: &mut PatchFields
 
 /// Adapts the wear compliance to the slip of the fields: none where the wear of the step is small against the compliance of the
 /// bodies.
-pub fn update_wear_compliance(problem: &Problem, now: &PatchFields, solvers: &mut PatchSolvers) {
+pub fn update_wear_compliance(problem: &PatchProblem, now: &PatchFields, solvers: &mut PatchSolvers) {
     let grid = &problem.operators.grid;
     let per_slip = wear_compliance_per_slip(problem);
     let places = (0..grid.strips).flat_map(|strip| grid.row(strip));
     let fastest = places.fold(0.0, |fastest: f64, place| fastest.max(slip_speed(now, place)));
     let patch = &problem.settings.patch;
-    let least = patch.least_compliance * problem.operators.approach.own;
-    if per_slip * fastest > problem.settings.softening.explicit * least {
+    let least = patch.least_compliance * problem.operators.normal_influence.diagonal;
+    if per_slip * fastest > problem.settings.wear_compliance.explicit * least {
         set_wear_compliance(per_slip, now, solvers);
     } else {
-        solvers.softness.fill(0.0);
+        solvers.wear_compliance.fill(0.0);
     }
 }
 
 /// Takes all wear of the step into the normal problem.
-pub fn take_all_wear(problem: &Problem, now: &PatchFields, solvers: &mut PatchSolvers) {
+pub fn take_all_wear(problem: &PatchProblem, now: &PatchFields, solvers: &mut PatchSolvers) {
     if problem.conditions.duration > 0.0 {
         set_wear_compliance(wear_compliance_per_slip(problem), now, solvers);
     } else {
-        solvers.softness.fill(0.0);
+        solvers.wear_compliance.fill(0.0);
     }
 }
 
 fn set_wear_compliance(per_slip: f64, now: &PatchFields, solvers: &mut PatchSolvers) {
-    for (place, softness) in solvers.softness.iter_mut().enumerate() {
-        *softness = per_slip * slip_speed(now, place);
+    for (place, wear_compliance) in solvers.wear_compliance.iter_mut().enumerate() {
+        *wear_compliance = per_slip * slip_speed(now, place);
     }
 }
 
@@ -74,7 +74,12 @@ fn set_wear_compliance(per_slip: f64, now: &PatchFields, solvers: &mut PatchSolv
 ///
 /// # Errors
 /// [`crate::error::Error::SurfaceNotConverged`].
-pub fn march_heat(problem: &Problem, wheel_rise: f64, now: &mut PatchFields, solvers: &mut PatchSolvers) -> Result<()> {
+pub fn march_heat(
+    problem: &PatchProblem,
+    wheel_rise: f64,
+    now: &mut PatchFields,
+    solvers: &mut PatchSolvers,
+) -> Result<()> {
     problem.exchange(now, wheel_rise, &mut solvers.exchange);
     problem
         .heat_march()
@@ -82,47 +87,47 @@ pub fn march_heat(problem: &Problem, wheel_rise: f64, now: &mut PatchFields, sol
 }
 
 /// Writes the interface vector of the fields, or of a change of them.
-pub fn read(problem: &Problem, fields: &PatchFields, solvers: &mut PatchSolvers, interface: &mut Interface) {
+pub fn read(problem: &PatchProblem, fields: &PatchFields, solvers: &mut PatchSolvers, interface: &mut Interface) {
     let (operators, grid) = (problem.operators, &problem.operators.grid);
     let mut parts = interface.parts();
     parts.set_temperatures(&fields.heat.surface, fields.wheel_temperature);
-    for (lift, content) in parts.displacement.iter_mut().zip(&fields.heat.content) {
-        *lift = operators.expansion.bulge * content;
+    for (upward, content) in parts.displacement.iter_mut().zip(&fields.heat.content) {
+        *upward = operators.expansion.bulge * content;
     }
     for (strip, gap) in parts.gap.chunks_exact_mut(grid.cells).enumerate() {
         let depths = &fields.wear.depth[strip * grid.cells..];
         for ((gap, depth), place) in gap.iter_mut().zip(depths).zip(grid.row(strip)) {
-            *gap = depth / operators.scales.displacement - solvers.softness[place] * fields.pressure[place];
+            *gap = depth / operators.scales.displacement - solvers.wear_compliance[place] * fields.pressure[place];
         }
     }
     // Shear lifts unlike half-spaces off each other.
     if let Some(tables) = &operators.coupling {
-        let [lift, ignored] = &mut solvers.lift;
+        let [upward, ignored] = &mut solvers.shear_displacement;
         let load = [&fields.shear[0][..], &fields.shear[1][..]];
         let window = Window::whole(grid);
         operators
             .transform
-            .apply(tables, &window, load, [lift, ignored], &mut solvers.products);
+            .apply(tables, &window, load, [upward, ignored], &mut solvers.products);
         for (strip, gap) in parts.gap.chunks_exact_mut(grid.cells).enumerate() {
-            for (gap, lift) in gap.iter_mut().zip(&solvers.lift[0][grid.row(strip)]) {
-                *gap -= lift;
+            for (gap, upward) in gap.iter_mut().zip(&solvers.shear_displacement[0][grid.row(strip)]) {
+                *gap -= upward;
             }
         }
     }
 }
 
 /// Sets friction coefficient and shear to those at the temperature of the fields.
-pub fn close_friction(problem: &Problem, fields: &mut PatchFields, contact: &Contact) {
+pub fn finalise_friction(problem: &PatchProblem, fields: &mut PatchFields, contact: &Contact) {
     let grid = &problem.operators.grid;
     let law = problem.friction();
     let of_slip = problem.path_law().is_some();
     for run in contact.runs() {
         for (k, place) in run.places(grid).enumerate() {
             let index = run.strip * grid.cells + run.first + k;
-            let resting = law.coefficient(fields.heat.surface[index]).0;
-            let mut mu = resting;
+            let static_friction = law.coefficient(fields.heat.surface[index]).0;
+            let mut mu = static_friction;
             if of_slip {
-                mu = fields.memory.close(index, resting);
+                mu = fields.memory.at_final_temperature(index, static_friction);
             }
             let ratio = if fields.friction[place] > 0.0 {
                 mu / fields.friction[place]

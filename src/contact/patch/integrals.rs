@@ -1,22 +1,22 @@
-//! What is read off the fields of a patch for the outputs.
+//! Integrals over a patch, its extent, and the profiles' values that the outputs are made of.
 
 use super::extent::extent;
 use super::fields::PatchFields;
 use super::operators::PatchOperators;
-use super::problem::Problem;
+use super::problem::PatchProblem;
 use crate::contact::engine::Engine;
 use crate::contact::integrals::Integrals;
-use crate::contact::integrals::{Node, Sums};
+use crate::contact::integrals::{Node, NodeSums};
 use crate::contact::rim::ContactHeat;
 use crate::friction::coulomb;
 
-/// Of the given fields under the problem's conditions.
-pub fn integrals(problem: &Problem, fields: &PatchFields) -> Integrals {
+/// Integrals of the given fields under the problem's conditions.
+pub fn integrals(problem: &PatchProblem, fields: &PatchFields) -> Integrals {
     let operators = problem.operators;
     let extent = extent(operators, &fields.pressure);
     let heat = problem.heat_march();
     Integrals {
-        sums: Sums::of(nodes(problem, fields)),
+        sums: NodeSums::of(nodes(problem, fields)),
         node_area: operators.grid.cell_area(),
         pressure_scale: operators.scales.pressure,
         penetration: fields.penetration * operators.scales.displacement,
@@ -40,7 +40,7 @@ pub fn integrals(problem: &Problem, fields: &PatchFields) -> Integrals {
     }
 }
 
-fn nodes<'f>(problem: &'f Problem, fields: &'f PatchFields) -> impl Iterator<Item = Node> + 'f {
+fn nodes<'f>(problem: &'f PatchProblem, fields: &'f PatchFields) -> impl Iterator<Item = Node> + 'f {
     let grid = &problem.operators.grid;
     let regularisation = problem.parameters.slip_regularisation;
     (0..grid.strips).flat_map(move |strip| {
@@ -50,7 +50,7 @@ fn nodes<'f>(problem: &'f Problem, fields: &'f PatchFields) -> impl Iterator<Ite
             let shear = [fields.shear[0][place], fields.shear[1][place]];
             let bound = fields.friction[place] * pressure;
             // Coulomb's bound is reached to round-off.
-            let share = if bound > 0.0 {
+            let utilisation = if bound > 0.0 {
                 coulomb::magnitude(shear) / bound
             } else {
                 1.0
@@ -65,14 +65,14 @@ fn nodes<'f>(problem: &'f Problem, fields: &'f PatchFields) -> impl Iterator<Ite
                 lateral_slip: fields.slip[1][place],
                 friction: fields.friction[place],
                 heat_flux: fields.heat.flux[strip * grid.cells + cell],
-                sticks: pressure > 0.0 && coulomb::sticks(share * (1.0 + 1e-9), regularisation),
+                sticks: pressure > 0.0 && coulomb::sticks(utilisation * (1.0 + 1e-9), regularisation),
             }
         })
     })
 }
 
 /// Wear depth of a strip at the end of the window where material leaves it; at rest the deepest, `m`.
-pub fn wear_left_behind(problem: &Problem, fields: &PatchFields, strip: usize) -> f64 {
+pub fn wear_left_behind(problem: &PatchProblem, fields: &PatchFields, strip: usize) -> f64 {
     let cells = problem.operators.grid.cells;
     let depth = &fields.wear.depth[strip * cells..(strip + 1) * cells];
     let speed = problem.conditions.motion.rolling_speed;

@@ -3,7 +3,7 @@
 use super::extent::extent;
 use super::fields::PatchFields;
 use super::operators::PatchOperators;
-use super::problem::Problem;
+use super::problem::PatchProblem;
 use super::tangent::PatchTangent;
 use crate::contact::engine::{Along, Direction, Linearised};
 use crate::contact::fields::Fields;
@@ -16,7 +16,7 @@ use crate::wear::WearChange;
 
 /// Begins a direction: no change yet, but that of the rail without a change of the heat flux.
 pub fn begin(
-    problem: &Problem,
+    problem: &PatchProblem,
     fields: &PatchFields,
     direction: &Direction,
     change: &mut PatchFields,
@@ -86,7 +86,7 @@ pub fn heat(at: &mut Linearised<PatchOperators>, along: &Along, change: &mut Pat
                 wheel_rise: rise_change,
                 coefficient: if of_slip && fields.pressure[place] > 0.0 {
                     let index = strip * grid.cells + cell;
-                    change.friction[place] - fields.memory.share_at(index) * change.memory.now.resting[index]
+                    change.friction[place] - fields.memory.share_at(index) * change.memory.now.static_friction[index]
                 } else {
                     0.0
                 },
@@ -108,7 +108,8 @@ pub fn heat(at: &mut Linearised<PatchOperators>, along: &Along, change: &mut Pat
         .heat_tangent(&fields.heat, &march_change, &mut change.heat, heat)
 }
 
-/// Computes the change of what acts on nothing any more within the step.
+/// Computes the change of the heat under the surface and of the rail behind the window, on which no other equation of the step
+/// depends.
 pub fn finalise(at: &mut Linearised<PatchOperators>, direction: &Direction, change: &mut PatchFields) {
     let (problem, fields) = (at.problem, &*at.fields);
     let breadth = if at.touches {
@@ -118,11 +119,11 @@ pub fn finalise(at: &mut Linearised<PatchOperators>, direction: &Direction, chan
     };
     let (heat, wear) = (problem.heat_march(), problem.wear_march());
     let carriage = carriage(direction, breadth);
-    heat.finish_tangent(&fields.heat, &carriage, &mut change.heat, &mut at.tangent.heat);
-    wear.finish_tangent(direction.speed, breadth, &fields.wear, &mut change.wear);
+    heat.finalise_tangent(&fields.heat, &carriage, &mut change.heat, &mut at.tangent.heat);
+    wear.finalise_tangent(direction.speed, breadth, &fields.wear, &mut change.wear);
 }
 
-/// The change of what carries heat through the strips.
+/// Change of what carries heat through the strips.
 fn carriage(direction: &Direction, breadth: f64) -> CarriageChange {
     CarriageChange {
         speed: direction.speed,
@@ -132,7 +133,7 @@ fn carriage(direction: &Direction, breadth: f64) -> CarriageChange {
 }
 
 /// The change of the contact's breadth, `m`, by a central difference.
-fn breadth_tangent(problem: &Problem, pressure: &[f64], change: &[f64]) -> f64 {
+fn breadth_tangent(problem: &PatchProblem, pressure: &[f64], change: &[f64]) -> f64 {
     let size = largest(change);
     if size == 0.0 {
         return 0.0;

@@ -3,7 +3,7 @@
 
 use super::fields::PatchFields;
 use super::memory;
-use super::problem::{Problem, SlipWeights};
+use super::problem::{PatchProblem, SlipWeights};
 use super::response;
 use super::solvers::PatchSolvers;
 use crate::body::grid::Grid;
@@ -12,14 +12,14 @@ use crate::contact::interface::Interface;
 use crate::error::Result;
 use crate::friction::coulomb;
 use crate::friction::path::Passed;
+use crate::mechanics::normal_tangential::TractionChange;
 use crate::mechanics::patch::contact::Contact;
 use crate::mechanics::patch::friction::{FrictionProblem, PathOfCells};
-use crate::mechanics::patch::normal::NormalProblem;
-use crate::mechanics::sweep::Sweep;
+use crate::mechanics::patch::normal::PatchNormalProblem;
 use crate::numerics::dense::{add_multiple, largest, largest_change};
 
 /// Adapts the response of the slip to speed and step.
-pub fn respond(problem: &Problem, weights: SlipWeights, strips: usize, solvers: &mut PatchSolvers) {
+pub fn respond(problem: &PatchProblem, weights: SlipWeights, strips: usize, solvers: &mut PatchSolvers) {
     solvers.strips = problem.operators.transform_for(strips).0.strips();
     let conditions = (weights, problem.is_forward(), solvers.strips);
     if solvers.weights == Some(conditions) {
@@ -31,16 +31,16 @@ pub fn respond(problem: &Problem, weights: SlipWeights, strips: usize, solvers: 
 
 /// (31): pressure for the shear there is, then friction for that pressure.
 pub fn solve(
-    problem: &Problem,
+    problem: &PatchProblem,
     interface: &Interface,
     fields: &mut PatchFields,
     solvers: &mut PatchSolvers,
     tolerance: f64,
-) -> Result<Sweep> {
+) -> Result<TractionChange> {
     if problem.is_unloaded() {
         solvers.contact.list(&problem.operators.grid, |_| false);
-        lift(problem, interface, fields, solvers);
-        return Ok(Sweep::NONE);
+        lift_off(problem, interface, fields, solvers);
+        return Ok(TractionChange::NONE);
     }
     let set_changed = solve_normal(problem, interface, fields, solvers, tolerance)?;
     if set_changed {
@@ -50,8 +50,8 @@ pub fn solve(
         solvers.shear_before[component].copy_from_slice(&fields.shear[component]);
     }
     if solvers.contact.cells() == 0 {
-        lift(problem, interface, fields, solvers);
-        return Ok(Sweep {
+        lift_off(problem, interface, fields, solvers);
+        return Ok(TractionChange {
             shear_change: 0.0,
             set_changed,
         });
@@ -60,15 +60,15 @@ pub fn solve(
     let change = (0..2)
         .map(|component| largest_change(&fields.shear[component], &solvers.shear_before[component]))
         .fold(0.0, f64::max);
-    Ok(Sweep {
+    Ok(TractionChange {
         shear_change: change / largest(&fields.pressure),
         set_changed,
     })
 }
 
-/// Without contact there are no tractions. The displacement that does not come from shear is that of this step all the same: what
-/// the contact before has left would act on the next one.
-fn lift(problem: &Problem, interface: &Interface, fields: &mut PatchFields, solvers: &mut PatchSolvers) {
+/// Clears the tractions where there is no contact. The displacement that does not come from shear is computed all the same: the one
+/// that is left from the contact before would act on the next one.
+fn lift_off(problem: &PatchProblem, interface: &Interface, fields: &mut PatchFields, solvers: &mut PatchSolvers) {
     fields.pressure.fill(0.0);
     fields.friction.fill(0.0);
     for vectors in [&mut fields.shear, &mut fields.slip] {
@@ -82,7 +82,7 @@ fn lift(problem: &Problem, interface: &Interface, fields: &mut PatchFields, solv
 
 /// (37). Returns whether other cells are under pressure than before.
 fn solve_normal(
-    problem: &Problem,
+    problem: &PatchProblem,
     interface: &Interface,
     fields: &mut PatchFields,
     solvers: &mut PatchSolvers,
@@ -98,12 +98,12 @@ fn solve_normal(
     }
     std::mem::swap(&mut solvers.contact, &mut solvers.contact_before);
     let solved = solvers.normal.solve(
-        &NormalProblem {
+        &PatchNormalProblem {
             grid,
             transform: &operators.transform,
-            approach: &operators.approach,
+            normal_influence: &operators.normal_influence,
             gap: &solvers.gap,
-            softness: &solvers.softness,
+            wear_compliance: &solvers.wear_compliance,
             constraint: problem.constraint(),
             tolerance: tolerance.max(problem.settings.patch.least_tolerance),
         },
@@ -116,7 +116,7 @@ fn solve_normal(
 
 /// (10), (30) for given pressure, and the slip that follows.
 fn solve_friction(
-    problem: &Problem,
+    problem: &PatchProblem,
     interface: &Interface,
     fields: &mut PatchFields,
     solvers: &mut PatchSolvers,
@@ -136,13 +136,13 @@ fn solve_friction(
     let law = problem.friction();
     let path_law = problem.path_law();
     if let Some(path_law) = &path_law {
-        for (index, resting) in fields.memory.now.resting.iter_mut().enumerate() {
-            *resting = law.coefficient(interface.temperature(index)).0;
+        for (index, static_friction) in fields.memory.now.static_friction.iter_mut().enumerate() {
+            *static_friction = law.coefficient(interface.temperature(index)).0;
         }
         let contact = (&solvers.contact, &fields.pressure[..]);
         memory::prepare(problem, path_law, contact, fields, &mut solvers.path);
     }
-    // Coulomb's bound, and what the leading edge adds: the opening ahead is that of the gap in the ratio of the tractions.
+    // Coulomb's bound, and the leading-edge correction: u jumps out of the contact as the gap does, in the ratio of the tractions.
     if path_law.is_none() {
         fields.friction.fill(0.0);
     }
@@ -161,8 +161,10 @@ fn solve_friction(
             solvers.bound[index] = mu * fields.pressure[place];
             solvers.edge[index] = if k == leading {
                 let gap = solvers.normal.separation[place.wrapping_add_signed(ahead)];
-                let ratio = problem.opening(gap, fields.pressure[place]);
-                operators.opening.map(|factor| weights.strain_speed * factor * ratio)
+                let ratio = problem.separation_ratio(gap, fields.pressure[place]);
+                operators
+                    .edge_factors
+                    .map(|factor| weights.strain_speed * factor * ratio)
             } else {
                 [0.0; 2]
             };
@@ -170,7 +172,7 @@ fn solve_friction(
     }
     keep_within_bounds(grid, &solvers.contact, &solvers.bound, fields, &mut solvers.nothing);
     free_slip(problem, interface, &weights, fields, solvers);
-    let own = f64::from(solvers.response.own[0][solvers.response.origin]);
+    let own = f64::from(solvers.response.strip_kernels[0][solvers.response.origin]);
     let peak = largest(&fields.pressure);
     let path = path_law.map(|law| PathOfCells {
         law,
@@ -206,11 +208,11 @@ fn solve_friction(
             fields.memory.now.speed.fill(0.0);
             fields.memory.now.flow.fill(0.0);
             for run in solvers.contact.runs() {
-                for (k, (index, place)) in run.own().zip(run.places(grid)).enumerate() {
+                for (k, (index, place)) in run.indices().zip(run.places(grid)).enumerate() {
                     let cell = run.strip * grid.cells + run.first + k;
                     fields.friction[place] = of_slip[index].coefficient;
                     fields.memory.share[cell] = of_slip[index].share;
-                    fields.memory.cap[cell] = of_slip[index].cap();
+                    fields.memory.layer_bound[cell] = of_slip[index].layer_bound();
                     fields.memory.now.friction[cell] = of_slip[index].surfaces;
                     fields.memory.now.speed[cell] = speeds[index];
                     fields.memory.now.flow[cell] = of_slip[index].flow();
@@ -222,7 +224,7 @@ fn solve_friction(
     Ok(())
 }
 
-/// A first guess within Coulomb's bound, nothing outside the contact.
+/// Scales the shear of the first guess back to Coulomb's bound, to nothing outside the contact.
 fn keep_within_bounds(grid: &Grid, contact: &Contact, bound: &[f64], fields: &mut PatchFields, on_grid: &mut [f64]) {
     on_grid.fill(0.0);
     contact.scatter(grid, bound, on_grid);
@@ -230,16 +232,16 @@ fn keep_within_bounds(grid: &Grid, contact: &Contact, bound: &[f64], fields: &mu
     for ((x, y), &bound) in x.iter_mut().zip(y).zip(&*on_grid) {
         let length = coulomb::magnitude([*x, *y]);
         if length > bound {
-            let share = bound / length;
-            (*x, *y) = (share * *x, share * *y);
+            let ratio = bound / length;
+            (*x, *y) = (ratio * *x, ratio * *y);
         }
     }
     on_grid.fill(0.0);
 }
 
-/// The slip ahead of the cells without the response to their shear.
+/// Computes the slip ahead of the cells without the response to their shear.
 fn free_slip(
-    problem: &Problem,
+    problem: &PatchProblem,
     interface: &Interface,
     weights: &SlipWeights,
     fields: &PatchFields,
@@ -267,8 +269,8 @@ fn free_slip(
     }
 }
 
-/// The displacement that does not come from shear: by pressure where the bodies differ, and by heat.
-fn given_displacement(problem: &Problem, interface: &Interface, fields: &PatchFields, solvers: &mut PatchSolvers) {
+/// Computes the displacement that does not come from shear: by pressure where the bodies differ, and by heat.
+fn given_displacement(problem: &PatchProblem, interface: &Interface, fields: &PatchFields, solvers: &mut PatchSolvers) {
     let operators = problem.operators;
     let grid = &operators.grid;
     let window = Window::whole(grid);
@@ -296,9 +298,10 @@ fn given_displacement(problem: &Problem, interface: &Interface, fields: &PatchFi
     }
 }
 
-/// At rest, where the slip is the wheel's alone: the law gives the shear, and there is none without slip.
+/// Sets the shear of a wheel that stands on the spot, where the slip is the wheel's alone: the law gives the shear, and there is
+/// none without slip.
 fn slide_on_the_spot(
-    problem: &Problem,
+    problem: &PatchProblem,
     path: Option<&PathOfCells>,
     (contact, bound, free_slip): (&Contact, &mut [f64], &[Vec<f64>; 2]),
     fields: &mut PatchFields,
@@ -306,7 +309,7 @@ fn slide_on_the_spot(
     let grid = &problem.operators.grid;
     let epsilon = problem.parameters.slip_regularisation;
     for run in contact.runs() {
-        for (k, (index, place)) in run.own().zip(run.places(grid)).enumerate() {
+        for (k, (index, place)) in run.indices().zip(run.places(grid)).enumerate() {
             let slip = [free_slip[0][place], free_slip[1][place]];
             let speed = coulomb::magnitude(slip);
             if let Some(path) = path {
@@ -316,20 +319,20 @@ fn slide_on_the_spot(
                     .friction(&path.nodes[index], &Passed::default(), speed, path.pressure[index]);
                 let cell = run.strip * grid.cells + run.first + k;
                 (fields.friction[place], fields.memory.share[cell]) = (friction.coefficient, friction.share);
-                fields.memory.cap[cell] = friction.cap();
+                fields.memory.layer_bound[cell] = friction.layer_bound();
                 fields.memory.now.friction[cell] = friction.surfaces;
                 fields.memory.now.speed[cell] = speed;
                 fields.memory.now.flow[cell] = friction.flow();
                 bound[index] = friction.coefficient * path.pressure[index];
             }
-            let saturation = if epsilon > 0.0 {
-                coulomb::saturation(speed, epsilon)
+            let utilisation = if epsilon > 0.0 {
+                coulomb::utilisation(speed, epsilon)
             } else {
                 1.0
             };
             for (slip, shear) in slip.into_iter().zip(&mut fields.shear) {
                 shear[place] = if speed > 0.0 {
-                    -bound[index] * saturation * slip / speed
+                    -bound[index] * utilisation * slip / speed
                 } else {
                     0.0
                 };
@@ -338,17 +341,17 @@ fn slide_on_the_spot(
     }
 }
 
-/// The slip at the centres of the cells, the mean of that ahead and that behind: it heats, wears and takes power.
-fn mean_slip(problem: &Problem, fields: &mut PatchFields, solvers: &mut PatchSolvers) {
+/// Computes the slip at the centres of the cells, the mean of that ahead and that behind: it heats, wears and takes power.
+fn mean_slip(problem: &PatchProblem, fields: &mut PatchFields, solvers: &mut PatchSolvers) {
     let grid = &problem.operators.grid;
-    let moves = f64::from(solvers.response.own[0][solvers.response.origin]) != 0.0;
+    let moves = f64::from(solvers.response.strip_kernels[0][solvers.response.origin]) != 0.0;
     let behind: isize = if problem.is_forward() { -1 } else { 1 };
     for component in &mut fields.slip {
         component.fill(0.0);
     }
     let free = &solvers.free_slip;
     for run in solvers.contact.runs() {
-        for (index, place) in run.own().zip(run.places(grid)) {
+        for (index, place) in run.indices().zip(run.places(grid)) {
             let at = |place: usize| {
                 let response = if moves {
                     solvers.friction.response_at(place)
@@ -368,10 +371,10 @@ fn mean_slip(problem: &Problem, fields: &mut PatchFields, solvers: &mut PatchSol
 
 /// Sets the displacement of the fields at the end of the step, and its change. The part that does not come from shear is that which
 /// the tractions were solved for.
-pub fn close_displacement(problem: &Problem, fields: &mut PatchFields, solvers: &mut PatchSolvers) {
+pub fn finalise_displacement(problem: &PatchProblem, fields: &mut PatchFields, solvers: &mut PatchSolvers) {
     let operators = problem.operators;
     let window = Window::whole(&operators.grid);
-    let [x, y] = &mut solvers.lift;
+    let [x, y] = &mut solvers.shear_displacement;
     let load = [&fields.shear[0][..], &fields.shear[1][..]];
     operators
         .transform
@@ -379,7 +382,7 @@ pub fn close_displacement(problem: &Problem, fields: &mut PatchFields, solvers: 
     for component in 0..2 {
         let parts = solvers.given[component]
             .iter()
-            .zip(&solvers.lift[component])
+            .zip(&solvers.shear_displacement[component])
             .zip(&solvers.before[component]);
         let own = fields.displacement[component]
             .iter_mut()

@@ -1,21 +1,22 @@
-//! Friction that depends on slip: the law of the cells under pressure, at what the particles of their strip bring along.
+//! Friction of the cells under pressure where it depends on slip, for the history that the particles of their strip bring along.
 
 use super::fields::PatchFields;
-use super::problem::Problem;
+use super::problem::PatchProblem;
 use super::solvers::PathScratch;
 use crate::friction::path::PathLaw;
 use crate::mechanics::patch::contact::Contact;
 use std::ops::Range;
 
-/// The cells of a strip.
-fn cells(problem: &Problem, strip: usize) -> Range<usize> {
+/// Cells of a strip.
+fn cells(problem: &PatchProblem, strip: usize) -> Range<usize> {
     let cells = problem.operators.grid.cells;
     strip * cells..(strip + 1) * cells
 }
 
-/// The friction law of the cells under pressure at what their particles bring along, with μ(θ) of all cells in the fields.
+/// Sets the friction law of the cells under pressure for the history that their particles bring along, with μ(θ) of all cells in
+/// the fields.
 pub fn prepare(
-    problem: &Problem,
+    problem: &PatchProblem,
     law: &PathLaw,
     (contact, pressure): (&Contact, &[f64]),
     fields: &PatchFields,
@@ -24,7 +25,7 @@ pub fn prepare(
     let grid = &problem.operators.grid;
     scratch.index.fill(None);
     for run in contact.runs() {
-        for (k, (index, place)) in run.own().zip(run.places(grid)).enumerate() {
+        for (k, (index, place)) in run.indices().zip(run.places(grid)).enumerate() {
             scratch.index[run.strip * grid.cells + run.first + k] = Some(index);
             scratch.pressure[index] = pressure[place];
         }
@@ -32,11 +33,11 @@ pub fn prepare(
     let PathScratch { nodes, index, .. } = scratch;
     for strip in 0..grid.strips {
         let own = cells(problem, strip);
-        let (index, resting) = (&index[own.clone()], &fields.memory.now.resting[own.clone()]);
+        let (index, static_friction) = (&index[own.clone()], &fields.memory.now.static_friction[own.clone()]);
         let path = fields.memory.before.path(own);
         law.prepare(
             &path,
-            resting,
+            static_friction,
             |cell| index[cell].is_some(),
             |cell, node| {
                 if let Some(index) = index[cell] {

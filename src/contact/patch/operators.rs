@@ -1,4 +1,4 @@
-//! Rail and wheel: everything that is computed once, at initialisation.
+//! Operators of a patch: everything that is computed once, at initialisation.
 
 use super::expansion::Expansion;
 use crate::body::compliance::Scales;
@@ -9,9 +9,9 @@ use crate::body::mesh::Mesh;
 use crate::error::Result;
 use crate::heat::basis::DepthBasis;
 use crate::heat::incoming::Incoming;
-use crate::mechanics::front::LAYER_OPENING;
-use crate::mechanics::patch::normal::Approach;
-use crate::parameters::Parameters;
+use crate::mechanics::leading_edge::LAYER_STRAIN;
+use crate::mechanics::patch::normal::NormalInfluence;
+use crate::parameters::{HertzEllipse, Parameters};
 use crate::transport::strips::Strips;
 use std::f64::consts::PI;
 
@@ -19,12 +19,12 @@ use std::f64::consts::PI;
 const OUTER_COLUMNS: f64 = 24.0;
 /// First cell under the surface at 41 depth nodes, `m`, as on the line's mesh.
 const FIRST_DEPTH: f64 = 10e-6;
-/// Shares of the strips for which there are products of their own: the contact at the default load has 0.7 of them.
+/// Fractions of the strips for which there are transforms of their own: the contact at the default load has 0.7 of the strips.
 const NARROW: [f64; 3] = [0.35, 0.55, 0.76];
 /// ℓ over the product of compliance and creep stiffness: chosen, as the best of 0.36, 0.48, 0.6, 0.75 and 0.96 for jumps of the creepage along and
-/// across, in steps of any length against short ones. The verification's "Patch: jump of the creepage" has what it leaves: a quarter more or
-/// less, and the force is off by half as much again or more.
-const RELAXATION_SHARE: f64 = 0.6;
+/// across, in steps of any length against short ones. The verification's "Patch: jump of the creepage" has the error that it leaves; with a
+/// quarter more or less the force is off by half as much again or more.
+const RELAXATION_FACTOR: f64 = 0.6;
 
 /// The rail and the wheel's profile, built at initialisation.
 pub struct PatchOperators {
@@ -34,20 +34,21 @@ pub struct PatchOperators {
     pub scales: Scales,
     /// Products on the grid.
     pub transform: Transform,
-    /// Approach by pressure, scaled.
-    pub approach: Approach,
-    /// u by shear, scaled.
+    /// NormalInfluence by pressure, scaled.
+    pub normal_influence: NormalInfluence,
+    /// Displacement u by shear, scaled.
     pub displacement: Tables<f64>,
-    /// The same for fewer strips, ascending: a product costs as much as it serves strips.
+    /// Transforms that serve fewer strips, ascending, with the tables of u by shear for them: a product costs as much as it serves
+    /// strips.
     pub narrow: Vec<(Transform, Tables<f64>)>,
     /// The kernels of u_x by τ_x and of u_y by τ_y of a strip on itself, by the lag along x, as the tables have it.
-    pub own: [Vec<f64>; 2],
-    /// u by pressure, and lift by shear with the same tables, scaled; none where the bodies are alike.
+    pub strip_kernels: [Vec<f64>; 2],
+    /// Displacement u by pressure, and with the same tables the upward displacement by shear, scaled; none where the bodies are alike.
     pub coupling: Option<Tables<f64>>,
     /// Displacement by heat.
     pub expansion: Expansion,
-    /// Opening ahead of the leading edge over that of the gap, per τ/p: along x and y.
-    pub opening: [f64; 2],
+    /// Factors of the leading-edge correction along x and y: jump of u out of the contact over that of the gap, per τ/p.
+    pub edge_factors: [f64; 2],
     /// Undeformed gap of the cells, scaled, on the grid.
     pub gap: Vec<f64>,
     /// The marches across columns.
@@ -63,7 +64,7 @@ pub struct PatchOperators {
 }
 
 impl PatchOperators {
-    /// Grid, influence, depth modes.
+    /// Computes grid, influence and depth modes.
     ///
     /// # Errors
     /// [`crate::error::Error::DepthBasis`].
@@ -121,12 +122,12 @@ impl PatchOperators {
             )
         });
         let columns = 2 * grid.stride() as isize + 8;
-        let own = |kernel: &dyn Fn((isize, isize)) -> f64| -> Vec<f64> {
+        let on_strip = |kernel: &dyn Fn((isize, isize)) -> f64| -> Vec<f64> {
             (0..columns)
                 .map(|lag| kernel((lag - grid.stride() as isize, 0)))
                 .collect()
         };
-        let own = [own(&along), own(&across)];
+        let strip_kernels = [on_strip(&along), on_strip(&across)];
         let curvature = parameters.rail_transverse_curvature + parameters.wheel_transverse_curvature;
         let radius = parameters.wheel_radius;
         let mut gap = vec![0.0; grid.len()];
@@ -149,7 +150,7 @@ impl PatchOperators {
         );
         let basis = DepthBasis::new(&mesh.depth)?;
         Ok(PatchOperators {
-            approach: Approach::new(&grid, &transform, normal),
+            normal_influence: NormalInfluence::new(&grid, &transform, normal),
             displacement: transform.tables(along, mixed, across),
             narrow: narrow
                 .into_iter()
@@ -158,7 +159,7 @@ impl PatchOperators {
                     (transform, tables)
                 })
                 .collect(),
-            own,
+            strip_kernels,
             coupling,
             expansion: Expansion::new(
                 parameters,
@@ -167,9 +168,9 @@ impl PatchOperators {
                 parameters.strip_half_length,
                 scales.displacement,
             ),
-            opening: {
-                // Of the strips' edges, which are nearly straight: the pressure of a cell displaces half-planes by 2Δ/E*, 1/E* = π normal.
-                let edge = LAYER_OPENING * layer / (2.0 * PI * pair.normal() * unit * grid.length);
+            edge_factors: {
+                // The edges of the strips are nearly straight: the pressure of a cell displaces half-planes by 2Δ/E*, 1/E* = π normal.
+                let edge = LAYER_STRAIN * layer / (2.0 * PI * pair.normal() * unit * grid.length);
                 [1.0 + edge, pair.direct / pair.normal() + edge]
             },
             gap,
@@ -177,14 +178,14 @@ impl PatchOperators {
             incoming: Incoming::new(&mesh.depth, &basis, parameters.skin_depth),
             depth: mesh.depth,
             basis,
-            relaxation_length: relaxation_length(&pair, parameters.layer_compliance, (ellipse.along, ellipse.across)),
+            relaxation_length: relaxation_length(&pair, parameters.layer_compliance, &ellipse),
             transform,
             grid,
             scales,
         })
     }
 
-    /// The products for a contact on so many strips.
+    /// Transform and tables of u by shear for a contact on so many strips.
     pub fn transform_for(&self, strips: usize) -> (&Transform, &Tables<f64>) {
         let narrow = self.narrow.iter().find(|(transform, _)| transform.strips() >= strips);
         narrow.map_or((&self.transform, &self.displacement), |(transform, tables)| {
@@ -198,18 +199,20 @@ impl PatchOperators {
     }
 }
 
-/// The way of rolling on which a patch forgets a change of its shear force F. With C the displacement per force and K the force per
-/// creepage of steady rolling, a contact of one displacement C F has C dF/dt + |V| F/K = |V| ξ: it forgets within C K. The
-/// displacement is not one, but grows from the leading edge to the trailing one, and slip changes it: ℓ is a share of C K. K = G a b C₁₁, C₁₁ = 3.3 (1 + a/(4b)), which is within a few per cent of Kalker's table. A layer of
+/// Relaxation length of a patch, the distance of rolling on which a change of its shear force F decays, `m`. With C the displacement
+/// per force and K the force per creepage of steady rolling, a contact of one displacement C F has C dF/dt + |V| F/K = |V| ξ: a change
+/// decays within C K. The displacement is not uniform, but grows from the leading edge to the trailing one, and slip changes it: ℓ is
+/// [`RELAXATION_FACTOR`] C K. K = G a b C₁₁, C₁₁ = 3.3 (1 + a/(4b)), which is within a few per cent of Kalker's table. A layer of
 /// compliance c adds c/(π a b) to C and 3c/(8a²b), that of a brush, to 1/K.
-fn relaxation_length(pair: &HalfSpaces, layer: f64, (a, b): (f64, f64)) -> f64 {
+fn relaxation_length(pair: &HalfSpaces, layer: f64, ellipse: &HertzEllipse) -> f64 {
+    let (a, b) = (ellipse.along, ellipse.across);
     let stiffness = a * b * 3.3 * (1.0 + 0.25 * a / b) / (PI * pair.direct);
     let displacement = compliance(pair, (a * b).sqrt());
     if layer == 0.0 {
-        return RELAXATION_SHARE * displacement * stiffness;
+        return RELAXATION_FACTOR * displacement * stiffness;
     }
     let with_layer = displacement + layer / (PI * a * b);
-    RELAXATION_SHARE * with_layer / (1.0 / stiffness + 0.375 * layer / (a * a * b))
+    RELAXATION_FACTOR * with_layer / (1.0 / stiffness + 0.375 * layer / (a * a * b))
 }
 
 /// Mean displacement of a circle along an elliptic shear τ ∝ √(1 − r²/c²) on it, per force, `m/N`. Of one half-space u_x =
@@ -223,7 +226,7 @@ fn compliance(pair: &HalfSpaces, c: f64) -> f64 {
 mod tests {
     use super::*;
 
-    /// Against the sum over small squares that the tables are made of.
+    /// Compares the closed form with the sum over small squares that the tables are made of.
     #[test]
     fn compliance_of_a_circle_is_that_of_its_cells() {
         let pair = HalfSpaces::of_pair(&Parameters::default());

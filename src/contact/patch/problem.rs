@@ -11,17 +11,16 @@ use crate::wear::strips::StripWearMarch;
 use std::ops::Range;
 
 /// Problem of a step of the patch.
-pub type Problem<'a> = crate::contact::problem::Problem<'a, PatchOperators>;
+pub type PatchProblem<'a> = crate::contact::problem::Problem<'a, PatchOperators>;
 
-/// How the slip ahead of a cell follows from displacements, `m/s` per scaled displacement: of u less that of the cell ahead, of u
-/// less that of the step before, and of the latter less that of the cell ahead then.
+/// Weights with which displacements enter the slip ahead of a cell, `m/s` per scaled displacement.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SlipWeights {
-    /// Of u less that ahead.
+    /// Weight of the displacement u of the cell less that of the cell ahead.
     pub strain: f64,
-    /// Of u less that before.
+    /// Weight of u less u before the step.
     pub change: f64,
-    /// Of that before less that ahead of it.
+    /// Weight of u before the step less that of the cell ahead then.
     pub strain_before: f64,
     /// |V| times the displacement scale over the length of a cell.
     pub strain_speed: f64,
@@ -34,8 +33,8 @@ impl SlipWeights {
     }
 }
 
-impl<'a> Problem<'a> {
-    /// How the slip follows from displacements.
+impl<'a> PatchProblem<'a> {
+    /// Weights with which displacements enter the slip.
     pub fn slip_weights(&self, transient: Transient) -> SlipWeights {
         let speed = self.conditions.motion.rolling_speed.abs();
         let strain_speed = speed * self.operators.scales.displacement / self.operators.grid.length;
@@ -62,26 +61,27 @@ impl<'a> Problem<'a> {
         }
     }
 
-    /// Separation `gap` ahead of a leading cell over its pressure: the slip there is less by it times the shear.
-    pub fn opening(&self, gap: f64, pressure: f64) -> f64 {
-        (gap.max(0.0) / pressure).min(self.largest_opening())
+    /// Ratio of the separation `gap` ahead of a leading cell to the cell's pressure, to which the leading-edge correction of the slip
+    /// is proportional.
+    pub fn separation_ratio(&self, gap: f64, pressure: f64) -> f64 {
+        (gap.max(0.0) / pressure).min(self.largest_separation_ratio())
     }
 
-    /// Change of [`Problem::opening`].
-    pub fn opening_tangent(&self, (gap, pressure): (f64, f64), (gap_change, pressure_change): (f64, f64)) -> f64 {
-        let opening = gap / pressure;
-        if opening > 0.0 && opening < self.largest_opening() {
-            (gap_change - opening * pressure_change) / pressure
+    /// Change of [`PatchProblem::separation_ratio`].
+    pub fn separation_ratio_tangent(&self, gap: f64, pressure: f64, gap_change: f64, pressure_change: f64) -> f64 {
+        let ratio = gap / pressure;
+        if ratio > 0.0 && ratio < self.largest_separation_ratio() {
+            (gap_change - ratio * pressure_change) / pressure
         } else {
             0.0
         }
     }
 
-    fn largest_opening(&self) -> f64 {
-        self.settings.patch.largest_opening * self.operators.approach.own
+    fn largest_separation_ratio(&self) -> f64 {
+        self.settings.patch.largest_separation_ratio * self.operators.normal_influence.diagonal
     }
 
-    /// The cells of a strip that have one ahead of them: the slip is taken between the two.
+    /// Cells of a strip that have a cell ahead of them: the slip is taken between the two.
     pub fn cells_with_next(&self) -> Range<usize> {
         let cells = self.operators.grid.cells;
         if self.is_forward() { 0..cells - 1 } else { 1..cells }
@@ -92,7 +92,7 @@ impl<'a> Problem<'a> {
         rigid_slip(&self.conditions.motion, x, y)
     }
 
-    /// The heat march of the step.
+    /// Heat march of the step.
     pub fn heat_march(&self) -> StripHeatMarch<'a> {
         StripHeatMarch {
             basis: &self.operators.basis,
@@ -107,7 +107,7 @@ impl<'a> Problem<'a> {
         }
     }
 
-    /// The wear march of the step.
+    /// Wear march of the step.
     pub fn wear_march(&self) -> StripWearMarch<'a> {
         StripWearMarch {
             strips: &self.operators.strips,
@@ -119,26 +119,26 @@ impl<'a> Problem<'a> {
     /// Sliding of a cell, by its place on the grid.
     pub fn sliding(&self, fields: &PatchFields, place: usize) -> Sliding {
         let (slip, _) = vectors(fields, place);
-        Sliding::of_vectors(slip, share(fields, place))
+        Sliding::of_vectors(slip, utilisation(fields, place))
     }
 
-    /// Its change with that of the fields.
+    /// Change of [`PatchProblem::sliding`] with that of the fields.
     pub fn sliding_tangent(&self, fields: &PatchFields, tangent: &PatchFields, place: usize) -> Sliding {
         let ((slip, _), (slip_change, shear_change)) = (vectors(fields, place), vectors(tangent, place));
         let (mu, pressure) = (fields.friction[place], fields.pressure[place]);
-        let (bound, share) = (mu * pressure, share(fields, place));
+        let (bound, utilisation) = (mu * pressure, utilisation(fields, place));
         let bound_change = tangent.friction[place] * pressure + mu * tangent.pressure[place];
-        let share_change = [0, 1].map(|component| {
+        let utilisation_change = [0, 1].map(|component| {
             if bound > 0.0 {
-                (shear_change[component] - share[component] * bound_change) / bound
+                -(shear_change[component] + utilisation[component] * bound_change) / bound
             } else {
                 0.0
             }
         });
-        Sliding::vector_tangent(slip, share, slip_change, share_change)
+        Sliding::vector_tangent(slip, utilisation, slip_change, utilisation_change)
     }
 
-    /// What heats and cools the surface of the cells, strip by strip, with the wheel at θ_w.
+    /// Computes what heats and cools the surface of the cells, strip by strip, with the wheel at θ_w.
     pub fn exchange(&self, fields: &PatchFields, wheel_rise: f64, exchange: &mut [SurfaceExchange]) {
         let grid = &self.operators.grid;
         let of_slip = self.path_law().is_some();
@@ -177,9 +177,9 @@ fn vectors(fields: &PatchFields, place: usize) -> ([f64; 2], [f64; 2]) {
     (at(&fields.slip), at(&fields.shear))
 }
 
-/// τ/(μp) of a cell.
-fn share(fields: &PatchFields, place: usize) -> [f64; 2] {
+/// Traction utilisation −τ/(μp) of a cell, along the rail and across it: with the sign of the slip.
+fn utilisation(fields: &PatchFields, place: usize) -> [f64; 2] {
     let bound = fields.friction[place] * fields.pressure[place];
     let (_, shear) = vectors(fields, place);
-    shear.map(|shear| if bound > 0.0 { shear / bound } else { 0.0 })
+    shear.map(|shear| if bound > 0.0 { -shear / bound } else { 0.0 })
 }

@@ -3,7 +3,7 @@
 use super::fields::PatchFields;
 use super::integrals::wear_left_behind;
 use super::operators::PatchOperators;
-use super::problem::Problem;
+use super::problem::PatchProblem;
 use crate::contact::profiles::{ContactNode, PROFILE_POINTS, Profiles, STRIP_POINTS, StripProfiles, depths};
 use crate::friction::coulomb;
 use crate::numerics::interpolation::between;
@@ -25,7 +25,7 @@ pub fn contact_nodes(operators: &PatchOperators, fields: &PatchFields) -> Vec<Co
                 lateral_shear: shear[1] * scale,
                 slip: fields.slip[0][place],
                 lateral_slip: fields.slip[1][place],
-                saturation: if bound > 0.0 {
+                utilisation: if bound > 0.0 {
                     coulomb::magnitude(shear) / bound
                 } else {
                     0.0
@@ -37,8 +37,8 @@ pub fn contact_nodes(operators: &PatchOperators, fields: &PatchFields) -> Vec<Co
         .collect()
 }
 
-/// Of the fields, linear between the centres of the cells; between the two strips in the middle their mean.
-pub fn profiles(problem: &Problem, fields: &PatchFields, ambient: f64) -> Profiles {
+/// Samples the fields, linear between the centres of the cells; between the two strips in the middle their mean.
+pub fn profiles(problem: &PatchProblem, fields: &PatchFields, ambient: f64) -> Profiles {
     let operators = problem.operators;
     let grid = &operators.grid;
     let middle = [(grid.strips - 1) / 2, grid.strips / 2];

@@ -21,44 +21,50 @@ pub struct PatchSolvers {
     pub(super) normal: Normal,
     pub(super) friction: Friction,
     pub(super) response: SlipResponse,
-    /// What the response is of: the weights, whether V ≥ 0, the strips that its transform serves.
+    /// StepConditions that the response is adapted to: the weights, whether V ≥ 0, the strips that its transform serves.
     pub(super) weights: Option<(SlipWeights, bool, usize)>,
-    /// Strips that its transform serves.
+    /// Strips that the transform of the response serves.
     pub(super) strips: usize,
     pub(super) products: influence::ProductScratch<f64>,
     pub(super) exchange: Vec<SurfaceExchange>,
     pub(super) heat: StripHeatScratch,
     pub(super) wear_rate: Vec<f64>,
     pub(super) wear_steps: StripWearSteps,
-    /// On the grid: gap, softness by wear, lift by shear, u that does not come from shear, u before, slip without shear.
+    /// Gap at no penetration, on the grid, scaled.
     pub(super) gap: Vec<f64>,
-    pub(super) softness: Vec<f64>,
-    pub(super) lift: [Vec<f64>; 2],
+    /// Wear depth of the step per pressure, on the grid, scaled.
+    pub(super) wear_compliance: Vec<f64>,
+    /// Displacement by shear, on the grid, scaled: upward in the first component, or along x and y.
+    pub(super) shear_displacement: [Vec<f64>; 2],
+    /// Displacement u that does not come from shear, on the grid, scaled.
     pub(super) given: [Vec<f64>; 2],
+    /// Displacement u before the step, on the grid, scaled.
     pub(super) before: [Vec<f64>; 2],
+    /// Slip ahead of the cells without the response to shear, on the grid, `m/s`.
     pub(super) free_slip: [Vec<f64>; 2],
-    pub(super) expansion: expansion::Scratch,
+    pub(super) expansion: expansion::ExpansionBuffers,
     pub(super) nothing: Vec<f64>,
     pub(super) shear_before: [Vec<f64>; 2],
-    /// Of the cells under pressure.
+    /// Coulomb's bound μp of the cells under pressure, scaled.
     pub(super) bound: Vec<f64>,
+    /// Slip per shear that the leading edge adds to the cells under pressure, along x and y, `m/s`.
     pub(super) edge: Vec<[f64; 2]>,
-    /// Where friction depends on slip: the law of the cells under pressure, and their pressure.
+    /// Friction law of the cells under pressure where friction depends on slip.
     pub(super) path: PathScratch,
 }
 
-/// The friction of the cells under pressure, where it depends on slip.
+/// Friction of the cells under pressure, where it depends on slip.
 pub struct PathScratch {
-    /// Their law.
+    /// Friction law of the cells under pressure.
     pub nodes: Vec<PathNode>,
-    /// Their pressure, scaled.
+    /// Pressure of the cells under pressure, scaled.
     pub pressure: Vec<f64>,
-    /// Of all cells, strip by strip, their number among those under pressure.
+    /// Number of a cell among those under pressure, for all cells strip by strip.
     pub index: Vec<Option<usize>>,
 }
 
 impl PathScratch {
-    /// For a number of cells.
+    /// Buffers for a number of cells.
     pub fn new(cells: usize) -> PathScratch {
         PathScratch {
             nodes: vec![PathNode::default(); cells],
@@ -89,12 +95,12 @@ impl PatchSolvers {
             wear_rate: vec![0.0; cells],
             wear_steps: StripWearSteps::new(&operators.strips),
             gap: on_grid(),
-            softness: on_grid(),
-            lift: vectors(),
+            wear_compliance: on_grid(),
+            shear_displacement: vectors(),
             given: vectors(),
             before: vectors(),
             free_slip: vectors(),
-            expansion: expansion::Scratch::new(grid, transform),
+            expansion: expansion::ExpansionBuffers::new(grid, transform),
             nothing: on_grid(),
             shear_before: vectors(),
             bound: on_grid(),

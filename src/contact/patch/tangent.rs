@@ -1,14 +1,13 @@
 //! The change of the tractions with inputs, temperature and wear, at the solution of a step: pressure, then friction, each as the
 //! linear system that its solver solves last.
 //!
-//! It has solvers and tables of its own: what a step has left in the others is not needed, so that it starts from the fields
-//! alone.
+//! It has solvers and tables of its own, so that it starts from the fields alone, whatever a step has left in its solvers.
 
 use super::expansion;
 use super::fields::PatchFields;
 use super::memory;
 use super::operators::PatchOperators;
-use super::problem::{Problem, SlipWeights, rigid_slip};
+use super::problem::{PatchProblem, SlipWeights, rigid_slip};
 use super::response;
 use super::solvers::{PatchSolvers, PathScratch};
 use crate::body::influence::{self, Window};
@@ -19,17 +18,17 @@ use crate::error::Result;
 use crate::friction::path::PathLaw;
 use crate::heat::strips::StripHeatScratch;
 use crate::heat::surface::{ExchangeTangent, SurfaceExchange};
-use crate::mechanics::normal::problem::Constraint;
+use crate::mechanics::normal::normal_problem::Constraint;
 use crate::mechanics::patch::contact::Contact;
 use crate::mechanics::patch::friction::{
     Friction, FrictionChange, FrictionProblem, LEAST_CHANGE, PathOfCells, SlipResponse,
 };
 use crate::mechanics::patch::law::Vector;
-use crate::mechanics::patch::normal::{Normal, NormalProblem};
+use crate::mechanics::patch::normal::{Normal, PatchNormalProblem};
 use crate::numerics::dense::{add_multiple, largest};
 use crate::settings::Settings;
 
-/// The linearised mechanics: solvers, what they are linearised at, and buffers.
+/// Linearised mechanics: solvers, the point at which they are linearised, and buffers.
 pub struct PatchTangent {
     contact: Contact,
     normal: Normal,
@@ -37,26 +36,33 @@ pub struct PatchTangent {
     response: SlipResponse,
     products: influence::ProductScratch<f64>,
     weights: SlipWeights,
-    /// What the friction law of all cells has in common: r, w, ε.
+    /// Constants r, w, ε of the friction law, the same for all cells.
     scheme: [f64; 3],
-    /// On the grid: slip ahead but for the leading edge, separation.
+    /// Slip ahead of the cells without what the leading edge adds, on the grid, `m/s`.
     slip: [Vec<f64>; 2],
+    /// Separation of the cells, on the grid, scaled.
     separation: Vec<f64>,
-    /// Of the cells: bound, slip per shear by the leading edge.
+    /// Coulomb's bound μp of the cells under pressure, scaled.
     bound: Vec<f64>,
+    /// Slip per shear that the leading edge adds to the cells under pressure, along x and y, `m/s`.
     edge: Vec<Vector>,
-    /// Changes on the grid: gap, u that does not come from shear, slip ahead but for the shear's part.
+    /// Change of the gap, on the grid, scaled.
     gap: Vec<f64>,
+    /// Change of the displacement u that does not come from shear, on the grid, scaled.
     given: [Vec<f64>; 2],
+    /// Change of the slip ahead of the cells at an unchanged shear, without what the leading edge adds, on the grid, `m/s`.
     free_slip: [Vec<f64>; 2],
-    /// Changes of the cells.
+    /// Change of Coulomb's bound of the cells under pressure, scaled.
     bound_change: Vec<f64>,
+    /// Change of the slip per shear that the leading edge adds to the cells under pressure, `m/s`.
     edge_change: Vec<Vector>,
-    expansion: expansion::Scratch,
+    expansion: expansion::ExpansionBuffers,
     nothing: Vec<f64>,
-    /// Where friction depends on slip: its law, that of the cells under pressure, the change of μ of all cells at unchanged slip.
+    /// Law of friction along a path; none where friction does not depend on slip.
     path_law: Option<PathLaw>,
+    /// Friction law of the cells under pressure where friction depends on slip.
     path: PathScratch,
+    /// Change of μ of all cells at unchanged slip.
     friction_change: Vec<f64>,
     /// Heat march, change of the wear rate, surface exchange at the solution and its change.
     pub(super) heat: StripHeatScratch,
@@ -66,7 +72,7 @@ pub struct PatchTangent {
 }
 
 impl PatchTangent {
-    /// For a rail.
+    /// Solvers and buffers for the given operators.
     pub fn new(operators: &PatchOperators, settings: &Settings) -> PatchTangent {
         let (grid, transform) = (&operators.grid, &operators.transform);
         let on_grid = || vec![0.0; grid.len()];
@@ -93,7 +99,7 @@ impl PatchTangent {
             free_slip: vectors(),
             bound_change: on_grid(),
             edge_change: vec![[0.0; 2]; grid.len()],
-            expansion: expansion::Scratch::new(grid, transform),
+            expansion: expansion::ExpansionBuffers::new(grid, transform),
             nothing: on_grid(),
             path_law: None,
             path: PathScratch::new(grid.strips * grid.cells),
@@ -111,7 +117,7 @@ impl PatchTangent {
     /// [`crate::error::Error::SingularContactMatrix`].
     pub fn linearise(
         &mut self,
-        problem: &Problem,
+        problem: &PatchProblem,
         interface: &Interface,
         fields: &PatchFields,
         solvers: &PatchSolvers,
@@ -143,20 +149,20 @@ impl PatchTangent {
             }
         }
         for run in self.contact.runs() {
-            for (index, place) in run.own().zip(run.places(grid)) {
+            for (index, place) in run.indices().zip(run.places(grid)) {
                 self.bound[index] = fields.friction[place] * fields.pressure[place];
                 self.edge[index] = [0.0; 2];
             }
             let (index, place) = leading_cell(problem, run);
-            let opening = problem.opening(
+            let ratio = problem.separation_ratio(
                 self.separation[place.wrapping_add_signed(ahead)],
                 fields.pressure[place],
             );
             self.edge[index] = operators
-                .opening
-                .map(|factor| self.weights.strain_speed * factor * opening);
+                .edge_factors
+                .map(|factor| self.weights.strain_speed * factor * ratio);
         }
-        let own = f64::from(self.response.own[0][self.response.origin]);
+        let own = f64::from(self.response.strip_kernels[0][self.response.origin]);
         // At rest without a step before there is the law for the slip ahead, and no response to it.
         self.scheme = if own == 0.0 {
             [1.0, f64::INFINITY, problem.parameters.slip_regularisation]
@@ -178,8 +184,14 @@ impl PatchTangent {
         self.friction.linearise(&law, &fields.shear)
     }
 
-    /// The separation of the cells.
-    fn separate(&mut self, problem: &Problem, interface: &Interface, fields: &PatchFields, solvers: &PatchSolvers) {
+    /// Computes the separation of the cells.
+    fn separate(
+        &mut self,
+        problem: &PatchProblem,
+        interface: &Interface,
+        fields: &PatchFields,
+        solvers: &PatchSolvers,
+    ) {
         let (operators, grid) = (problem.operators, &problem.operators.grid);
         for strip in 0..grid.strips {
             for (cell, place) in grid.row(strip).enumerate() {
@@ -187,20 +199,20 @@ impl PatchTangent {
                 self.gap[place] = operators.gap[place] + interface.gap()[index] - interface.displacement()[index];
             }
         }
-        let data = normal_problem(problem, &self.gap, &solvers.softness, problem.constraint(), 0.0);
+        let data = normal_problem(problem, &self.gap, &solvers.wear_compliance, problem.constraint(), 0.0);
         self.normal
             .separation_of(&data, &self.contact, &fields.pressure, fields.penetration);
         self.separation.copy_from_slice(&self.normal.separation);
     }
 
-    /// The change of tractions, friction coefficient and slip from the given one to that under the given change of the
-    /// interface vector.
+    /// Moves the change of tractions, friction coefficient and slip from the given one, a first guess, to that under the given change
+    /// of the interface vector.
     ///
     /// # Errors
     /// [`crate::error::Error::NormalNotConverged`], [`crate::error::Error::TangentialNotConverged`].
     pub fn tractions(
         &mut self,
-        problem: &Problem,
+        problem: &PatchProblem,
         (interface, fields, solvers): (&Interface, &PatchFields, &PatchSolvers),
         along: &Along,
         tangent: &mut PatchFields,
@@ -214,7 +226,7 @@ impl PatchTangent {
                 let index = strip * grid.cells + cell;
                 self.gap[place] = iterate.gap()[index] - iterate.displacement()[index];
                 let touches = fields.pressure[place] > 0.0;
-                let resting = if touches || self.path_law.is_some() {
+                let static_friction = if touches || self.path_law.is_some() {
                     let changes = [
                         iterate.temperature(index),
                         direction.inputs.ambient_temperature,
@@ -224,8 +236,8 @@ impl PatchTangent {
                 } else {
                     0.0
                 };
-                tangent.memory.now.resting[index] = resting;
-                tangent.friction[place] = if touches { resting } else { 0.0 };
+                tangent.memory.now.static_friction[index] = static_friction;
+                tangent.friction[place] = if touches { static_friction } else { 0.0 };
             }
         }
         let total = direction.inputs.normal_load / problem.unit_force();
@@ -235,11 +247,17 @@ impl PatchTangent {
         };
         let size = [
             largest(&tangent.pressure),
-            largest(&self.gap) / operators.approach.own,
+            largest(&self.gap) / operators.normal_influence.diagonal,
             total.abs() / self.contact.cells() as f64,
         ];
         let size = size.into_iter().fold(LEAST_CHANGE, f64::max);
-        let data = normal_problem(problem, &self.gap, &solvers.softness, constraint, tolerance * size);
+        let data = normal_problem(
+            problem,
+            &self.gap,
+            &solvers.wear_compliance,
+            constraint,
+            tolerance * size,
+        );
         tangent.penetration = self.normal.tangent(&data, &self.contact, &mut tangent.pressure)?;
         self.edges(problem, fields, direction, tangent);
         if let Some(path_law) = &self.path_law {
@@ -248,13 +266,13 @@ impl PatchTangent {
                 path_law,
                 fields,
                 direction.speed,
-                &tangent.memory.now.resting,
+                &tangent.memory.now.static_friction,
                 Some(&tangent.pressure),
                 &mut self.friction_change,
             );
             for run in self.contact.runs() {
-                let own = &self.friction_change[run.strip * grid.cells + run.first..];
-                tangent.friction[run.places(grid)].copy_from_slice(&own[..run.cells]);
+                let first = run.strip * grid.cells + run.first;
+                tangent.friction[run.places(grid)].copy_from_slice(&self.friction_change[first..first + run.cells]);
             }
         }
         for (index, place) in self.contact.places(grid).enumerate() {
@@ -288,25 +306,25 @@ impl PatchTangent {
         Ok(())
     }
 
-    /// The change of the slip that does not count as slip: it follows the response of a cell to its own shear, and the peak pressure.
-    fn noise(&self, problem: &Problem, fields: &PatchFields, direction: &Direction, pressure: &[f64]) -> f64 {
+    /// Change of the slip w that does not count as slip: w follows the response of a cell to its own shear, and the peak pressure.
+    fn noise(&self, problem: &PatchProblem, fields: &PatchFields, direction: &Direction, pressure: &[f64]) -> f64 {
         let [_, noise, _] = self.scheme;
         if !noise.is_finite() {
             return 0.0;
         }
-        let (kernel, origin) = (&problem.operators.own[0], self.response.origin);
+        let (kernel, origin) = (&problem.operators.strip_kernels[0], self.response.origin);
         let weights = problem.slip_weights_tangent(fields, direction.speed);
         let next = kernel[origin.wrapping_add_signed(leading(problem))];
         let own_change = weights.strain * (kernel[origin] - next) + weights.change * kernel[origin];
-        let own = f64::from(self.response.own[0][origin]);
+        let own = f64::from(self.response.strip_kernels[0][origin]);
         let places = self.contact.places(&problem.operators.grid);
         let peak = places.max_by(|a, b| fields.pressure[*a].total_cmp(&fields.pressure[*b]));
         let pressure = peak.map_or(0.0, |place| pressure[place] / fields.pressure[place]);
         noise * (own_change / own + pressure)
     }
 
-    /// The change of what the leading edge adds.
-    fn edges(&mut self, problem: &Problem, fields: &PatchFields, direction: &Direction, tangent: &PatchFields) {
+    /// Computes the change of the slip per shear that the leading edge adds.
+    fn edges(&mut self, problem: &PatchProblem, fields: &PatchFields, direction: &Direction, tangent: &PatchFields) {
         let ahead = leading(problem);
         let strain_speed = problem.slip_weights_tangent(fields, direction.speed).strain_speed;
         self.edge_change[..self.contact.cells()].fill([0.0; 2]);
@@ -314,17 +332,18 @@ impl PatchTangent {
             let (index, place) = leading_cell(problem, run);
             let next = place.wrapping_add_signed(ahead);
             let (gap, pressure) = (self.separation[next], fields.pressure[place]);
-            let changes = (self.normal.separation[next], tangent.pressure[place]);
-            let change = strain_speed * problem.opening(gap, pressure)
-                + self.weights.strain_speed * problem.opening_tangent((gap, pressure), changes);
-            self.edge_change[index] = problem.operators.opening.map(|factor| factor * change);
+            let (gap_change, pressure_change) = (self.normal.separation[next], tangent.pressure[place]);
+            let change = strain_speed * problem.separation_ratio(gap, pressure)
+                + self.weights.strain_speed
+                    * problem.separation_ratio_tangent(gap, pressure, gap_change, pressure_change);
+            self.edge_change[index] = problem.operators.edge_factors.map(|factor| factor * change);
         }
     }
 
-    /// The change of the slip ahead of the cells at an unchanged shear, but for the leading edge.
+    /// Computes the change of the slip ahead of the cells at an unchanged shear, but for the leading edge.
     fn free_slip(
         &mut self,
-        problem: &Problem,
+        problem: &PatchProblem,
         (fields, solvers): (&PatchFields, &PatchSolvers),
         along: &Along,
         pressure: &[f64],
@@ -367,12 +386,12 @@ impl PatchTangent {
         }
     }
 
-    /// The change of the slip at the centres of the cells.
-    fn mean_slip(&self, problem: &Problem, fields: &PatchFields, tangent: &mut PatchFields) {
+    /// Computes the change of the slip at the centres of the cells.
+    fn mean_slip(&self, problem: &PatchProblem, fields: &PatchFields, tangent: &mut PatchFields) {
         let grid = &problem.operators.grid;
         let behind = -leading(problem);
         for run in self.contact.runs() {
-            for (index, place) in run.own().zip(run.places(grid)) {
+            for (index, place) in run.indices().zip(run.places(grid)) {
                 let last = place.wrapping_add_signed(behind);
                 let (ahead, last_response) = (self.friction.response_at(place), self.friction.response_at(last));
                 for component in 0..2 {
@@ -388,29 +407,29 @@ impl PatchTangent {
 }
 
 /// 1 where the leading side is that of +x, −1 else.
-fn leading(problem: &Problem) -> isize {
+fn leading(problem: &PatchProblem) -> isize {
     if problem.is_forward() { 1 } else { -1 }
 }
 
 /// The leading cell of a run among all cells, and its place.
-fn leading_cell(problem: &Problem, run: &crate::mechanics::patch::contact::Run) -> (usize, usize) {
+fn leading_cell(problem: &PatchProblem, run: &crate::mechanics::patch::contact::CellRun) -> (usize, usize) {
     let last = if problem.is_forward() { run.cells - 1 } else { 0 };
     (run.offset + last, run.places(&problem.operators.grid).start + last)
 }
 
 fn normal_problem<'a>(
-    problem: &Problem<'a>,
+    problem: &PatchProblem<'a>,
     gap: &'a [f64],
-    softness: &'a [f64],
+    wear_compliance: &'a [f64],
     constraint: Constraint,
     tolerance: f64,
-) -> NormalProblem<'a> {
-    NormalProblem {
+) -> PatchNormalProblem<'a> {
+    PatchNormalProblem {
         grid: &problem.operators.grid,
         transform: &problem.operators.transform,
-        approach: &problem.operators.approach,
+        normal_influence: &problem.operators.normal_influence,
         gap,
-        softness,
+        wear_compliance,
         constraint,
         tolerance,
     }
@@ -425,7 +444,7 @@ fn path_of_cells(law: Option<PathLaw>, scratch: &PathScratch) -> Option<PathOfCe
 }
 
 fn friction_problem<'a>(
-    problem: &Problem<'a>,
+    problem: &PatchProblem<'a>,
     (contact, response, [scale, noise, regularisation]): (&'a Contact, &'a SlipResponse, [f64; 3]),
     (edge, bound, path): (&'a [Vector], &'a [f64], Option<PathOfCells<'a>>),
     slip: &'a [Vec<f64>; 2],

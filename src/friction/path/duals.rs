@@ -8,14 +8,14 @@ use super::*;
 use num_dual::{Dual64, DualNum};
 use proptest::prelude::*;
 
-/// Step of a rail through the window, with all that the law depends on, in dual numbers.
+/// Path of a rail, and what is done to it on the way, in dual numbers.
 struct March {
     /// |V|, `m/s`.
     speed: Dual64,
     forward: bool,
     duration: f64,
     /// M = μ(θ) of each node.
-    resting: Vec<Dual64>,
+    static_friction: Vec<Dual64>,
     /// s of each node, `m/s`, 0 outside the contact.
     slip: Vec<Dual64>,
     /// p of each node, scaled.
@@ -58,20 +58,20 @@ impl March {
         }
         let mut found = vec![none; NODES];
         // μ of the surfaces, s and u_pl of the node upstream.
-        let (mut friction, mut slip, mut flow) = (self.resting[order[0]], none, none);
+        let (mut friction, mut slip, mut flow) = (self.static_friction[order[0]], none, none);
         for pair in order.windows(2) {
             let [upstream, node] = [pair[0], pair[1]];
             let start = |values: &[f64]| [values[upstream], values[node]];
             let (arrived, time) = self.brought(friction, start(&before.friction));
             if !TOUCHES[node] {
-                let steady = self.resting[node];
+                let steady = self.static_friction[node];
                 friction = steady + (arrived - steady) * (-time * least / distance).exp();
                 (slip, flow) = (none, none);
                 continue;
             }
             let effective = self.slip[node] * own + self.brought(slip, start(&before.speed)).0 * (1.0 - own);
             let falling = (-effective * parameters.friction_slip_decay).exp() * (1.0 - share) + share;
-            let steady = self.resting[node] * falling;
+            let steady = self.static_friction[node] * falling;
             let way = larger(effective, Dual64::from(least)) * time;
             friction = steady + (arrived - steady) * (-way / distance).exp();
             slip = self.slip[node];
@@ -90,8 +90,8 @@ impl March {
 }
 
 proptest! {
-    /// Checks changes of |V|, slip, μ(θ) and pressure of all nodes at once, over parts of a cell and over many, along and against x₁, at any d_c, with a
-    /// layer that flows and without.
+    /// Changes of |V|, slip, μ(θ) and pressure of all nodes at once, over parts of a cell and over many, along and against x₁, at any d_c,
+    /// with a layer that flows and without.
     #[test]
     fn the_tangent_is_the_derivative_of_the_equations(
         cells in prop_oneof![0.05..0.9_f64, 1.1..20.0_f64, Just(f64::INFINITY)],
@@ -116,14 +116,14 @@ proptest! {
             speed: Dual64::new(speed, speed_change),
             forward,
             duration,
-            resting: (0..NODES).map(|i| Dual64::new(resting()[i], change[i])).collect(),
+            static_friction: (0..NODES).map(|i| Dual64::new(static_friction()[i], change[i])).collect(),
             slip: dual(&speeds(), &slips),
             pressure: dual(&pressure(), &pressures),
         };
         let expected = march.coefficients(&parameters, &brought);
 
         let law = PathLaw::new(&parameters, &step(duration, if forward { speed } else { -speed })).unwrap();
-        let (coefficient, now) = solve(&law, &resting(), &speeds(), &pressure());
+        let (coefficient, now) = solve(&law, &static_friction(), &speeds(), &pressure());
         let mut tangent = vec![0.0; NODES];
         law.tangent(
             (&brought.path(0..NODES), &now.path(0..NODES)),
@@ -134,7 +134,7 @@ proptest! {
         // The part of the slip and the rest of the pressure's, in the order of the particles.
         let (mut last, mut last_change) = (Passed::default(), Passed::default());
         let (path, mut by_slip) = (brought.path(0..NODES), vec![0.0; NODES]);
-        law.prepare(&path, &resting(), |node| TOUCHES[node], |node, own| {
+        law.prepare(&path, &static_friction(), |node| TOUCHES[node], |node, own| {
             let found = law.friction(&own, &last, now.speed[node], pressure()[node]);
             let pressed = (1.0 - part) * pressures[node];
             let (linked, passed) = found.change(&last_change, slips[node], pressed);

@@ -44,7 +44,7 @@ pub fn before() -> Brought {
                 0.0
             }
         }),
-        resting: values(|i| 0.35 + 0.04 * (0.9 * i as f64).cos()),
+        static_friction: values(|i| 0.35 + 0.04 * (0.9 * i as f64).cos()),
         flow: values(|i| {
             if TOUCHES[i] {
                 1e-6 + 5e-7 * (1.3 * i as f64).sin()
@@ -76,20 +76,20 @@ pub fn pressure() -> Vec<f64> {
 
 /// Solution at these μ(θ), slip velocities and pressures, from the law of the nodes in contact and then the others:
 /// their coefficients, and the history that they leave.
-pub fn solve(law: &PathLaw, resting: &[f64], speed: &[f64], pressure: &[f64]) -> (Vec<f64>, Brought) {
+pub fn solve(law: &PathLaw, static_friction: &[f64], speed: &[f64], pressure: &[f64]) -> (Vec<f64>, Brought) {
     let brought = before();
     let path = brought.path(0..NODES);
     let mut coefficient = vec![0.0; NODES];
     let mut now = Brought {
         friction: vec![0.0; NODES],
         speed: speed.to_vec(),
-        resting: resting.to_vec(),
+        static_friction: static_friction.to_vec(),
         flow: vec![0.0; NODES],
     };
     let mut last = Passed::default();
     law.prepare(
         &path,
-        resting,
+        static_friction,
         |node| TOUCHES[node],
         |node, own| {
             let found = law.friction(&own, &last, speed[node], pressure[node]);
@@ -98,7 +98,7 @@ pub fn solve(law: &PathLaw, resting: &[f64], speed: &[f64], pressure: &[f64]) ->
             (now.friction[node], now.flow[node]) = (last.friction, last.flow);
         },
     );
-    law.close(&path, resting, |node| TOUCHES[node], &mut now.friction);
+    law.finalise(&path, static_friction, |node| TOUCHES[node], &mut now.friction);
     (coefficient, now)
 }
 
@@ -111,7 +111,7 @@ pub fn speeds() -> Vec<f64> {
     })
 }
 
-pub fn resting() -> Vec<f64> {
+pub fn static_friction() -> Vec<f64> {
     values(|i| 0.4 - 0.01 * i as f64)
 }
 
@@ -122,11 +122,11 @@ fn the_share_is_that_of_the_temperature() {
         let law = PathLaw::new(&parameters(distance), &step(1e-4, 10.0)).unwrap();
         let brought = before();
         let of = |more: f64| {
-            let resting = values(|i| resting()[i] + if i == 8 { more } else { 0.0 });
+            let static_friction = values(|i| static_friction()[i] + if i == 8 { more } else { 0.0 });
             let mut found = NodeFriction::default();
             law.prepare(
                 &brought.path(0..NODES),
-                &resting,
+                &static_friction,
                 |node| TOUCHES[node],
                 |node, own| {
                     if node == 8 {
@@ -155,11 +155,11 @@ fn the_share_is_that_of_the_temperature() {
 #[test]
 fn the_limits_of_the_memory_are_the_steady_law_and_none_of_it() {
     let speeds = values(|i| if TOUCHES[i] { 0.5 } else { 0.0 });
-    let resting = vec![0.4; NODES];
+    let static_friction = vec![0.4; NODES];
     let steady = 0.4 * SlipLaw::new(&parameters(0.0)).factor(0.5).0;
     for (distance, expected) in [(0.0, steady), (1e-9, steady), (1e-2, 0.4)] {
         let law = PathLaw::new(&parameters(distance), &step(f64::INFINITY, 10.0)).unwrap();
-        let (friction, _) = solve(&law, &resting, &speeds, &pressure());
+        let (friction, _) = solve(&law, &static_friction, &speeds, &pressure());
         // The first node of a coarse mesh has entered without slip.
         for node in [1, 2, 6, 7, 8] {
             assert!(
@@ -194,7 +194,7 @@ fn at_standstill_each_node_relaxes_in_time() {
         let mut brought = Brought {
             friction: vec![0.4; NODES],
             speed: vec![slides; NODES],
-            resting: vec![0.4; NODES],
+            static_friction: vec![0.4; NODES],
             flow: vec![0.0; NODES],
         };
         for _ in 0..steps {
@@ -226,8 +226,8 @@ fn a_layer_hardens_along_the_path_up_to_the_bound_of_the_surfaces() {
     for (duration, sign) in [(f64::INFINITY, 1.0), (f64::INFINITY, -1.0)] {
         let law = PathLaw::new(&parameters, &step(duration, sign * speed)).unwrap();
         assert!(law.remembers());
-        let resting = [coefficient; NODES];
-        let (found, now) = solve(&law, &resting, &[slides; NODES], &[pressure; NODES]);
+        let static_friction = [coefficient; NODES];
+        let (found, now) = solve(&law, &static_friction, &[slides; NODES], &[pressure; NODES]);
         let mut flow = 0.0;
         for node in law.order(NODES) {
             if !TOUCHES[node] {
@@ -255,7 +255,7 @@ fn at_standstill_a_layer_flows_in_time() {
         let mut brought = Brought {
             friction: vec![0.4; NODES],
             speed: vec![0.0; NODES],
-            resting: vec![0.4; NODES],
+            static_friction: vec![0.4; NODES],
             flow: vec![0.0; NODES],
         };
         for _ in 0..steps {

@@ -14,7 +14,7 @@
 //!
 //! 1. [`StripHeatMarch::start`]: the rail ahead; θ⁰ and Θ⁰ of the cells.
 //! 2. [`StripHeatMarch::heat`], as often as the exchange changes: flux, surface temperature and heat content of the cells.
-//! 3. [`StripHeatMarch::finish`]: the modes under that flux, and the rail behind.
+//! 3. [`StripHeatMarch::finalise`]: the modes under that flux, and the rail behind.
 //!
 //! Each has its tangent; a direction in which neither |V| nor the incoming temperature changes has no modes to march in the first.
 //! What strips have in common with the rail ahead and behind is in [`crate::transport::strips`].
@@ -185,7 +185,7 @@ impl StripHeatMarch<'_> {
     ///
     /// # Errors
     /// Never: a column without heat flux has no equation to iterate on.
-    pub fn finish(
+    pub fn finalise(
         &self,
         before: &StripTemperature,
         breadth: f64,

@@ -90,8 +90,8 @@ impl StripHeatMarch<'_> {
         })
     }
 
-    /// The change of [`StripHeatMarch::finish`].
-    pub fn finish_tangent(
+    /// The change of [`StripHeatMarch::finalise`].
+    pub fn finalise_tangent(
         &self,
         solution: &StripTemperature,
         change: &CarriageChange,

@@ -114,7 +114,7 @@ fn step(
     let mut after = before.clone();
     march.start(before, rise, &mut after, scratch).unwrap();
     march.heat(exchange, &mut after, scratch).unwrap();
-    march.finish(before, breadth, &mut after, scratch).unwrap();
+    march.finalise(before, breadth, &mut after, scratch).unwrap();
     after
 }
 
@@ -157,7 +157,7 @@ proptest! {
             other.reverse();
             march.heat(&other, &mut after, &mut scratch).unwrap();
             march.heat(&exchange, &mut after, &mut scratch).unwrap();
-            march.finish(&before, 5e-3, &mut after, &mut scratch).unwrap();
+            march.finalise(&before, 5e-3, &mut after, &mut scratch).unwrap();
             for strip in 0..=STRIPS {
                 let (ahead, _) = strips.ends(speed);
                 let mut line = vec![0.0; rail.mesh.columns() * m];

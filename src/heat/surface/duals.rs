@@ -21,10 +21,10 @@ struct Column {
     response: f64,
     ambient: Dual64,
     scale: Dual64,
-    /// μ of the point is `base` + `share` μ(θ), but no more than the layer's, `cap`, where there is one.
+    /// μ of the point is `base` + `share` μ(θ), but no more than the layer's, `layer_bound`, where there is one.
     base: Dual64,
     share: f64,
-    cap: Dual64,
+    layer_bound: Dual64,
 }
 
 impl Column {
@@ -32,8 +32,8 @@ impl Column {
     fn flux(&self, parameters: &Parameters, rise: Dual64) -> Dual64 {
         let of_temperature = coefficient_at(parameters, self.ambient + rise) * self.scale;
         let surfaces = self.base + of_temperature * self.share;
-        let mu = if self.cap.re > 0.0 {
-            lesser(surfaces, self.cap)
+        let mu = if self.layer_bound.re > 0.0 {
+            lesser(surfaces, self.layer_bound)
         } else {
             surfaces
         };
@@ -56,7 +56,7 @@ impl Column {
             ambient: self.ambient.re.into(),
             scale: self.scale.re.into(),
             base: self.base.re.into(),
-            cap: self.cap.re.into(),
+            layer_bound: self.layer_bound.re.into(),
             ..*self
         };
         let slope = 1.0 - fixed.flux(parameters, Dual64::new(rise, 1.0)).eps * self.response;
@@ -74,7 +74,7 @@ proptest! {
         unheated in 20.0..500.0,
         changes in prop::array::uniform8(-1.0..1.0_f64),
         law in prop::sample::select(FrictionLaw::ALL),
-        cap in prop_oneof![Just(0.0), 0.05..0.5_f64],
+        layer_bound in prop_oneof![Just(0.0), 0.05..0.5_f64],
     ) {
         let parameters = Parameters {
             contact_thermal_resistance: 100.0,
@@ -92,7 +92,7 @@ proptest! {
         };
         let condition = condition(&parameters);
         let mut exchange = SurfaceExchange::new(&parameters, pressure, sliding, wheel_rise);
-        exchange.law = PointLaw { base: 0.05, share: 0.8, cap };
+        exchange.law = PointLaw { base: 0.05, share: 0.8, layer_bound };
         let flux = condition.flux(&exchange, SurfaceRise { unheated, response }, f64::INFINITY, 0.0).unwrap();
         let rise = unheated + response * flux;
         let column = Column {
@@ -107,7 +107,7 @@ proptest! {
             base: Dual64::new(0.05, coefficient),
             share: 0.8,
             // dμ at an unchanged temperature, whatever bounds the friction.
-            cap: Dual64::new(cap, coefficient),
+            layer_bound: Dual64::new(layer_bound, coefficient),
         };
         let expected = column.solved(&parameters, rise);
         let tangent = SurfaceExchange::tangent(&parameters, pressure, sliding, wheel_rise, &change);

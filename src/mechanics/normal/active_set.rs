@@ -1,6 +1,6 @@
 //! The active-set methods for the normal problem.
 
-use super::problem::{Constraint, NormalProblem, NormalSolution};
+use super::normal_problem::{Constraint, NormalProblem, NormalSolution};
 use crate::error::{Error, Result};
 use crate::numerics::dense;
 use crate::settings::NormalSettings;

@@ -7,13 +7,13 @@
 //! Two methods solve it, which must agree to 1e-8: [`active_set`], the default, and [`pschenichnyj`], the paper's.
 
 pub mod active_set;
-pub mod problem;
+pub mod normal_problem;
 pub mod pschenichnyj;
 
 #[cfg(test)]
 mod tests {
     use super::active_set::ActiveSet;
-    use super::problem::{Constraint, NormalProblem, NormalSolution};
+    use super::normal_problem::{Constraint, NormalProblem, NormalSolution};
     use super::pschenichnyj::Pschenichnyj;
     use crate::settings::NormalSettings;
     use nalgebra::DMatrix;

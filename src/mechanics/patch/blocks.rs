@@ -4,12 +4,12 @@
 //! which is as much as a preconditioner is good for, and twice as fast.
 
 use super::contact::Contact;
-use super::law::Row;
+use super::law::CellLawRow;
 use crate::numerics::single;
 
-/// The strip's own response of the slip: along and across, by the lag along x; the lag 0 is at `origin`.
+/// Response of the slip of a strip to its own shear: along and across, by the lag along x; the lag 0 is at `origin`.
 #[derive(Debug, Clone, Copy)]
-pub struct OwnResponse<'a> {
+pub struct StripResponse<'a> {
     /// Slip along x per shear along x.
     pub along: &'a [f32],
     /// Slip along y per shear along y.
@@ -20,18 +20,18 @@ pub struct OwnResponse<'a> {
     pub behind: isize,
 }
 
-/// The factorised blocks.
+/// Factorised blocks of the strips.
 #[derive(Debug, Clone)]
 pub struct Blocks {
     factors: Vec<f32>,
     pivots: Vec<usize>,
-    /// Of each run: its unknowns among all, its factors.
+    /// Places of each run: of its unknowns among all, of its factors.
     places: Vec<(usize, usize, usize)>,
     values: Vec<f32>,
 }
 
 impl Blocks {
-    /// For strips of up to `cells` cells, `total` cells in all.
+    /// Blocks for strips of up to `cells` cells, `total` cells in all.
     pub fn new(cells: usize, total: usize) -> Blocks {
         Blocks {
             factors: vec![0.0; 4 * cells * total],
@@ -43,16 +43,23 @@ impl Blocks {
 
     /// Factorises the law's rows. `edge` is what the leading edge adds to the slip of a cell per its own shear, along x and y. False
     /// where a block is singular.
-    /// What μ of a cell takes from the slip of the cells before it is left out: the iterations that it would save take less time than it.
-    pub fn factorise(&mut self, contact: &Contact, rows: &[Row], edge: &[[f64; 2]], response: &OwnResponse) -> bool {
+    /// The dependence of a cell's μ on the slip of the cells before it is left out: it would take more time than the iterations that it
+    /// would save.
+    pub fn factorise(
+        &mut self,
+        contact: &Contact,
+        rows: &[CellLawRow],
+        edge: &[[f64; 2]],
+        response: &StripResponse,
+    ) -> bool {
         self.places.clear();
         let mut start = 0;
         for run in contact.runs() {
             let n = run.cells;
             let size = 2 * n;
-            let rows = &rows[run.own()];
+            let rows = &rows[run.indices()];
             let block = &mut self.factors[start..start + size * size];
-            for (column, edge) in (0..n).zip(&edge[run.own()]) {
+            for (column, edge) in (0..n).zip(&edge[run.indices()]) {
                 for component in 0..2 {
                     let table = [response.along, response.across][component];
                     let entries = &mut block[(component * n + column) * size..][..size];
@@ -123,7 +130,7 @@ mod tests {
     }
 
     /// Rows without any structure.
-    fn rows(cells: usize) -> Vec<Row> {
+    fn rows(cells: usize) -> Vec<CellLawRow> {
         let wave = |i: usize, k: usize| (1.3 * i as f64 + 2.1 * k as f64).sin();
         let matrix = |i: usize, k: usize, unit: f64| {
             [
@@ -132,17 +139,17 @@ mod tests {
             ]
         };
         (0..cells)
-            .map(|i| Row {
+            .map(|i| CellLawRow {
                 by_shear: matrix(i, 0, 0.7),
                 by_ahead: matrix(i, 4, 1.0),
                 by_behind: matrix(i, 8, -0.2),
-                ..Row::default()
+                ..CellLawRow::default()
             })
             .collect()
     }
 
     /// by_shear + by_ahead (T + edge) + by_behind T′ of one run, T′ that of the cells behind: x components first.
-    fn dense(rows: &[Row], edge: &[[f64; 2]], behind: isize) -> DMatrix<f64> {
+    fn dense(rows: &[CellLawRow], edge: &[[f64; 2]], behind: isize) -> DMatrix<f64> {
         let n = rows.len();
         DMatrix::from_fn(2 * n, 2 * n, |line, column| {
             let ((i, line), (j, component)) = ((line % n, line / n), (column % n, column / n));
@@ -170,7 +177,7 @@ mod tests {
         let (along, across) = (table(0), table(1));
         let right: Vec<f32> = (0..2 * n).map(|i| (0.9 * i as f64).cos() as f32).collect();
         for behind in [-1, 1] {
-            let response = OwnResponse {
+            let response = StripResponse {
                 along: &along,
                 across: &across,
                 origin,
@@ -181,8 +188,8 @@ mod tests {
             let mut solved = right.clone();
             blocks.solve(&mut solved);
             for run in contact.runs() {
-                let own = || run.own().chain(run.own().map(|cell| n + cell));
-                let matrix = dense(&rows[run.own()], &edge[run.own()], behind);
+                let own = || run.indices().chain(run.indices().map(|cell| n + cell));
+                let matrix = dense(&rows[run.indices()], &edge[run.indices()], behind);
                 let values: Vec<f64> = own().map(|place| f64::from(right[place])).collect();
                 let exact = matrix.lu().solve(&DVector::from_vec(values)).unwrap();
                 for (place, exact) in own().zip(exact.iter()) {
@@ -202,7 +209,7 @@ mod tests {
         let contact = contact();
         let n = contact.cells();
         let zero = vec![0.0; 2 * CELLS + 3];
-        let response = OwnResponse {
+        let response = StripResponse {
             along: &zero,
             across: &zero,
             origin: CELLS + 1,

@@ -6,39 +6,39 @@ use std::ops::Range;
 
 /// Neighbouring cells of one strip, all under pressure.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Run {
-    /// The strip.
+pub struct CellRun {
+    /// Strip of the cells.
     pub strip: usize,
-    /// Its first cell.
+    /// First cell of the run.
     pub first: usize,
     /// Number of cells.
     pub cells: usize,
-    /// Number of cells in the runs before it.
+    /// Number of cells in the runs before this one.
     pub offset: usize,
 }
 
-impl Run {
-    /// Its cells among all cells under pressure.
-    pub fn own(&self) -> Range<usize> {
+impl CellRun {
+    /// Indices of the run's cells among all cells under pressure.
+    pub fn indices(&self) -> Range<usize> {
         self.offset..self.offset + self.cells
     }
 
-    /// Its places on the grid.
+    /// Places of the run's cells on the grid.
     pub fn places(&self, grid: &Grid) -> Range<usize> {
         let start = grid.place(self.strip, self.first);
         start..start + self.cells
     }
 }
 
-/// All cells under pressure.
+/// Contact: all cells under pressure.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Contact {
-    runs: Vec<Run>,
+    runs: Vec<CellRun>,
     cells: usize,
 }
 
 impl Contact {
-    /// None, with room for any number on a grid.
+    /// Contact without cells, with room for any number on a grid.
     pub fn new(grid: &Grid) -> Contact {
         Contact {
             runs: Vec::with_capacity(grid.strips * grid.cells.div_ceil(2)),
@@ -56,7 +56,7 @@ impl Contact {
             while cell < grid.cells {
                 let cells = (cell..grid.cells).take_while(|&cell| inside(row.start + cell)).count();
                 if cells > 0 {
-                    self.runs.push(Run {
+                    self.runs.push(CellRun {
                         strip,
                         first: cell,
                         cells,
@@ -69,8 +69,8 @@ impl Contact {
         }
     }
 
-    /// Its runs, strip by strip.
-    pub fn runs(&self) -> &[Run] {
+    /// Runs of the contact, strip by strip.
+    pub fn runs(&self) -> &[CellRun] {
         &self.runs
     }
 
@@ -79,7 +79,7 @@ impl Contact {
         self.cells
     }
 
-    /// The smallest part of the grid that holds them, with `margin` cells more on either side to be read.
+    /// Smallest part of the grid that holds the cells, with `margin` cells more on either side to be read.
     pub fn window(&self, grid: &Grid, margin: usize) -> Window {
         let strips = self.runs.first().map_or(0, |run| run.strip)..self.runs.last().map_or(0, |run| run.strip + 1);
         let first = self.runs.iter().map(|run| run.first).min().unwrap_or(0);
@@ -94,18 +94,18 @@ impl Contact {
     /// Copies values on the grid to the cells.
     pub fn gather<T: Copy>(&self, grid: &Grid, values: &[T], out: &mut [T]) {
         for run in &self.runs {
-            out[run.own()].copy_from_slice(&values[run.places(grid)]);
+            out[run.indices()].copy_from_slice(&values[run.places(grid)]);
         }
     }
 
     /// Copies values of the cells to the grid. Other places stay.
     pub fn scatter<T: Copy>(&self, grid: &Grid, values: &[T], out: &mut [T]) {
         for run in &self.runs {
-            out[run.places(grid)].copy_from_slice(&values[run.own()]);
+            out[run.places(grid)].copy_from_slice(&values[run.indices()]);
         }
     }
 
-    /// The places of the cells on the grid, in their order.
+    /// Places of the cells on the grid, in their order.
     pub fn places<'a>(&'a self, grid: &'a Grid) -> impl Iterator<Item = usize> + 'a {
         self.runs.iter().flat_map(|run| run.places(grid))
     }

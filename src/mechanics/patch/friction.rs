@@ -11,9 +11,9 @@ mod tangent;
 pub use on_path::PathOfCells;
 pub use tangent::{FrictionChange, LEAST_CHANGE};
 
-use super::blocks::{Blocks, OwnResponse};
+use super::blocks::{Blocks, StripResponse};
 use super::contact::{Contact, work_of_product};
-use super::law::{Cell, Row, Scheme, Vector};
+use super::law::{Cell, CellLawRow, Scheme, Vector};
 use crate::body::grid::Grid;
 use crate::body::influence::{self, Tables, Transform, Window};
 use crate::error::{Error, Result};
@@ -22,22 +22,22 @@ use crate::numerics::gmres::Gmres;
 use crate::settings::PatchSettings;
 use on_path::OnPath;
 
-/// How the slip responds to the shear: of the cells ahead.
+/// Response of the slip ahead of the cells to the shear.
 #[derive(Debug, Clone)]
 pub struct SlipResponse {
-    /// In double and single precision.
+    /// Tables of the response in double precision.
     pub double: Tables<f64>,
-    /// In single precision.
+    /// Tables of the response in single precision.
     pub single: Tables<f32>,
-    /// Of a strip to itself, along x and across.
-    pub own: [Vec<f32>; 2],
-    /// Place of lag 0 in them.
+    /// Response of a strip to its own shear, along x and across, by the lag along x.
+    pub strip_kernels: [Vec<f32>; 2],
+    /// Place of lag 0 in the response of a strip.
     pub origin: usize,
     /// Whether the leading side is that of +x.
     pub forward: bool,
 }
 
-/// The data of one problem.
+/// Data of one friction problem.
 #[derive(Clone, Copy)]
 pub struct FrictionProblem<'a> {
     /// The grid.
@@ -48,13 +48,13 @@ pub struct FrictionProblem<'a> {
     pub contact: &'a Contact,
     /// T, without the leading edge.
     pub response: &'a SlipResponse,
-    /// What the leading edge adds to the slip of a cell per its own shear, along x and y, cells.
+    /// Slip per shear that the leading edge adds to a cell, along x and y, cells.
     pub edge: &'a [Vector],
     /// S₀ on the grid, x and y.
     pub free_slip: [&'a [f64]; 2],
     /// μp, cells.
     pub bound: &'a [f64],
-    /// How μ depends on slip, then in place of the bound; none where it does not.
+    /// Law of μ in place of the bound, where μ depends on slip; none where it does not.
     pub path: Option<PathOfCells<'a>>,
     /// r, shear per slip.
     pub scale: f64,
@@ -66,38 +66,38 @@ pub struct FrictionProblem<'a> {
     pub tolerance: f64,
 }
 
-/// Solver and scratch.
+/// Solver of the friction problem and its buffers.
 pub struct Friction {
     settings: PatchSettings,
     gmres: Gmres,
     blocks: Blocks,
     factorised: bool,
-    /// On the grid: a shear, T of it, T of a correction.
+    /// Shear on the grid that `response` belongs to.
     answered: [Vec<f64>; 2],
     response: [Vec<f64>; 2],
     correction_response: [Vec<f64>; 2],
-    /// A correction on the grid.
+    /// Correction of the shear, on the grid.
     correction: [Vec<f64>; 2],
     load_single: [Vec<f32>; 2],
     response_single: [Vec<f32>; 2],
     scratch: influence::ProductScratch<f64>,
     scratch_single: influence::ProductScratch<f32>,
-    /// Of the cells.
-    rows: Vec<Row>,
+    /// Linearised law of the cells.
+    rows: Vec<CellLawRow>,
     step: Vec<f32>,
-    /// Where μ depends on slip.
+    /// Law of the cells where μ depends on slip.
     on_path: OnPath,
     /// Multiplications and additions in this step.
     work: u64,
 }
 
-/// The sum of a power of the unknowns of each run.
+/// Sum of a power of the unknowns of each run.
 fn work_of_blocks(contact: &Contact, power: u32) -> u64 {
     contact.runs().iter().map(|run| (2 * run.cells as u64).pow(power)).sum()
 }
 
 impl Friction {
-    /// For a grid.
+    /// Solver for a grid.
     pub fn new(grid: &Grid, transform: &Transform, settings: PatchSettings) -> Friction {
         let (cells, total) = (grid.cells, grid.cells * grid.strips);
         let double = || [vec![0.0; grid.len()], vec![0.0; grid.len()]];
@@ -115,7 +115,7 @@ impl Friction {
             response_single: single(),
             scratch: transform.scratch(),
             scratch_single: transform.scratch(),
-            rows: vec![Row::default(); total],
+            rows: vec![CellLawRow::default(); total],
             step: vec![0.0; 2 * total],
             on_path: OnPath::new(total),
             work: 0,
@@ -154,8 +154,8 @@ impl Friction {
             self.remember(shear);
             return Ok(());
         }
-        // From nothing, or after a jump: first with a law that is smooth on the scale of all the slip, then step by step with that
-        // which is asked for.
+        // From nothing, or after a jump: first with a law that is smooth on the scale of all the slip, then step by step with the law
+        // of the problem.
         for component in shear.iter_mut() {
             component.fill(0.0);
         }
@@ -195,14 +195,14 @@ impl Friction {
         Ok(())
     }
 
-    /// The response is that of this shear.
+    /// Notes that `response` is that of this shear.
     fn remember(&mut self, shear: &[Vec<f64>; 2]) {
-        for (own, shear) in self.answered.iter_mut().zip(shear) {
-            own.copy_from_slice(shear);
+        for (answered, shear) in self.answered.iter_mut().zip(shear) {
+            answered.copy_from_slice(shear);
         }
     }
 
-    /// Newton's method. Where it does not reach the tolerance, the iterations and the residual.
+    /// Solves by Newton's method. The error, where it does not reach the tolerance, is the iterations and the residual.
     fn newton(
         &mut self,
         problem: &FrictionProblem,
@@ -295,7 +295,7 @@ impl Friction {
             .fold(0.0, |m: f64, r| r.abs().max(m))
     }
 
-    /// The law of all cells after `length` of the correction. Returns the length of the residual.
+    /// Updates the law of all cells to that after `length` times the correction. Returns the length of the residual.
     fn update_rows(&mut self, problem: &FrictionProblem, scheme: &Scheme, shear: &[Vec<f64>; 2], length: f64) -> f64 {
         self.on_path.start();
         let mut sum = 0.0;
@@ -348,9 +348,9 @@ impl Friction {
 
     fn factorise(&mut self, problem: &FrictionProblem) -> bool {
         let response = problem.response;
-        let own = OwnResponse {
-            along: &response.own[0],
-            across: &response.own[1],
+        let own = StripResponse {
+            along: &response.strip_kernels[0],
+            across: &response.strip_kernels[1],
             origin: response.origin,
             behind: if response.forward { -1 } else { 1 },
         };
@@ -360,7 +360,7 @@ impl Friction {
             .factorise(problem.contact, &self.rows[..n], problem.edge, &own)
     }
 
-    /// The correction of the shear on the grid. Returns the iterations that it took.
+    /// Computes the correction of the shear on the grid. Returns the iterations that it took.
     fn correct(&mut self, problem: &FrictionProblem, window: &Window, needed: f32) -> usize {
         let n = problem.contact.cells();
         for (index, row) in self.rows[..n].iter().enumerate() {
@@ -397,7 +397,7 @@ impl Friction {
             }
             let (out_along, out_across) = out.split_at_mut(n);
             for run in problem.contact.runs() {
-                for (index, place) in run.own().zip(run.places(problem.grid)) {
+                for (index, place) in run.indices().zip(run.places(problem.grid)) {
                     let row = &rows[index];
                     let shear = [f64::from(along[index]), f64::from(across[index])];
                     let next = place.wrapping_add_signed(behind);
@@ -420,7 +420,7 @@ impl Friction {
                     out_along[index] = line(0) as f32;
                     out_across[index] = line(1) as f32;
                     if let Some(path) = &problem.path {
-                        on_path.felt(path, index, (ahead, behind));
+                        on_path.keep_slip_change(path, index, ahead, behind);
                     }
                 }
             }
@@ -445,12 +445,12 @@ impl Friction {
         solved.iterations
     }
 
-    /// μ of the cells of the last solve, where it depends on slip, and the magnitude of the law's slip velocity, `m/s`.
+    /// Coefficients μ of the cells of the last solve, where μ depends on slip, and the magnitude of the law's slip velocity, `m/s`.
     pub fn of_slip(&self) -> (&[NodeFriction], &[f64]) {
         (&self.on_path.friction, &self.on_path.speed)
     }
 
-    /// The slip of the last solve at a cell's place: ahead of it, without what the leading edge adds.
+    /// Response of the slip ahead of a cell, by its place, to the shear of the last solve, without the correction at the leading edge.
     pub fn response_at(&self, place: usize) -> Vector {
         [self.response[0][place], self.response[1][place]]
     }

@@ -1,7 +1,7 @@
 //! Coulomb's law of one cell in two directions, and the scheme in which its slip is taken.
 //!
 //! A cell that sticks has no slip half a cell ahead of its centre, on the line to the next cell: there the difference of the
-//! displacements of the two cells is centred, and a cell's own shear is felt. A cell that slides has its shear against the slip
+//! displacements of the two cells is centred, and a cell's own shear acts on it. A cell that slides has its shear against the slip
 //! at its centre, the mean of that ahead and that behind. Taken ahead as well, it would turn with the spin half a cell too early:
 //! the lateral force is then off by a few per cent of μN. With S ahead, B behind and d = ½(S − B) the slip of the law is
 //!
@@ -14,14 +14,14 @@
 //! (Alart and Curnier 1991): it holds if the cell sticks within the bound, or slides with τ = −μp s/|s|. The regularised law (30) is
 //! written in the same way, with another Π.
 
-use crate::friction::coulomb::{Resisted, STICK_SATURATION};
+use crate::friction::coulomb::{Resisted, STICK_UTILISATION};
 
-/// A vector in the plane of the contact.
+/// Vector in the plane of the contact.
 pub type Vector = [f64; 2];
-/// Its linear map, row by row.
+/// Linear map of a [`Vector`], row by row.
 pub type Matrix = [[f64; 2]; 2];
 
-/// The data of the law of one cell.
+/// Data of the law of one cell.
 #[derive(Debug, Clone, Copy)]
 pub struct Cell {
     /// τ.
@@ -34,7 +34,7 @@ pub struct Cell {
     pub bound: f64,
 }
 
-/// What all cells have in common.
+/// Constants of the law that all cells have in common.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Scheme {
     /// r, shear per slip, `s/m`.
@@ -45,20 +45,20 @@ pub struct Scheme {
     pub regularisation: f64,
 }
 
-/// The residual of the law of one cell and its derivatives.
+/// Residual of the law of one cell and its derivatives.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Row {
+pub struct CellLawRow {
     /// The residual, in units of the shear.
     pub residual: Vector,
-    /// By the shear.
+    /// Derivatives of the residual by the shear.
     pub by_shear: Matrix,
-    /// By S.
+    /// Derivatives of the residual by S.
     pub by_ahead: Matrix,
-    /// By B.
+    /// Derivatives of the residual by B.
     pub by_behind: Matrix,
-    /// By the bound.
+    /// Derivatives of the residual by the bound.
     pub by_bound: Vector,
-    /// By w.
+    /// Derivatives of the residual by w.
     pub by_noise: Vector,
     /// Whether it sticks.
     pub sticks: bool,
@@ -118,8 +118,9 @@ impl Scheme {
         )
     }
 
-    /// The same for a cell to whose slip per shear the leading edge adds. A cell that has just joined answers its own shear a hundredfold: under
-    /// an r that ignores this its residual outweighs all others, and the line search shortens each step of Newton's method.
+    /// Scheme of a cell to whose slip per shear the leading edge adds `edge`. The slip of a cell that has just joined responds a
+    /// hundredfold to its own shear: under an r that ignores this its residual outweighs all others, and the line search shortens each
+    /// step of Newton's method.
     pub fn at_edge(&self, edge: Vector) -> Scheme {
         Scheme {
             scale: self.scale / (1.0 + self.scale * edge[0].max(edge[1])),
@@ -127,15 +128,15 @@ impl Scheme {
         }
     }
 
-    /// The law of a cell.
-    pub fn row(&self, cell: &Cell) -> Row {
+    /// Law of a cell.
+    pub fn row(&self, cell: &Cell) -> CellLawRow {
         let (slip, slip_by_ahead, slip_by_behind, slip_by_noise) = self.slip(cell);
         let (residual, by_shear, by_slip, by_bound, sticks) = if self.regularisation > 0.0 {
             self.regularised(cell, slip)
         } else {
             self.coulomb(cell, slip)
         };
-        Row {
+        CellLawRow {
             residual,
             by_shear,
             by_ahead: product(by_slip, slip_by_ahead),
@@ -146,7 +147,7 @@ impl Scheme {
         }
     }
 
-    /// τ − Π(τ − r s).
+    /// Residual τ − Π(τ − r s) of Coulomb's law.
     fn coulomb(&self, cell: &Cell, slip: Vector) -> (Vector, Matrix, Matrix, Vector, bool) {
         let r = self.scale;
         let pulled = plus(cell.shear, -r, slip);
@@ -173,14 +174,14 @@ impl Scheme {
         )
     }
 
-    /// The same with (30): the shear t and the slip σ against it that together are z = τ − r s, t + r σ = |z| with
+    /// Residual of the regularised law (30): the shear t and the slip σ against it that together are z = τ − r s, t + r σ = |z| with
     /// t = μp (2/π) arctan(σ/ε). For ε → 0 this is Coulomb's law to the limit, as well conditioned for a small ε as for a large one.
     fn regularised(&self, cell: &Cell, slip: Vector) -> (Vector, Matrix, Matrix, Vector, bool) {
         let (r, epsilon) = (self.scale, self.regularisation);
         let pulled = plus(cell.shear, -r, slip);
         let length = dot(pulled, pulled).sqrt();
         let Resisted {
-            saturation,
+            utilisation,
             shear,
             by_length: stays,
             by_bound: by_own_bound,
@@ -201,7 +202,7 @@ impl Scheme {
             shifted(1.0, -1.0, by_pulled),
             shifted(0.0, r, by_pulled),
             by_bound,
-            saturation < STICK_SATURATION,
+            utilisation < STICK_UTILISATION,
         )
     }
 }

@@ -1,7 +1,7 @@
 //! The normal problem of a patch: pressure and penetration for a given gap, under a load or a penetration.
 //!
-//! Minimise ½ pᵀ(A + D)p + gᵀp over p ≥ 0 with Σp given, or over ½ pᵀ(A + D)p + (g − δ)ᵀp: A is the influence of the cells on one
-//! another, D what each pressure opens its own gap by, the wear of the step. On a set of cells under pressure this is a linear system, solved
+//! Minimise ½ pᵀ(A + D)p + gᵀp over p ≥ 0 with Σp given, or ½ pᵀ(A + D)p + (g − δ)ᵀp: A is the normal influence of the cells on one
+//! another, D the wear compliance, by which the wear of the step opens the gap of a cell. On a set of cells under pressure this is a linear system, solved
 //! by conjugate gradients from the pressure of the step before, with the strips' own blocks as preconditioner; then cells that pull
 //! leave the set, cells that overlap join it, until none does.
 
@@ -11,18 +11,18 @@ use super::contact::{Contact, work_of_product};
 use crate::body::grid::Grid;
 use crate::body::influence::{self, Tables, Transform, Window};
 use crate::error::{Error, Result};
-use crate::mechanics::normal::problem::Constraint;
+use crate::mechanics::normal::normal_problem::Constraint;
 use crate::numerics::dense;
 use crate::settings::PatchSettings;
 use nalgebra::DMatrix;
 
-/// What of the influence does not change.
+/// Normal influence of the cells on one another, with the factors of the preconditioner.
 #[derive(Debug, Clone)]
-pub struct Approach {
+pub struct NormalInfluence {
     /// A.
     pub tables: Tables<f64>,
-    /// Influence of a cell on itself.
-    pub own: f64,
+    /// Diagonal of A: influence of a cell on itself.
+    pub diagonal: f64,
     /// Inverse W of the Cholesky factor of a whole strip's own block, column by column and row by row. That of a shorter run is its
     /// upper left part, because the influence depends on the distance only.
     columns: Vec<f64>,
@@ -30,9 +30,9 @@ pub struct Approach {
     cells: usize,
 }
 
-impl Approach {
-    /// Of the influence as a function of the lag.
-    pub fn new(grid: &Grid, transform: &Transform, influence: impl Fn((isize, isize)) -> f64) -> Approach {
+impl NormalInfluence {
+    /// Normal influence from the influence as a function of the lag.
+    pub fn new(grid: &Grid, transform: &Transform, influence: impl Fn((isize, isize)) -> f64) -> NormalInfluence {
         let n = grid.cells;
         let block = DMatrix::from_fn(n, n, |i, j| influence((i as isize - j as isize, 0)));
         let factor = block.cholesky().map(|cholesky| cholesky.unpack());
@@ -40,8 +40,8 @@ impl Approach {
         let inverse = factor
             .and_then(|factor| factor.solve_lower_triangular(&DMatrix::identity(n, n)))
             .unwrap_or_else(|| DMatrix::identity(n, n));
-        Approach {
-            own: influence((0, 0)),
+        NormalInfluence {
+            diagonal: influence((0, 0)),
             tables: transform.scalar_tables(influence),
             rows: inverse.transpose().as_slice().to_vec(),
             columns: inverse.as_slice().to_vec(),
@@ -49,14 +49,14 @@ impl Approach {
         }
     }
 
-    /// The values of the runs times Wᵀ W, run by run, in place: solved with the strips' own blocks. `work` holds those of one.
+    /// Multiplies the values of the runs by Wᵀ W, run by run, in place: solves with the strips' own blocks. `work` has room for one run.
     fn precondition(&self, contact: &Contact, values: &mut [f64], work: &mut [f64]) {
         let cells = self.cells;
         dense::vectorised(
             #[inline(always)]
             |arithmetic| {
                 for run in contact.runs() {
-                    let own = &mut values[run.own()];
+                    let own = &mut values[run.indices()];
                     let n = own.len();
                     let work = &mut work[..n];
                     work.fill(0.0);
@@ -73,37 +73,38 @@ impl Approach {
     }
 }
 
-/// The data of one problem.
+/// Data of one normal problem.
 #[derive(Clone, Copy)]
-pub struct NormalProblem<'a> {
+pub struct PatchNormalProblem<'a> {
     /// The grid.
     pub grid: &'a Grid,
     /// The transform of the tables.
     pub transform: &'a Transform,
     /// A.
-    pub approach: &'a Approach,
+    pub normal_influence: &'a NormalInfluence,
     /// g on the grid.
     pub gap: &'a [f64],
     /// D on the grid.
-    pub softness: &'a [f64],
+    pub wear_compliance: &'a [f64],
     /// Load or penetration.
     pub constraint: Constraint,
     /// Error of the pressure to be reached.
     pub tolerance: f64,
 }
 
-/// Solver and scratch.
+/// Solver of the normal problem and its buffers.
 pub struct Normal {
     settings: PatchSettings,
-    /// On the grid: a pressure and its displacement, a direction of the search and its displacement.
+    /// Pressure on the grid that `displacement` belongs to.
     displaced_by: Vec<f64>,
     displacement: Vec<f64>,
+    /// Direction of the search on the grid, and its displacement.
     direction_grid: Vec<f64>,
     direction_image: Vec<f64>,
     nothing: Vec<f64>,
     ignored: Vec<f64>,
     scratch: influence::ProductScratch<f64>,
-    /// Values of the cells.
+    /// Residual of the cells; values of the cells are the following ones as well.
     residual: Vec<f64>,
     direction: Vec<f64>,
     corrected: Vec<f64>,
@@ -111,7 +112,7 @@ pub struct Normal {
     work: Vec<f64>,
     image: Vec<f64>,
     pressure: Vec<f64>,
-    softness: Vec<f64>,
+    wear_compliance: Vec<f64>,
     /// Separation w of all cells.
     pub separation: Vec<f64>,
     /// Multiplications and additions in this step.
@@ -123,7 +124,7 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
 }
 
 impl Normal {
-    /// For a grid.
+    /// Solver for a grid.
     pub fn new(grid: &Grid, transform: &Transform, settings: PatchSettings) -> Normal {
         let on_grid = || vec![0.0; grid.len()];
         Normal {
@@ -142,7 +143,7 @@ impl Normal {
             work: vec![0.0; grid.cells],
             image: on_grid(),
             pressure: on_grid(),
-            softness: on_grid(),
+            wear_compliance: on_grid(),
             separation: on_grid(),
             work_done: 0,
         }
@@ -164,7 +165,7 @@ impl Normal {
     ///
     /// # Errors
     /// [`Error::NormalNotConverged`].
-    pub fn solve(&mut self, problem: &NormalProblem, contact: &mut Contact, pressure: &mut [f64]) -> Result<f64> {
+    pub fn solve(&mut self, problem: &PatchNormalProblem, contact: &mut Contact, pressure: &mut [f64]) -> Result<f64> {
         let grid = problem.grid;
         start(problem, &self.settings, pressure);
         let mut settled = false;
@@ -202,14 +203,14 @@ impl Normal {
     }
 
     /// The displacement by a pressure, unless it is known.
-    fn displace(&mut self, problem: &NormalProblem, window: &Window, pressure: &[f64]) {
+    fn displace(&mut self, problem: &PatchNormalProblem, window: &Window, pressure: &[f64]) {
         if self.displaced_by == pressure {
             return;
         }
         self.displaced_by.copy_from_slice(pressure);
         self.work_done += work_of_product(problem.transform, window);
         problem.transform.apply(
-            &problem.approach.tables,
+            &problem.normal_influence.tables,
             window,
             [pressure, &self.nothing],
             [&mut self.displacement, &mut self.ignored],
@@ -218,19 +219,19 @@ impl Normal {
     }
 
     /// The separation of all cells.
-    fn separate(&mut self, problem: &NormalProblem, contact: &Contact, pressure: &[f64], penetration: f64) {
+    fn separate(&mut self, problem: &PatchNormalProblem, contact: &Contact, pressure: &[f64], penetration: f64) {
         self.displace(problem, &whole(problem.grid, contact), pressure);
-        let cells = pressure.iter().zip(problem.softness).zip(problem.gap);
+        let cells = pressure.iter().zip(problem.wear_compliance).zip(problem.gap);
         let separations = self.separation.iter_mut().zip(&self.displacement);
-        for ((separation, displacement), ((pressure, softness), gap)) in separations.zip(cells) {
-            *separation = displacement + softness * pressure + gap - penetration;
+        for ((separation, displacement), ((pressure, wear_compliance), gap)) in separations.zip(cells) {
+            *separation = displacement + wear_compliance * pressure + gap - penetration;
         }
     }
 
     /// Conjugate gradients on a set of cells. Returns penetration and the error of the pressure that is left.
     fn solve_on(
         &mut self,
-        problem: &NormalProblem,
+        problem: &PatchNormalProblem,
         contact: &Contact,
         pressure: &mut [f64],
         tolerance: f64,
@@ -241,7 +242,7 @@ impl Normal {
         let work = work_of_product(problem.transform, &window) + preconditioner as u64;
         self.displace(problem, &window, pressure);
         contact.gather(grid, pressure, &mut self.pressure);
-        contact.gather(grid, problem.softness, &mut self.softness);
+        contact.gather(grid, problem.wear_compliance, &mut self.wear_compliance);
         contact.gather(grid, problem.gap, &mut self.residual);
         contact.gather(grid, &self.displacement, &mut self.image);
         let given = match problem.constraint {
@@ -249,18 +250,20 @@ impl Normal {
             Constraint::Penetration(penetration) => penetration,
         };
         for i in 0..n {
-            self.residual[i] = given - self.residual[i] - self.image[i] - self.softness[i] * self.pressure[i];
+            self.residual[i] = given - self.residual[i] - self.image[i] - self.wear_compliance[i] * self.pressure[i];
         }
         let load_given = matches!(problem.constraint, Constraint::Total(_));
         self.ones[..n].fill(1.0);
-        problem.approach.precondition(contact, &mut self.ones, &mut self.work);
+        problem
+            .normal_influence
+            .precondition(contact, &mut self.ones, &mut self.work);
         let weight: f64 = self.ones[..n].iter().sum();
         let (mut last, mut level) = (0.0, 0.0);
         let mut error = 0.0;
         for iteration in 0..self.settings.normal_iterations {
             self.corrected[..n].copy_from_slice(&self.residual[..n]);
             problem
-                .approach
+                .normal_influence
                 .precondition(contact, &mut self.corrected, &mut self.work);
             if load_given && n > 0 {
                 // The penetration takes what all cells have in common off the residual: kept in it, its round-off would grow into
@@ -273,7 +276,7 @@ impl Normal {
                     *residual -= common;
                 }
             }
-            error = self.residual[..n].iter().fold(0.0, |m: f64, r| r.abs().max(m)) / problem.approach.own;
+            error = self.residual[..n].iter().fold(0.0, |m: f64, r| r.abs().max(m)) / problem.normal_influence.diagonal;
             if error <= tolerance {
                 break;
             }
@@ -288,7 +291,7 @@ impl Normal {
             self.work_done += work;
             // Of all cells: what lies beside the contact must be known to see whether it overlaps.
             problem.transform.apply(
-                &problem.approach.tables,
+                &problem.normal_influence.tables,
                 &window,
                 [&self.direction_grid, &self.nothing],
                 [&mut self.direction_image, &mut self.ignored],
@@ -296,7 +299,7 @@ impl Normal {
             );
             contact.gather(grid, &self.direction_image, &mut self.image);
             for i in 0..n {
-                self.image[i] += self.softness[i] * self.direction[i];
+                self.image[i] += self.wear_compliance[i] * self.direction[i];
             }
             let curvature = dot(&self.direction[..n], &self.image[..n]);
             if curvature.is_nan() || curvature <= 0.0 {
@@ -316,7 +319,7 @@ impl Normal {
 
     /// Cells that pull leave, cells that overlap join with a trace of pressure; in the order of `one_at_a_time` only the worst.
     /// Whether any did.
-    fn exchange(&self, problem: &NormalProblem, pressure: &mut [f64], one_at_a_time: bool) -> bool {
+    fn exchange(&self, problem: &PatchNormalProblem, pressure: &mut [f64], one_at_a_time: bool) -> bool {
         let grid = problem.grid;
         let trace = self.settings.trace * pressure.iter().fold(0.0, |m: f64, p| p.max(m));
         let mut worst = (0.0, None);
@@ -332,7 +335,7 @@ impl Normal {
             let violation = if leaves {
                 -pressure[place]
             } else {
-                -self.separation[place] / problem.approach.own
+                -self.separation[place] / problem.normal_influence.diagonal
             };
             if violation > worst.0 {
                 worst = (violation, Some((place, joins)));
@@ -357,7 +360,7 @@ fn whole(grid: &Grid, contact: &Contact) -> Window {
 }
 
 /// A start from the cells that overlap, where there is no pressure to start from: the deepest one and those that come close to it.
-fn start(problem: &NormalProblem, settings: &PatchSettings, pressure: &mut [f64]) {
+fn start(problem: &PatchNormalProblem, settings: &PatchSettings, pressure: &mut [f64]) {
     if pressure.iter().any(|&p| p > 0.0) {
         return;
     }
@@ -369,7 +372,7 @@ fn start(problem: &NormalProblem, settings: &PatchSettings, pressure: &mut [f64]
     let deepest = places().map(|place| problem.gap[place]).fold(f64::INFINITY, f64::min);
     let depth = match problem.constraint {
         Constraint::Penetration(penetration) => penetration - deepest,
-        Constraint::Total(_) => problem.approach.own * settings.first_pressure,
+        Constraint::Total(_) => problem.normal_influence.diagonal * settings.first_pressure,
     };
     for place in places().filter(|&place| problem.gap[place] <= deepest + depth) {
         pressure[place] = 1.0;
@@ -402,12 +405,12 @@ mod tests {
         let mut contact = Contact::new(grid);
         let mut pressure = vec![0.0; grid.len()];
         for load in [80e3, 60e3, 95e3] {
-            let problem = NormalProblem {
+            let problem = PatchNormalProblem {
                 grid,
                 transform: &rail.transform,
-                approach: &rail.approach,
+                normal_influence: &rail.normal_influence,
                 gap: &rail.gap,
-                softness: &vec![0.0; grid.len()],
+                wear_compliance: &vec![0.0; grid.len()],
                 constraint: Constraint::Total(load / rail.unit_force()),
                 tolerance: 1e-9,
             };
@@ -443,12 +446,12 @@ mod tests {
         let grid = &rail.grid;
         let mut settings = Settings::default().patch;
         settings.normal_passes = 0;
-        let problem = NormalProblem {
+        let problem = PatchNormalProblem {
             grid,
             transform: &rail.transform,
-            approach: &rail.approach,
+            normal_influence: &rail.normal_influence,
             gap: &rail.gap,
-            softness: &vec![0.0; grid.len()],
+            wear_compliance: &vec![0.0; grid.len()],
             constraint: Constraint::Total(1.0),
             tolerance: 1e-9,
         };

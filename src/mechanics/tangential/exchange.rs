@@ -11,12 +11,12 @@ use crate::numerics::dense::largest;
 const HALVED: f64 = 0.51;
 
 impl Tangential {
-    /// Solves Coulomb's law from the nodes in slip that `saturation` tells.
-    pub(super) fn solve_coulomb(&mut self, problem: &TangentialProblem, saturation: &[f64], shear: &[f64]) -> Ended {
+    /// Solves Coulomb's law from the nodes in slip that `utilisation` tells.
+    pub(super) fn solve_coulomb(&mut self, problem: &TangentialProblem, utilisation: &[f64], shear: &[f64]) -> Ended {
         let m = shear.len();
         let settings = self.settings;
         let tolerance = problem.tolerance * largest(problem.pressure);
-        for (sliding, phi) in self.sliding.iter_mut().zip(saturation) {
+        for (sliding, phi) in self.sliding.iter_mut().zip(utilisation) {
             let start = if phi.abs() == 1.0 { *phi } else { 0.0 };
             self.factored &= *sliding == start;
             *sliding = start;
@@ -64,7 +64,7 @@ impl Tangential {
                 self.set_saturation(shear);
                 return Ended::Converged(steps);
             }
-            // What the leading edge adds is not linear: with a matrix that no longer fits the steps do not get shorter.
+            // The correction at the leading edge is not linear: with a matrix that no longer fits the steps do not get shorter.
             let slow = length > settings.slow_contraction * last_length;
             if slow || damping < 1.0 {
                 self.forget();
@@ -158,7 +158,7 @@ impl Tangential {
         let stick = 1.0 - f64::EPSILON;
         for (i, shear) in shear.iter().enumerate() {
             let bound = self.friction[i] * self.pressure[i];
-            self.saturation[i] = if self.sliding[i] != 0.0 {
+            self.utilisation[i] = if self.sliding[i] != 0.0 {
                 self.sliding[i]
             } else if bound > 0.0 {
                 (-(shear + self.change[i]) / bound).clamp(-stick, stick)

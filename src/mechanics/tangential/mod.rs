@@ -4,9 +4,9 @@
 //! |τ| < μ p, and a slip against τ where |τ| = μ p. The slip velocity is
 //! s = ∂u₁/∂t − V ∂u₁/∂x₁ + (ω r₀ − V). The strain is taken between the node and the one ahead of it, the difference of
 //! |V|/Δx (u₁ − u₁ of the node ahead): with influences that are exact for the tractions, the equations of nodes that stick are
-//! then those of the normal problem. What the leading edge adds is in [`super::front`].
+//! then those of the normal problem. [`super::leading_edge`] corrects the slip of the leading nodes.
 //!
-//! The problem is posed around the tractions of the sweep before: pressure and slip there are given, and how both
+//! The problem is posed around the tractions of the iteration before: pressure and slip there are given, and how both
 //! respond to a change of τ ([`super::response`]). Tractions and displacements are scaled, speeds in m/s.
 //!
 //! Both laws are equations a dτ + b ds + c dp at each node once they are linearised, and share the matrix
@@ -17,14 +17,14 @@ mod globalised;
 mod newton;
 mod path;
 
-use super::front::{Added, Edge, Front};
+use super::leading_edge::{EdgeCorrection, EdgeValues, LeadingEdge};
 use crate::error::{Error, Result};
 use crate::friction::path::{NodeFriction, Passed, PassedTogether, PathLaw, PathNode};
 use crate::numerics::dense::{self, largest};
 use crate::settings::TangentialSettings;
-use path::Path;
+use path::ExchangePath;
 
-/// The data of one problem on the m nodes under pressure.
+/// Data of one problem on the m nodes under pressure.
 #[derive(Debug, Clone, Copy)]
 pub struct TangentialProblem<'a> {
     /// p at the shear the solve starts from, m.
@@ -37,42 +37,42 @@ pub struct TangentialProblem<'a> {
     pub slip_response: &'a [f64],
     /// μ, m; where it depends on slip, that without slip.
     pub friction: &'a [f64],
-    /// How it depends on slip, m nodes; none where it does not.
+    /// Law by which μ depends on slip, m nodes; none where it does not.
     pub path: Option<(PathLaw, &'a [PathNode])>,
-    /// The leading edge.
-    pub edge: LeadingEdge<'a>,
+    /// Leading edge, with the rows that it corrects.
+    pub leading: LeadingRows<'a>,
     /// ε, `m/s`; 0 is Coulomb's law.
     pub regularisation: f64,
     /// Newton step that may be left out, relative to the largest pressure.
     pub tolerance: f64,
 }
 
-/// The leading edge of a problem.
+/// Leading edge of a problem, with the rows of the nodes that it corrects.
 #[derive(Debug, Clone, Copy)]
-pub struct LeadingEdge<'a> {
-    /// What it adds to the slip.
-    pub front: Front,
-    /// The three leading nodes, the first of them first; only the first counts where the front is not resolved.
+pub struct LeadingRows<'a> {
+    /// Leading edge, which corrects the slip.
+    pub edge: LeadingEdge,
+    /// Rows of the three leading nodes, the first of them first; only the first counts where the edge is not resolved.
     pub rows: [usize; 3],
     /// Separation of the node ahead at the shear the solve starts from.
     pub gap: f64,
-    /// Its response to the shear, m.
+    /// Response of the separation ahead to the shear, m.
     pub gap_response: &'a [f64],
 }
 
-impl LeadingEdge<'_> {
-    /// The change of what is added to the slip of the first two rows with the shear on node `column`.
-    pub fn response(&self, added: &[Added; 2], pressure_response: &[f64], column: usize) -> [f64; 2] {
+impl LeadingRows<'_> {
+    /// Change of the corrections of the slip of the first two rows with the shear on node `column`.
+    pub fn response(&self, corrections: &[EdgeCorrection; 2], pressure_response: &[f64], column: usize) -> [f64; 2] {
         let m = self.gap_response.len();
-        let mut change = Edge {
+        let mut change = EdgeValues {
             pressure: self.rows.map(|row| pressure_response[column * m + row]),
             gap: self.gap_response[column],
-            ..Edge::default()
+            ..EdgeValues::default()
         };
         for (shear, row) in change.shear.iter_mut().zip(self.rows) {
             *shear = if row == column { 1.0 } else { 0.0 };
         }
-        [added[0].change(&change), added[1].change(&change)]
+        [corrections[0].change(&change), corrections[1].change(&change)]
     }
 }
 
@@ -83,32 +83,32 @@ const LANES: usize = 4;
 /// Responses of a node to the shear on some others.
 #[derive(Debug, Clone, Copy, Default)]
 struct Responded {
-    /// Of its slip; then the change of its bound by that of the nodes before it.
+    /// Response of the node's slip; later the change of its bound by the slip of the nodes before it.
     slip: [f64; LANES],
-    /// Of its pressure.
+    /// Response of the node's pressure.
     pressure: [f64; LANES],
 }
 
-/// Where the last solve ended, on the nodes of its problem.
+/// Point at which the last solve ended, on the nodes of its problem.
 #[derive(Debug, Clone, Copy)]
-pub struct Point<'a> {
+pub struct TangentialPoint<'a> {
     /// Pressure, scaled.
     pub pressure: &'a [f64],
-    /// −τ/(μ p).
-    pub saturation: &'a [f64],
-    /// What the leading edge adds to the slip of the first two rows.
-    pub added: &'a [Added; 2],
+    /// Traction utilisation −τ/(μ p), with the sign of the slip.
+    pub utilisation: &'a [f64],
+    /// Corrections of the slip of the first two rows at the leading edge.
+    pub corrections: &'a [EdgeCorrection; 2],
     /// Change of the shear since the start of the solve.
     pub change: &'a [f64],
-    /// The law's slip velocity, `m/s`.
+    /// Slip velocity of the law, `m/s`.
     pub slip: &'a [f64],
     /// μ.
     pub friction: &'a [f64],
-    /// Its derivatives, where it depends on slip.
+    /// Derivatives of μ, where it depends on slip.
     pub of_slip: &'a [NodeFriction],
 }
 
-/// How an iteration ended, with the number of steps it took.
+/// End of an iteration, with the number of steps it took.
 #[derive(Debug, Clone, Copy)]
 enum Ended {
     /// The last step was below the tolerance.
@@ -125,16 +125,16 @@ impl Ended {
     }
 }
 
-/// The linearised law of one node, a dτ + b ds + c dp + e dμ.
+/// Linearised law of one node, a dτ + b ds + c dp + e dμ.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct LawRow {
-    /// By the shear.
+    /// Derivative a by the shear.
     pub by_shear: f64,
-    /// By the slip velocity, `s/m`.
+    /// Derivative b by the slip velocity, `s/m`.
     pub by_slip: f64,
-    /// By the pressure.
+    /// Derivative c by the pressure.
     pub by_pressure: f64,
-    /// By μ.
+    /// Derivative e by μ.
     pub by_friction: f64,
 }
 
@@ -146,7 +146,7 @@ pub struct Tangential {
     change: Vec<f64>,
     pressure: Vec<f64>,
     slip: Vec<f64>,
-    added: [Added; 2],
+    corrections: [EdgeCorrection; 2],
     /// μ, or the bound of a layer that flows over the pressure; and where it depends on slip its derivatives.
     friction: Vec<f64>,
     of_slip: Vec<NodeFriction>,
@@ -156,7 +156,7 @@ pub struct Tangential {
     by_slip: Vec<f64>,
     by_pressure: Vec<f64>,
     /// φ.
-    saturation: Vec<f64>,
+    utilisation: Vec<f64>,
     /// Coulomb's law: φ = ±1 of the nodes that slip, 0 of those that stick.
     sliding: Vec<f64>,
     residual: Vec<f64>,
@@ -171,7 +171,7 @@ pub struct Tangential {
     factored: bool,
     /// Length of a step over that of the step before, with this `factor`.
     contraction: f64,
-    path: Path,
+    path: ExchangePath,
     /// dτ/d ln ε.
     by_logarithm: Vec<f64>,
     /// Direction of the path of solutions in the shear.
@@ -191,13 +191,13 @@ impl Tangential {
             change: vector(),
             pressure: vector(),
             slip: vector(),
-            added: Default::default(),
+            corrections: Default::default(),
             friction: vector(),
             of_slip: vec![NodeFriction::default(); nodes],
             responded: vec![Responded::default(); nodes],
             by_slip: vector(),
             by_pressure: vector(),
-            saturation: vector(),
+            utilisation: vector(),
             sliding: vector(),
             residual: vector(),
             step: vector(),
@@ -207,7 +207,7 @@ impl Tangential {
             pivots: vec![0; nodes],
             factored: false,
             contraction: settings.fresh_contraction,
-            path: Path::new(nodes),
+            path: ExchangePath::new(nodes),
             by_logarithm: vector(),
             tangent: vector(),
             has_stalled: false,
@@ -236,12 +236,12 @@ impl Tangential {
         self.factored = false;
     }
 
-    /// The point of the last solve with m nodes.
-    pub fn point(&self, m: usize) -> Point<'_> {
-        Point {
+    /// Point of the last solve, with m nodes.
+    pub fn point(&self, m: usize) -> TangentialPoint<'_> {
+        TangentialPoint {
             pressure: &self.pressure[..m],
-            saturation: &self.saturation[..m],
-            added: &self.added,
+            utilisation: &self.utilisation[..m],
+            corrections: &self.corrections,
             change: &self.change[..m],
             slip: &self.slip[..m],
             friction: &self.friction[..m],
@@ -249,7 +249,7 @@ impl Tangential {
         }
     }
 
-    /// The linearised law at the point of [`Tangential::linearise`].
+    /// Linearised law at the point of [`Tangential::linearise`].
     pub fn rows(&self) -> &[LawRow] {
         &self.rows
     }
@@ -269,12 +269,12 @@ impl Tangential {
         dense::lu_solve(&self.factor, values.len(), &self.pivots, values);
     }
 
-    /// Changes `shear` (m, on the nodes of the problem) to the solution. `saturation` is φ where the solve starts, m: Coulomb's
+    /// Changes `shear` (m, on the nodes of the problem) to the solution. `utilisation` is φ at which the solve starts, m: Coulomb's
     /// law starts with the nodes in slip where it is ±1. Returns the largest change.
     ///
     /// # Errors
     /// [`Error::TangentialNotConverged`].
-    pub fn solve(&mut self, problem: &TangentialProblem, saturation: &[f64], shear: &mut [f64]) -> Result<f64> {
+    pub fn solve(&mut self, problem: &TangentialProblem, utilisation: &[f64], shear: &mut [f64]) -> Result<f64> {
         let m = shear.len();
         self.change[..m].fill(0.0);
         let mut end = if self.has_stalled {
@@ -282,7 +282,7 @@ impl Tangential {
         } else if problem.regularisation > 0.0 {
             self.solve_regularised(problem, shear)
         } else {
-            self.solve_coulomb(problem, saturation, shear)
+            self.solve_coulomb(problem, utilisation, shear)
         };
         if let Ended::Stalled(steps) = end {
             self.has_stalled = true;
@@ -301,7 +301,7 @@ impl Tangential {
         Ok(largest(&self.change[..m]))
     }
 
-    /// Pressure and slip after `self.change`, what the leading edge adds included.
+    /// Updates pressure and slip to those after `self.change`, the corrections at the leading edge included.
     fn update_point(&mut self, problem: &TangentialProblem, shear: &[f64]) {
         let m = shear.len();
         self.count(m, 0, 2);
@@ -311,22 +311,22 @@ impl Tangential {
             self.pressure[i] = (problem.pressure[i] + self.pressure[i]).max(0.0);
             self.slip[i] += problem.slip[i];
         }
-        let edge = &problem.edge;
-        let node = |values: &[f64]| edge.rows.map(|row| values[row]);
+        let leading = &problem.leading;
+        let node = |values: &[f64]| leading.rows.map(|row| values[row]);
         let (start, change) = (node(shear), node(&self.change));
-        self.added = edge.front.added(&Edge {
+        self.corrections = leading.edge.corrections(&EdgeValues {
             pressure: node(&self.pressure),
             shear: std::array::from_fn(|k| start[k] + change[k]),
-            friction: problem.friction[edge.rows[0]],
-            gap: edge.gap + dense::dot(edge.gap_response, &self.change[..m]),
+            friction: problem.friction[leading.rows[0]],
+            gap: leading.gap + dense::dot(leading.gap_response, &self.change[..m]),
         });
-        for (added, row) in self.added.iter().zip(edge.rows) {
-            self.slip[row] += added.slip;
+        for (correction, row) in self.corrections.iter().zip(leading.rows) {
+            self.slip[row] += correction.slip;
         }
         self.update_friction(problem);
     }
 
-    /// μ at the present slip and pressure.
+    /// Updates μ to that at the present slip and pressure.
     fn update_friction(&mut self, problem: &TangentialProblem) {
         let m = problem.friction.len();
         let Some((law, nodes)) = &problem.path else {
@@ -342,7 +342,8 @@ impl Tangential {
         }
     }
 
-    /// Changes of the slip to those of μ by them and by those of the pressure, in place, at the point of the last solve.
+    /// Replaces changes of the slip, in place, by those of μ that follow from them and from changes of the pressure, at the point of
+    /// the last solve.
     pub fn friction_tangent(&self, law: &PathLaw, pressure: &[f64], slip: &mut [f64]) {
         let mut before = Passed::default();
         for row in law.order(slip.len()) {
@@ -353,7 +354,7 @@ impl Tangential {
         }
     }
 
-    /// The bound on a node's shear as a function of its pressure at an unchanged slip: its part without, and its slope.
+    /// Bound on a node's shear as an affine function of its pressure at an unchanged slip: its part without pressure, and its slope.
     fn bound(&self, problem: &TangentialProblem, node: usize) -> (f64, f64) {
         let friction = self.friction[node];
         if problem.path.is_none() {
@@ -389,9 +390,11 @@ impl Tangential {
                 *entry = by_slip * slip + by_pressure * pressure;
             }
             factor[column] += rows[column].by_shear;
-            let added = problem.edge.response(&self.added, problem.pressure_response, column);
-            for (added, row) in added.iter().zip(problem.edge.rows) {
-                factor[row] += by_slip[row] * added;
+            let corrections = problem
+                .leading
+                .response(&self.corrections, problem.pressure_response, column);
+            for (correction, row) in corrections.iter().zip(problem.leading.rows) {
+                factor[row] += by_slip[row] * correction;
             }
         }
         if let Some((law, _)) = &problem.path
@@ -404,7 +407,7 @@ impl Tangential {
         self.factored
     }
 
-    /// Adds to the law's rows what a node's bound takes from the slip of the nodes before it.
+    /// Adds to the law's rows the derivatives of a node's bound by the slip of the nodes before it.
     fn add_links(&mut self, problem: &TangentialProblem, law: &PathLaw) {
         let m = problem.pressure.len();
         self.count(m, 0, 4);
@@ -419,9 +422,11 @@ impl Tangential {
                 for (responded, (slip, pressure)) in self.responded.iter_mut().zip(responses) {
                     (responded.slip[lane], responded.pressure[lane]) = (*slip, *pressure);
                 }
-                let added = problem.edge.response(&self.added, problem.pressure_response, column);
-                for (added, row) in added.iter().zip(problem.edge.rows) {
-                    self.responded[row].slip[lane] += added;
+                let corrections = problem
+                    .leading
+                    .response(&self.corrections, problem.pressure_response, column);
+                for (correction, row) in corrections.iter().zip(problem.leading.rows) {
+                    self.responded[row].slip[lane] += correction;
                 }
             }
             let mut before = PassedTogether::default();

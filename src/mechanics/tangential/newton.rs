@@ -1,7 +1,7 @@
 //! The regularised law (30): damped Newton, with the factorised matrix as long as it contracts fast.
 
 use super::{Ended, LawRow, Tangential, TangentialProblem};
-use crate::friction::coulomb::{saturation_slope, saturations};
+use crate::friction::coulomb::{utilisation_slope, utilisations};
 use crate::numerics::dense::largest;
 
 impl Tangential {
@@ -24,7 +24,7 @@ impl Tangential {
         match end {
             Ended::Converged(_) => {
                 // Stiff bodies need it not, and keep the digits that they had before there was a layer.
-                let layer = problem.edge.front.near_field.layer > 0.0;
+                let layer = problem.leading.edge.near_field.layer > 0.0;
                 if layer || problem.path.is_some() {
                     self.take_saturation(shear);
                 }
@@ -40,7 +40,7 @@ impl Tangential {
         for (i, shear) in shear.iter().enumerate() {
             let bound = self.friction[i] * self.pressure[i];
             if bound > 0.0 {
-                self.saturation[i] = (-(shear + self.change[i]) / bound).clamp(-1.0, 1.0);
+                self.utilisation[i] = (-(shear + self.change[i]) / bound).clamp(-1.0, 1.0);
             }
         }
     }
@@ -113,11 +113,11 @@ impl Tangential {
     fn update_residual(&mut self, problem: &TangentialProblem, regularisation: f64, shear: &[f64]) -> f64 {
         let m = shear.len();
         self.update_point(problem, shear);
-        saturations(&self.slip[..m], regularisation, &mut self.saturation);
+        utilisations(&self.slip[..m], regularisation, &mut self.utilisation);
         let mut square = 0.0;
         for (i, shear) in shear.iter().enumerate() {
             let bound = self.friction[i] * self.pressure[i];
-            self.residual[i] = shear + self.change[i] + bound * self.saturation[i];
+            self.residual[i] = shear + self.change[i] + bound * self.utilisation[i];
             square += self.residual[i] * self.residual[i];
         }
         square.sqrt()
@@ -126,10 +126,10 @@ impl Tangential {
     /// The derivatives of τ + μ p φ(s).
     pub(super) fn set_regularised_rows(&mut self, problem: &TangentialProblem, regularisation: f64) {
         for (i, mu) in self.friction[..problem.friction.len()].iter().enumerate() {
-            let (pressure, phi) = (self.pressure[i], self.saturation[i]);
+            let (pressure, phi) = (self.pressure[i], self.utilisation[i]);
             self.rows[i] = LawRow {
                 by_shear: 1.0,
-                by_slip: mu * pressure * saturation_slope(self.slip[i], regularisation),
+                by_slip: mu * pressure * utilisation_slope(self.slip[i], regularisation),
                 by_pressure: mu * phi,
                 by_friction: pressure * phi,
             };

@@ -9,9 +9,9 @@
 use super::{Tangential, TangentialProblem};
 use crate::numerics::dense;
 
-/// Scratch for m nodes.
+/// Buffers of the exchanges along the path, for m nodes.
 #[derive(Debug, Clone)]
-pub struct Path {
+pub struct ExchangePath {
     /// ∂s/∂τ with the leading edge, m × m.
     slip_response: Vec<f64>,
     /// Slip at no change of the shear, and the deviation.
@@ -20,16 +20,16 @@ pub struct Path {
     change_on: [Vec<f64>; 2],
     slip_on: [Vec<f64>; 2],
     pressure_on: [Vec<f64>; 2],
-    /// What the law has beside the shear, the slip and the pressure.
+    /// Part of the law that depends on neither the shear nor the slip nor the pressure.
     constant: Vec<f64>,
 }
 
-impl Path {
-    /// For up to so many nodes.
-    pub fn new(nodes: usize) -> Path {
+impl ExchangePath {
+    /// Buffers for up to so many nodes.
+    pub fn new(nodes: usize) -> ExchangePath {
         let vector = || vec![0.0; nodes];
         let pair = || [vector(), vector()];
-        Path {
+        ExchangePath {
             slip_response: vec![0.0; nodes * nodes],
             slip: pair(),
             change_on: pair(),
@@ -40,7 +40,7 @@ impl Path {
     }
 }
 
-/// The deviation gives a node that would slip along its shear this share of the largest slip against it.
+/// Slip against its shear that the deviation gives a node that would slip along it, over the largest slip.
 const PUSH: f64 = 1e-3;
 
 impl Tangential {
@@ -72,12 +72,14 @@ impl Tangential {
     fn linearise_slip(&mut self, problem: &TangentialProblem, m: usize) {
         self.path.slip_response[..m * m].copy_from_slice(&problem.slip_response[..m * m]);
         for column in 0..m {
-            let added = problem.edge.response(&self.added, problem.pressure_response, column);
-            for (added, row) in added.iter().zip(problem.edge.rows) {
-                self.path.slip_response[column * m + row] += added;
+            let corrections = problem
+                .leading
+                .response(&self.corrections, problem.pressure_response, column);
+            for (correction, row) in corrections.iter().zip(problem.leading.rows) {
+                self.path.slip_response[column * m + row] += correction;
             }
         }
-        let Path {
+        let ExchangePath {
             slip_response, slip, ..
         } = &mut self.path;
         dense::multiply(slip_response, m, &self.change, &mut slip[0]);
@@ -116,7 +118,7 @@ impl Tangential {
             }
         }
         dense::lu_solve(&self.factor, m, &self.pivots, &mut self.change[..m]);
-        let Path {
+        let ExchangePath {
             slip_response,
             slip: [slip, deviation],
             slip_on: [here, _],
@@ -165,7 +167,7 @@ impl Tangential {
         if !dense::lu(&mut self.factor[..m * m], m, &mut self.pivots) {
             return false;
         }
-        let Path {
+        let ExchangePath {
             slip_response,
             slip,
             change_on,
@@ -206,7 +208,7 @@ impl Tangential {
         lambda: f64,
         last: usize,
     ) -> Option<(usize, f64, f64)> {
-        let Path {
+        let ExchangePath {
             change_on: [change, change_slope],
             slip_on: [slip, slip_slope],
             pressure_on: [pressure, pressure_slope],

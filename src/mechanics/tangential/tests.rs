@@ -1,19 +1,19 @@
 //! The friction problem on a few nodes.
 
 use super::*;
-use crate::friction::coulomb::saturation;
+use crate::friction::coulomb::utilisation;
 use crate::friction::memory::ParticlePath;
 use crate::friction::path::PathStep;
-use crate::mechanics::front::NearField;
+use crate::mechanics::leading_edge::NearField;
 use crate::parameters::Parameters;
 use proptest::prelude::*;
 
 const NODES: usize = 6;
 
 /// A leading edge that adds nothing.
-fn no_edge(zero: &[f64]) -> LeadingEdge<'_> {
-    LeadingEdge {
-        front: Front {
+fn no_edge(zero: &[f64]) -> LeadingRows<'_> {
+    LeadingRows {
+        edge: LeadingEdge {
             near_field: NearField {
                 direct: 1.0,
                 coupling: 0.0,
@@ -38,7 +38,7 @@ fn stiff<'a>(pressure: &'a [f64], slip: &'a [f64], zero: &'a [f64], friction: &'
         slip_response: zero,
         friction,
         path: None,
-        edge: no_edge(&zero[..pressure.len()]),
+        leading: no_edge(&zero[..pressure.len()]),
         regularisation: 1e-3,
         tolerance: 1e-12,
     }
@@ -59,7 +59,7 @@ fn without_compliance_the_shear_is_coulombs_law_of_the_rigid_slip() {
             };
             solver.solve(&problem, &[0.0; 3], &mut shear).unwrap();
             let share = if regularisation > 0.0 {
-                saturation(rigid_slip, regularisation)
+                utilisation(rigid_slip, regularisation)
             } else if rigid_slip == 0.0 {
                 0.0
             } else {
@@ -103,7 +103,7 @@ fn sum(matrix: &[f64], row: usize, values: &[f64]) -> f64 {
 }
 
 proptest! {
-    /// With a pressure that follows a little, regularisations down to a thousandth of the slip.
+    /// Regularisations down to a thousandth of the slip are solved, with a pressure that follows the shear a little.
     #[test]
     fn the_solution_satisfies_the_regularised_law(
         pressure in prop::collection::vec(0.1..1.0, NODES),
@@ -123,7 +123,7 @@ proptest! {
             slip_response: &response,
             friction: &friction,
             path: None,
-            edge: no_edge(&zero),
+            leading: no_edge(&zero),
             regularisation,
             tolerance: 1e-12,
         };
@@ -134,7 +134,7 @@ proptest! {
         for row in 0..NODES {
             let slip = slip[row] + sum(&response, row, &shear);
             let p = (pressure[row] + sum(&follows, row, &shear)).max(0.0);
-            let law = -friction[row] * p * saturation(slip, regularisation);
+            let law = -friction[row] * p * utilisation(slip, regularisation);
             // The slope of the law, μ p/ε ds/dτ ≤ 0.6 · 4e-2/1e-5, times the tolerance of the shear.
             prop_assert!((shear[row] - law).abs() < 1e-8, "{row}: {} {law}", shear[row]);
         }
@@ -165,7 +165,7 @@ proptest! {
             slip_response: &response,
             friction: &friction,
             path: None,
-            edge: no_edge(&zero),
+            leading: no_edge(&zero),
             regularisation: 0.0,
             tolerance: 1e-12,
         };
@@ -177,7 +177,7 @@ proptest! {
             let slip: f64 = slip[row] + sum(&response, row, &shear);
             let p: f64 = pressure[row] + sum(&follows, row, &shear);
             let bound = friction[row] * p.max(0.0);
-            let phi = solver.point(NODES).saturation[row];
+            let phi = solver.point(NODES).utilisation[row];
             prop_assert!((shear[row] + bound * phi).abs() < 1e-11, "{row}: {} {bound} {phi}", shear[row]);
             prop_assert!(phi.abs() <= 1.0);
             if phi.abs() == 1.0 {
@@ -209,18 +209,18 @@ fn the_line_search_finds_the_solution_of_friction_that_falls_with_slip() {
         pressure: 1e9,
     };
     let law = PathLaw::new(&parameters, &step).unwrap();
-    let resting = [0.4; NODES + 2];
+    let static_friction = [0.4; NODES + 2];
     let kept = [0.0; NODES + 2];
     let path = ParticlePath {
-        resting: &resting,
-        friction: &resting,
+        static_friction: &static_friction,
+        friction: &static_friction,
         speed: &kept,
         flow: &kept,
     };
     let mut nodes = Vec::new();
     law.prepare(
         &path,
-        &resting,
+        &static_friction,
         |node| (1..=NODES).contains(&node),
         |_, node| nodes.push(node),
     );
@@ -242,7 +242,7 @@ fn the_line_search_finds_the_solution_of_friction_that_falls_with_slip() {
                     slip_response: &response,
                     friction: &friction,
                     path: Some((law, &nodes)),
-                    edge: no_edge(&zero),
+                    leading: no_edge(&zero),
                     regularisation,
                     tolerance: 1e-12,
                 };
@@ -256,7 +256,7 @@ fn the_line_search_finds_the_solution_of_friction_that_falls_with_slip() {
                     before = mu.passed(slip.abs());
                     let bound = mu.coefficient * pressure[row];
                     let expected = if regularisation > 0.0 {
-                        -bound * saturation(slip, regularisation)
+                        -bound * utilisation(slip, regularisation)
                     } else if slip.abs() > 1e-11 {
                         -bound * slip.signum()
                     } else {

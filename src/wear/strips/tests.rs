@@ -26,7 +26,7 @@ fn march(strips: &Strips, speed: f64, duration: f64) -> StripWearMarch<'_> {
 fn advance(march: &StripWearMarch, rate: &[f64], incoming: f64, breadth: f64, before: &StripWear) -> StripWear {
     let (mut after, mut steps) = (before.clone(), StripWearSteps::new(march.strips));
     march.advance(rate, incoming, before, &mut after, &mut steps);
-    march.finish(breadth, before, &mut after, &mut steps);
+    march.finalise(breadth, before, &mut after, &mut steps);
     after
 }
 
@@ -144,7 +144,7 @@ proptest! {
         let mut tangent = StripWear::new(&strips);
         let change = WearChange { rate: &rate_change, speed: speed_change };
         march.advance_tangent(change, incoming_change, &here, &mut tangent);
-        march.finish_tangent(speed_change, breadth_change, &here, &mut tangent);
+        march.finalise_tangent(speed_change, breadth_change, &here, &mut tangent);
         let vectors = tangent.vectors().into_iter().zip(ahead.vectors()).zip(behind.vectors());
         for (number, ((exact, ahead), behind)) in vectors.enumerate().take(4) {
             for (k, exact) in exact.iter().enumerate() {

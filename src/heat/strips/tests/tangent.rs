@@ -115,10 +115,10 @@ fn the_tangent_is_the_derivative() {
         march.start_tangent(&here, &carriage, &mut tangent, &mut scratch);
         // Another change before it leaves nothing behind.
         march.heat_tangent(&here, &change, &mut tangent, &mut scratch).unwrap();
-        march.finish_tangent(&here, &carriage, &mut tangent, &mut scratch);
+        march.finalise_tangent(&here, &carriage, &mut tangent, &mut scratch);
         change.exchange_tangent = &exchange_tangent;
         march.heat_tangent(&here, &change, &mut tangent, &mut scratch).unwrap();
-        march.finish_tangent(&here, &carriage, &mut tangent, &mut scratch);
+        march.finalise_tangent(&here, &carriage, &mut tangent, &mut scratch);
         let vectors = tangent.vectors().into_iter().zip(ahead.vectors()).zip(behind.vectors());
         for (number, ((exact, ahead), behind)) in vectors.enumerate().take(6) {
             let size = dense::largest(exact);

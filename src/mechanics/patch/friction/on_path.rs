@@ -2,31 +2,31 @@
 //! that of the cells that its particles have come through.
 
 use crate::friction::path::{NodeFriction, Passed, PathLaw, PathNode};
-use crate::mechanics::patch::law::{Cell, Row, Scheme, Vector, dot, outer};
+use crate::mechanics::patch::law::{Cell, CellLawRow, Scheme, Vector, dot, outer};
 
-/// The law of μ of all cells.
+/// Law of μ of all cells, where it depends on slip.
 #[derive(Clone, Copy)]
 pub struct PathOfCells<'a> {
-    /// What the cells have in common.
+    /// Law that the cells have in common.
     pub law: PathLaw,
-    /// The cells under pressure, strip by strip; the first in contact on a path takes nothing from another.
+    /// Constants of the law of the cells under pressure, strip by strip; the first in contact on a path takes nothing from another.
     pub nodes: &'a [PathNode],
-    /// Their pressure, scaled.
+    /// Pressure of the cells under pressure, scaled.
     pub pressure: &'a [f64],
 }
 
-/// μ of the cells, and how it and their slip velocity change.
+/// Coefficients μ of the cells, with the changes of μ and of the slip velocity.
 pub struct OnPath {
     pub(super) friction: Vec<NodeFriction>,
-    /// The magnitude of the law's slip, `m/s`.
+    /// Magnitude of the law's slip, `m/s`.
     pub(super) speed: Vec<f64>,
-    /// Its derivatives by the slip ahead and behind.
+    /// Derivatives of the magnitude by the slip ahead and behind.
     by_slip: Vec<[Vector; 2]>,
-    /// Its derivative by the slip w below which the law takes all slip ahead.
+    /// Derivative of the magnitude by the slip w below which the law takes all slip ahead.
     by_noise: Vec<f64>,
     /// Change of the magnitude.
     change: Vec<f64>,
-    /// The cell before, of those that [`OnPath::row`] has gone through.
+    /// Cell before, of those that [`OnPath::row`] has gone through.
     before: Passed,
 }
 
@@ -47,9 +47,9 @@ impl OnPath {
         self.before = Passed::default();
     }
 
-    /// The law of a cell, in the order in which particles come to the cells of a run. Its bound follows from its slip; what it has of the
-    /// slip of cells before is not in the row.
-    pub(super) fn row(&mut self, path: &PathOfCells, scheme: &Scheme, index: usize, mut cell: Cell) -> Row {
+    /// Law of a cell, to be asked for in the order in which particles come to the cells of a run. The cell's bound follows from its slip;
+    /// its dependence on the slip of the cells before is not in the row.
+    pub(super) fn row(&mut self, path: &PathOfCells, scheme: &Scheme, index: usize, mut cell: Cell) -> CellLawRow {
         let (slip, by_ahead, by_behind, slip_by_noise) = scheme.slip(&cell);
         let speed = dot(slip, slip).sqrt();
         // sᵀ/|s| times the slip's derivatives.
@@ -89,14 +89,14 @@ impl OnPath {
     }
 
     /// Keeps the change of a cell's slip velocity with that of the slip ahead and behind.
-    pub(super) fn felt(&mut self, path: &PathOfCells, index: usize, (ahead, behind): (Vector, Vector)) {
+    pub(super) fn keep_slip_change(&mut self, path: &PathOfCells, index: usize, ahead: Vector, behind: Vector) {
         if path.law.remembers() {
             let [by_ahead, by_behind] = self.by_slip[index];
             self.change[index] = dot(by_ahead, ahead) + dot(by_behind, behind);
         }
     }
 
-    /// The changes of μ of n cells by the slip of the cells before them, those of the slip velocities being kept.
+    /// Changes of μ of n cells by the kept changes of the slip velocities of the cells before them.
     pub(super) fn follow(&self, path: &PathOfCells, n: usize, mut take: impl FnMut(usize, f64)) {
         if !path.law.remembers() {
             return;
@@ -110,7 +110,7 @@ impl OnPath {
         }
     }
 
-    /// The changes of μ of n cells with the kept ones of their slip velocities, and those of the slip velocities.
+    /// Changes of μ of n cells by the kept changes of all slip velocities, their own included.
     pub(super) fn changes(&self, path: &PathOfCells, n: usize, mut take: impl FnMut(usize, f64)) {
         let mut before = Passed::default();
         for index in path.law.order(n) {
@@ -123,7 +123,7 @@ impl OnPath {
 
     /// Keeps the change of a cell's slip velocity with that of the slip ahead and behind and with that of w, whether or not friction
     /// remembers.
-    pub(super) fn keep(&mut self, index: usize, (ahead, behind): (Vector, Vector), noise: f64) {
+    pub(super) fn keep_slip_and_noise_change(&mut self, index: usize, ahead: Vector, behind: Vector, noise: f64) {
         let [by_ahead, by_behind] = self.by_slip[index];
         self.change[index] = dot(by_ahead, ahead) + dot(by_behind, behind) + self.by_noise[index] * noise;
     }

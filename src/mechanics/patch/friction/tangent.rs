@@ -3,37 +3,37 @@
 
 use super::{Friction, FrictionProblem, PathOfCells};
 use crate::error::{Error, Result};
-use crate::mechanics::patch::law::{Matrix, Row, Scheme, Vector, multiply};
+use crate::mechanics::patch::law::{CellLawRow, Matrix, Scheme, Vector, multiply};
 
 /// Change of the data of a problem.
 #[derive(Clone, Copy)]
 pub struct FrictionChange<'a> {
-    /// Of S₀ on the grid, x and y, with all that the slip changes by at an unchanged shear but for the leading edge.
+    /// Change of S₀ on the grid, x and y: that of the slip at an unchanged shear, without the corrections at the leading edge.
     pub free_slip: [&'a [f64]; 2],
-    /// Of what the leading edge adds to the slip of a cell per its own shear, cells.
+    /// Change of the slip per shear that the leading edge adds, cells.
     pub edge: &'a [Vector],
-    /// Of μp, cells.
+    /// Change of μp, cells.
     pub bound: &'a [f64],
-    /// Of w.
+    /// Change of w.
     pub noise: f64,
     /// Residual to be reached, relative to the change or to what makes it.
     pub tolerance: f64,
 }
 
-/// A change of the tractions below this one, scaled and per unit of an input, counts as none: what comes in from far ahead is felt
+/// Change of the tractions, scaled and per unit of an input, below which it counts as none: a change far ahead acts on the contact
 /// exponentially little, down to where numbers lose their digits and their squares are 0.
 pub const LEAST_CHANGE: f64 = 1e-100;
 
 const UNIT: Matrix = [[1.0, 0.0], [0.0, 1.0]];
 
 impl Friction {
-    /// The changes of μ by those of the slip in the last [`Friction::tangent`], cell by cell.
+    /// Changes of μ by those of the slip in the last [`Friction::tangent`], cell by cell.
     pub fn friction_changes(&self, path: &PathOfCells, n: usize, take: impl FnMut(usize, f64)) {
         self.on_path.changes(path, n, take);
     }
 
-    /// Linearises at the solution `shear`. Here S₀ of the problem is all of the slip but for the leading edge's share, so that the response
-    /// to the shear is in it.
+    /// Linearises at the solution `shear`. Here S₀ of the problem is the slip with the response to the shear, without the corrections at
+    /// the leading edge.
     ///
     /// # Errors
     /// [`Error::SingularContactMatrix`].
@@ -49,13 +49,13 @@ impl Friction {
         };
         self.update_rows(problem, &scheme, shear, 0.0);
         let n = problem.contact.cells();
-        if problem.regularisation == 0.0 && problem.response.own[0][problem.response.origin] == 0.0 {
+        if problem.regularisation == 0.0 && problem.response.strip_kernels[0][problem.response.origin] == 0.0 {
             // Without a response of the slip nothing says what shear a cell without slip has: it keeps the one it has.
             for row in self.rows[..n].iter_mut().filter(|row| row.sticks) {
-                *row = Row {
+                *row = CellLawRow {
                     by_shear: UNIT,
                     sticks: true,
-                    ..Row::default()
+                    ..CellLawRow::default()
                 };
             }
         }
@@ -70,8 +70,8 @@ impl Friction {
         }
     }
 
-    /// The change of the shear on the grid, x and y, from the given one, none outside the contact; `problem` and `shear` are those of
-    /// [`Friction::linearise`]. The change of the slip by it is left for [`Friction::response_at`].
+    /// Moves `tangent`, the change of the shear on the grid, x and y, none outside the contact, from a first guess to the solution;
+    /// `problem` and `shear` are those of [`Friction::linearise`]. The change of the slip by it is left for [`Friction::response_at`].
     ///
     /// # Errors
     /// [`Error::TangentialNotConverged`].
@@ -89,7 +89,7 @@ impl Friction {
         let at = |values: &[Vec<f64>; 2], place: usize| [values[0][place], values[1][place]];
         let mut given: Vec<Vector> = Vec::with_capacity(n);
         for run in problem.contact.runs() {
-            for (index, place) in run.own().zip(run.places(grid)) {
+            for (index, place) in run.indices().zip(run.places(grid)) {
                 let (row, edge, own) = (&self.rows[index], change.edge[index], at(shear, place));
                 let slip = |place: usize| [change.free_slip[0][place], change.free_slip[1][place]];
                 let bound = change.bound[index];
@@ -114,7 +114,7 @@ impl Friction {
                     .apply(&problem.response.double, &window, load, [x, y], &mut self.scratch);
             }
             for run in problem.contact.runs() {
-                for (index, place) in run.own().zip(run.places(grid)) {
+                for (index, place) in run.indices().zip(run.places(grid)) {
                     let own = at(tangent, place);
                     let mut ahead = at(&self.response, place);
                     for component in 0..2 {
@@ -133,11 +133,10 @@ impl Friction {
                         let free = |place: usize, i: usize| change.free_slip[i][place];
                         let last = place.wrapping_add_signed(behind);
                         let after = at(&self.response, last);
-                        let slips = (
-                            [0, 1].map(|i: usize| free(place, i) + edge[i] * shear[i] + ahead[i]),
-                            [0, 1].map(|i: usize| free(last, i) + after[i]),
-                        );
-                        self.on_path.keep(index, slips, change.noise);
+                        let slip_ahead = [0, 1].map(|i: usize| free(place, i) + edge[i] * shear[i] + ahead[i]);
+                        let slip_behind = [0, 1].map(|i: usize| free(last, i) + after[i]);
+                        self.on_path
+                            .keep_slip_and_noise_change(index, slip_ahead, slip_behind, change.noise);
                     }
                 }
             }

@@ -45,7 +45,7 @@ fn slip_kernel(grid: &Grid, forward: bool, (along, across): (isize, isize)) -> [
 }
 
 impl Case {
-    /// With a creepage and a spin, in units of the slip by which a cell answers a shear of 1 by itself; stiff without any answer.
+    /// Case with a creepage and a spin, in units of the slip by which a cell responds to its own shear of 1; stiff without any response.
     fn new(stiff: bool, forward: bool, creepage: Vector, spin: f64) -> Case {
         let grid = Grid::new(CELLS, STRIPS, 1.15, 1.2);
         let transform = Transform::new(&grid, STRIPS);
@@ -75,7 +75,11 @@ impl Case {
         // The leading cell of each strip is stiffer.
         let mut edge = vec![[0.0; 2]; contact.cells()];
         for run in contact.runs() {
-            let leading = if forward { run.own().end - 1 } else { run.own().start };
+            let leading = if forward {
+                run.indices().end - 1
+            } else {
+                run.indices().start
+            };
             edge[leading] = [0.4 * own, 0.3 * own];
         }
         let mut free_slip = [vec![0.0; grid.len()], vec![0.0; grid.len()]];
@@ -88,7 +92,7 @@ impl Case {
         let response = SlipResponse {
             single: double.single(),
             double,
-            own: [table(0), table(1)],
+            strip_kernels: [table(0), table(1)],
             origin: grid.stride(),
             forward,
         };
@@ -150,11 +154,11 @@ impl Case {
         slip
     }
 
-    /// Of each cell: τ, the slip of the law, μp.
+    /// Shear τ, slip of the law, and bound μp of each cell.
     fn states(&self, shear: &[Vec<f64>; 2]) -> Vec<(Vector, Vector, f64)> {
         let mut states = Vec::new();
         for run in self.contact.runs() {
-            for (index, cell) in run.own().zip(run.first..) {
+            for (index, cell) in run.indices().zip(run.first..) {
                 let place = self.grid.place(run.strip, cell);
                 let tau = [shear[0][place], shear[1][place]];
                 let mut s = self.slip(shear, run.strip, cell as isize);
@@ -173,7 +177,7 @@ impl Case {
     }
 }
 
-/// Where nothing gives way the shear is −μp s/|s| of the rigid slip.
+/// Shear where nothing gives way: −μp s/|s| of the rigid slip.
 #[test]
 fn rigid_bodies_slide_against_the_rigid_slip() {
     for forward in [true, false] {

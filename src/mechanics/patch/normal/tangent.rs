@@ -1,25 +1,25 @@
-//! The change of pressure and penetration with the gap and the load: the same linear system on the set of cells that there is. An
-//! infinitesimal change leaves it as it is.
+//! Change of pressure and penetration with the gap and the load: the same linear system on the present set of cells. An
+//! infinitesimal change leaves the set as it is.
 
-use super::{Normal, NormalProblem};
+use super::{Normal, PatchNormalProblem};
 use crate::error::{Error, Result};
-use crate::mechanics::normal::problem::Constraint;
+use crate::mechanics::normal::normal_problem::Constraint;
 use crate::mechanics::patch::contact::Contact;
 
 impl Normal {
-    /// From the given change of the pressure on the grid, of either sign and none outside the contact, to that under the change of the gap and
-    /// of the load or of the penetration that `problem` holds. Returns the change of the penetration; that of the separation of all
-    /// cells is left in [`Normal::separation`].
+    /// Moves `pressure`, a change of the pressure on the grid, of either sign and none outside the contact, from a first guess to the
+    /// change under that of the gap and of the load or the penetration, which `problem` holds. Returns the change of the penetration;
+    /// that of the separation of all cells is left in [`Normal::separation`].
     ///
     /// # Errors
     /// [`Error::NormalNotConverged`].
-    pub fn tangent(&mut self, problem: &NormalProblem, contact: &Contact, pressure: &mut [f64]) -> Result<f64> {
+    pub fn tangent(&mut self, problem: &PatchNormalProblem, contact: &Contact, pressure: &mut [f64]) -> Result<f64> {
         let places = || contact.places(problem.grid);
         if let Constraint::Total(load) = problem.constraint {
             // Conjugate gradients keep the sum that they start from.
             let missing = load - places().map(|place| pressure[place]).sum::<f64>();
-            let share = missing / contact.cells() as f64;
-            places().for_each(|place| pressure[place] += share);
+            let mean = missing / contact.cells() as f64;
+            places().for_each(|place| pressure[place] += mean);
         }
         let (penetration, left) = self.solve_on(problem, contact, pressure, problem.tolerance);
         if left.is_nan() || left > problem.tolerance {
@@ -35,7 +35,13 @@ impl Normal {
     }
 
     /// The separation of all cells under a solution, into [`Normal::separation`].
-    pub fn separation_of(&mut self, problem: &NormalProblem, contact: &Contact, pressure: &[f64], penetration: f64) {
+    pub fn separation_of(
+        &mut self,
+        problem: &PatchNormalProblem,
+        contact: &Contact,
+        pressure: &[f64],
+        penetration: f64,
+    ) {
         self.separate(problem, contact, pressure, penetration);
     }
 }

@@ -1,9 +1,9 @@
-//! The data of the normal problem and of its solution.
+//! Data of the normal problem and of its solution.
 
 use nalgebra::DMatrix;
 use std::ops::Range;
 
-/// What closes the problem.
+/// Condition that closes the normal problem: the load or the penetration.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Constraint {
     /// Σp, positive.
@@ -12,7 +12,7 @@ pub enum Constraint {
     Penetration(f64),
 }
 
-/// The data of one problem with n nodes.
+/// Data of one problem with n nodes.
 #[derive(Debug, Clone, Copy)]
 pub struct NormalProblem<'a> {
     /// C, n × n, symmetric positive definite.
@@ -21,18 +21,18 @@ pub struct NormalProblem<'a> {
     pub profile: &'a [f64],
     /// Load or penetration.
     pub constraint: Constraint,
-    /// So many nodes at either end stay free, whatever lies over them.
+    /// Number of nodes at either end that stay free of pressure, whatever their separation.
     pub free_ends: usize,
 }
 
 impl NormalProblem<'_> {
-    /// The nodes that may come under pressure.
+    /// Nodes that may come under pressure.
     pub fn candidates(&self) -> Range<usize> {
         self.free_ends..self.profile.len() - self.free_ends
     }
 }
 
-/// What a solver found besides the pressure.
+/// Solution of a normal problem besides the pressure.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct NormalSolution {
     /// δ.

@@ -1,33 +1,33 @@
-//! The wear of a step inside the normal problem.
+//! Wear compliance: the wear of a step inside the normal problem.
 //!
 //! Wear within a step opens the gap in proportion to the pressure: W is a part that does not depend on the pressure of this
 //! step, and the sum of ∂W/∂p p over the nodes. Where ∂W/∂p is not small against the compliance (a wheel that spins on the
 //! spot, a soft rail), a split that takes the wear from the iteration before diverges. There the normal problem takes
-//! ∂W/∂p into its compliance, as if the rail were softer, and the split iterates only on the rest of the wear.
+//! ∂W/∂p, the wear compliance, into its compliance, as if the rail were softer, and the split iterates only on the rest of the wear.
 
-use crate::settings::SofteningSettings;
+use crate::settings::WearComplianceSettings;
 use crate::transport::CellStep;
 use nalgebra::DMatrix;
 
-/// The normal compliance with the wear of the step, n contact nodes, scaled.
+/// Normal compliance with the wear compliance of the step, n contact nodes, scaled.
 #[derive(Debug, Clone)]
-pub struct Softening {
-    settings: SofteningSettings,
-    /// ∂W/∂p of a node's own pressure, n; all zero where wear is explicit.
-    own: Vec<f64>,
-    /// The march from node to node.
+pub struct WearCompliance {
+    settings: WearComplianceSettings,
+    /// Diagonal of ∂W/∂p, by a node's own pressure, n; all zero where wear is explicit.
+    diagonal: Vec<f64>,
+    /// March from node to node.
     step: CellStep,
     /// Whether material moves towards −x₁.
     forward: bool,
     compliance: DMatrix<f64>,
     smallest_compliance: f64,
-    /// Whether the next update renews the softening, however small its change.
+    /// Whether the next update renews the wear compliance, however small its change.
     stale: bool,
 }
 
-impl Softening {
-    /// No softening of the given normal compliance, n × n.
-    pub fn new(compliance: &DMatrix<f64>, settings: SofteningSettings) -> Softening {
+impl WearCompliance {
+    /// No wear compliance on top of the given normal compliance, n × n.
+    pub fn new(compliance: &DMatrix<f64>, settings: WearComplianceSettings) -> WearCompliance {
         let n = compliance.nrows();
         // The least compliant pressure alternates from node to node.
         let sign = |i: usize| if i.is_multiple_of(2) { 1.0 } else { -1.0 };
@@ -37,9 +37,9 @@ impl Softening {
                 alternating += sign(i) * sign(j) * compliance[(i, j)];
             }
         }
-        Softening {
+        WearCompliance {
             settings,
-            own: vec![0.0; n],
+            diagonal: vec![0.0; n],
             step: CellStep::NONE,
             forward: true,
             compliance: compliance.clone(),
@@ -48,12 +48,12 @@ impl Softening {
         }
     }
 
-    /// The normal compliance with the wear of the step.
+    /// Normal compliance with the wear compliance of the step.
     pub fn compliance(&self) -> &DMatrix<f64> {
         &self.compliance
     }
 
-    /// Makes the next [`Softening::update`] compute the softening anew: a step follows from its state alone, not from what an
+    /// Makes the next [`WearCompliance::update`] compute everything anew: a step follows from its state alone, not from what an
     /// earlier step has left here.
     pub fn start_step(&mut self) {
         self.stale = true;
@@ -66,7 +66,7 @@ impl Softening {
         let was_soft = self.is_soft();
         if per_slip * (step.upstream + step.diagonal) * fastest <= self.settings.explicit * self.smallest_compliance {
             if was_soft {
-                self.own.fill(0.0);
+                self.diagonal.fill(0.0);
                 self.compliance.copy_from(stiff);
             }
             return was_soft;
@@ -74,23 +74,23 @@ impl Softening {
         let factor = per_slip * step.diagonal;
         let largest = factor * fastest;
         let change = self
-            .own
+            .diagonal
             .iter()
             .zip(slip)
-            .fold(0.0, |m: f64, (own, s)| (own - factor * s.abs()).abs().max(m));
+            .fold(0.0, |m: f64, (diagonal, s)| (diagonal - factor * s.abs()).abs().max(m));
         let stale = std::mem::take(&mut self.stale);
         if !stale && change <= self.settings.renewal * largest && step == self.step && forward == self.forward {
             return false;
         }
-        for (own, slip) in self.own.iter_mut().zip(slip) {
-            *own = factor * slip.abs();
+        for (diagonal, slip) in self.diagonal.iter_mut().zip(slip) {
+            *diagonal = factor * slip.abs();
         }
         self.step = step;
         self.forward = forward;
         self.compliance.copy_from(stiff);
         for node in 0..slip.len() {
             // To the next node goes what stays of the node's own wear and what the march takes from a source upstream.
-            let (mut depth, mut next) = (self.own[node], self.passed_on() * self.own[node]);
+            let (mut depth, mut next) = (self.diagonal[node], self.passed_on() * self.diagonal[node]);
             let mut row = Some(node);
             while let Some(worn) = row.filter(|_| depth > 0.0) {
                 self.compliance[(worn, node)] += depth;
@@ -111,15 +111,15 @@ impl Softening {
         let (mut carried, mut upstream) = (0.0, 0.0);
         for k in 0..n {
             let node = if self.forward { n - 1 - k } else { k };
-            let own = self.own[node] * pressure[node];
-            carried = self.step.courant_weight * carried + passed_on * upstream + own;
-            upstream = own;
+            let worn = self.diagonal[node] * pressure[node];
+            carried = self.step.courant_weight * carried + passed_on * upstream + worn;
+            upstream = worn;
             wear[node] -= carried;
         }
     }
 
     fn is_soft(&self) -> bool {
-        self.own.iter().any(|own| *own > 0.0)
+        self.diagonal.iter().any(|diagonal| *diagonal > 0.0)
     }
 
     /// Wear of the next node downstream over that of a node's own, both by the node's pressure alone.
@@ -131,7 +131,7 @@ impl Softening {
         if self.forward {
             node.checked_sub(1)
         } else {
-            Some(node + 1).filter(|&next| next < self.own.len())
+            Some(node + 1).filter(|&next| next < self.diagonal.len())
         }
     }
 }
@@ -143,7 +143,7 @@ mod tests {
     use crate::transport::Upwind;
     use crate::wear::{WearMarch, WearSteps};
 
-    /// Softened compliance and proportional part are what the march of the wear does under any pressure.
+    /// Compares wear compliance and proportional part with the march of the wear under any pressure.
     #[test]
     fn the_proportional_part_is_that_of_the_march() {
         let n = 6;
@@ -164,14 +164,14 @@ mod tests {
                 .collect();
             let mut worn = vec![0.0; n + 2];
             march.advance(&rate, &vec![0.0; n + 2], &mut worn, &mut WearSteps::new(&x));
-            let mut softening = Softening::new(&stiff, Settings::default().softening);
+            let mut wear_compliance = WearCompliance::new(&stiff, Settings::default().wear_compliance);
             let step = CellStep::new(1.0 / duration, 0.2, speed.abs());
-            assert!(softening.update(&stiff, &slip, 70.0, step, speed >= 0.0));
+            assert!(wear_compliance.update(&stiff, &slip, 70.0, step, speed >= 0.0));
             let mut rest = worn[1..=n].to_vec();
-            softening.subtract_proportional(&pressure, &mut rest);
+            wear_compliance.subtract_proportional(&pressure, &mut rest);
             for i in 0..n {
                 let softened: f64 = (0..n)
-                    .map(|j| (softening.compliance()[(i, j)] - stiff[(i, j)]) * pressure[j])
+                    .map(|j| (wear_compliance.compliance()[(i, j)] - stiff[(i, j)]) * pressure[j])
                     .sum();
                 assert!(
                     (softened - worn[i + 1]).abs() < 1e-12,

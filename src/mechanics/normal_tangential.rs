@@ -1,64 +1,65 @@
-//! Tractions for given temperature and wear: the normal problem (37) for given shear ↔ friction (30) for given
-//! pressure, repeated until both rest (Steps 2 to 5 of section 4.1 of the paper).
+//! Normal–tangential (Panagiotopoulos) iteration, which solves for the tractions at given temperature and wear: the normal problem
+//! (37) for given shear, then friction (30) for given pressure, repeated until both have converged (Steps 2 to 5 of section 4.1 of
+//! the paper).
 //!
 //! As long as the active set stays, the pressure is an affine function of the shear. With the active-set solver the
-//! friction problem sees that [`Response`], and two sweeps do where alternating as printed takes ten; with the paper's
+//! friction problem sees that [`Response`], and two iterations do where alternating as printed takes ten; with the paper's
 //! linearisation method the two problems alternate as printed.
 
-use super::front::Front;
+use super::leading_edge::LeadingEdge;
 use super::normal::active_set::ActiveSet;
-use super::normal::problem::NormalProblem;
+use super::normal::normal_problem::NormalProblem;
 use super::normal::pschenichnyj::Pschenichnyj;
-use super::problem::{MechanicsProblem, Tractions, node_ahead, under_pressure};
 use super::response::Response;
-use super::tangential::{LeadingEdge, Tangential, TangentialProblem};
+use super::tangential::{LeadingRows, Tangential, TangentialProblem};
+use super::traction_problem::{TractionProblem, Tractions, node_ahead, under_pressure};
 use crate::error::{Error, Result};
 use crate::friction::path::PathNode;
 use crate::numerics::dense;
 use crate::parameters::NormalSolver;
 use crate::settings::{MechanicsSettings, Settings};
 
-/// What a sweep changed.
+/// Change of the tractions by one iteration.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Sweep {
+pub struct TractionChange {
     /// Largest change of the shear, relative to the peak pressure.
     pub shear_change: f64,
     /// Whether other nodes are under pressure than before.
     pub set_changed: bool,
 }
 
-impl Sweep {
-    /// Nothing changed.
-    pub const NONE: Sweep = Sweep {
+impl TractionChange {
+    /// No change.
+    pub const NONE: TractionChange = TractionChange {
         shear_change: 0.0,
         set_changed: false,
     };
 
-    /// Whether the tractions rest to a tolerance.
-    pub fn rests(&self, tolerance: f64) -> bool {
+    /// Whether the tractions have converged to a tolerance.
+    pub fn has_converged(&self, tolerance: f64) -> bool {
         self.shear_change <= tolerance && !self.set_changed
     }
 }
 
-/// Solvers and scratch, for one compliance.
+/// Solvers and buffers of the iteration, for one compliance.
 pub struct Mechanics {
     pub(super) settings: MechanicsSettings,
     pub(super) active_set: ActiveSet,
     pschenichnyj: Pschenichnyj,
     pub(super) tangential: Tangential,
     pub(super) response: Response,
-    /// Multiplications and additions for it in this step.
+    /// Multiplications and additions for the response in this step.
     response_work: u64,
-    /// ∂s/∂τ on the nodes under pressure, without what the leading edge adds, m × m, and the weights it was made with.
+    /// Response ∂s/∂τ on the nodes under pressure, without the leading-edge correction, m × m, and the weights it was made with.
     pub(super) slip_response: Vec<f64>,
     slip_weights: (f64, f64),
-    /// Of the normal problem, with the upward displacement of the shear, n.
+    /// Profile of the normal problem, with the upward displacement by shear, n.
     pub(super) profile: Vec<f64>,
-    /// Along x₁, n.
+    /// Displacement along x₁, n.
     pub(super) displacement: Vec<f64>,
-    /// A change of it, n.
+    /// Change of the displacement along x₁, n.
     pub(super) moved: Vec<f64>,
-    /// The nodes under pressure, and those of the sweep before.
+    /// Nodes under pressure, and those of the iteration before.
     pub(super) nodes: Vec<usize>,
     nodes_before: Vec<usize>,
     /// Separation of the node ahead of the leading one.
@@ -73,12 +74,12 @@ pub(super) struct Local {
     pub(super) pressure: Vec<f64>,
     pub(super) shear: Vec<f64>,
     pub(super) slip: Vec<f64>,
-    pub(super) saturation: Vec<f64>,
+    pub(super) utilisation: Vec<f64>,
     pub(super) friction: Vec<f64>,
     path: Vec<PathNode>,
     /// Change of the profile.
     pub(super) profile: Vec<f64>,
-    /// What follows a change of the shear.
+    /// Change of the pressure or of μ that follows a change of the shear.
     pub(super) following: Vec<f64>,
 }
 
@@ -106,7 +107,7 @@ impl Mechanics {
                 pressure: vector(),
                 shear: vector(),
                 slip: vector(),
-                saturation: vector(),
+                utilisation: vector(),
                 friction: vector(),
                 path: vec![PathNode::default(); nodes],
                 profile: vector(),
@@ -115,7 +116,7 @@ impl Mechanics {
         }
     }
 
-    /// Forgets what was factorised for the step before.
+    /// Begins a step: forgets the matrices that were factorised for the step before.
     pub fn start_step(&mut self) {
         self.tangential.start_step();
         self.active_set.start_step();
@@ -128,7 +129,7 @@ impl Mechanics {
         self.tangential.work() + self.active_set.work() + self.response_work
     }
 
-    /// Forgets what belongs to the normal compliance: it has been replaced.
+    /// Forgets all that was computed from the normal compliance: it has been replaced.
     pub fn forget_normal_compliance(&mut self) {
         self.active_set.forget();
         self.response.forget();
@@ -138,39 +139,44 @@ impl Mechanics {
     ///
     /// # Errors
     /// The first solver that does not converge, [`Error::MechanicsNotConverged`].
-    pub fn solve(&mut self, problem: &MechanicsProblem, tractions: &mut Tractions, tolerance: f64) -> Result<()> {
+    pub fn solve(&mut self, problem: &TractionProblem, tractions: &mut Tractions, tolerance: f64) -> Result<()> {
         let mut residual = f64::INFINITY;
-        for _ in 0..self.settings.sweeps {
-            let sweep = self.sweep(problem, tractions, tolerance)?;
-            residual = sweep.shear_change;
-            if sweep.rests(tolerance) {
+        for _ in 0..self.settings.iterations {
+            let change = self.iterate(problem, tractions, tolerance)?;
+            residual = change.shear_change;
+            if change.has_converged(tolerance) {
                 return Ok(());
             }
         }
         Err(Error::MechanicsNotConverged {
-            iterations: self.settings.sweeps,
+            iterations: self.settings.iterations,
             residual,
             tolerance,
         })
     }
 
-    /// One sweep: normal problem, then friction with the pressure that follows, to `tolerance` relative to the peak
+    /// Iterates once: solves the normal problem, then friction with the pressure that follows, to `tolerance` relative to the peak
     /// pressure. With the active-set solver that is the solution as long as the active set stays.
     ///
     /// # Errors
     /// The first solver that does not converge.
-    pub fn sweep(&mut self, problem: &MechanicsProblem, tractions: &mut Tractions, tolerance: f64) -> Result<Sweep> {
+    pub fn iterate(
+        &mut self,
+        problem: &TractionProblem,
+        tractions: &mut Tractions,
+        tolerance: f64,
+    ) -> Result<TractionChange> {
         let set_changed = self.solve_normal(problem, tractions)?;
         let change = self.solve_friction(problem, tractions, tolerance)?;
         let largest = tractions.pressure.iter().fold(f64::MIN_POSITIVE, |m, p| p.max(m));
-        Ok(Sweep {
+        Ok(TractionChange {
             shear_change: change / largest,
             set_changed,
         })
     }
 
-    /// (37) for given shear. Returns whether the set of nodes under pressure changed.
-    fn solve_normal(&mut self, problem: &MechanicsProblem, tractions: &mut Tractions) -> Result<bool> {
+    /// Solves the normal problem (37) for given shear. Returns whether the set of nodes under pressure changed.
+    fn solve_normal(&mut self, problem: &TractionProblem, tractions: &mut Tractions) -> Result<bool> {
         self.nodes_before.clear();
         self.nodes_before.extend(under_pressure(tractions.pressure));
         self.profile.copy_from_slice(problem.profile);
@@ -214,19 +220,19 @@ impl Mechanics {
     }
 
     /// Separation w = C p − b − δ of a node.
-    fn separation(&self, problem: &MechanicsProblem, pressure: &[f64], penetration: f64, node: usize) -> f64 {
+    fn separation(&self, problem: &TractionProblem, pressure: &[f64], penetration: f64, node: usize) -> f64 {
         let row = problem.normal_compliance.row(node);
         let lowered: f64 = self.nodes.iter().map(|&node| row[node] * pressure[node]).sum();
         lowered - self.profile[node] - penetration
     }
 
-    /// Whether the contact of the last sweep would reach beyond the window, had it not been held within it.
+    /// Whether the contact of the last iteration would reach beyond the window, had it not been held within it.
     pub fn is_cut_off(&self) -> bool {
         self.cut_off
     }
 
-    /// ∂s/∂τ from the response of the displacement: with the weights of [`MechanicsProblem::slip_weights`].
-    fn update_slip_response(&mut self, problem: &MechanicsProblem) {
+    /// Updates ∂s/∂τ to the response of the displacement, with the weights of [`TractionProblem::slip_weights`].
+    fn update_slip_response(&mut self, problem: &TractionProblem) {
         let weights = problem.slip_weights();
         if weights == self.slip_weights {
             return;
@@ -245,13 +251,13 @@ impl Mechanics {
         }
     }
 
-    /// The leading edge of the nodes under pressure.
-    pub(super) fn leading_edge(&self, problem: &MechanicsProblem) -> LeadingEdge<'_> {
-        leading_edge(problem, &self.response, &self.nodes, self.gap)
+    /// Leading edge of the nodes under pressure.
+    pub(super) fn leading_rows(&self, problem: &TractionProblem) -> LeadingRows<'_> {
+        leading_rows(problem, &self.response, &self.nodes, self.gap)
     }
 
     /// Factorises the friction law at the point of the last solve. False where its matrix is singular.
-    pub(super) fn factorise_friction(&mut self, problem: &MechanicsProblem, tolerance: f64) -> bool {
+    pub(super) fn factorise_friction(&mut self, problem: &TractionProblem, tolerance: f64) -> bool {
         let tangential = tangential_problem(
             problem,
             (&self.response, &self.slip_response),
@@ -262,7 +268,7 @@ impl Mechanics {
     }
 
     /// Friction for given pressure and its response; pressure and penetration follow. Returns the largest change of the shear.
-    fn solve_friction(&mut self, problem: &MechanicsProblem, tractions: &mut Tractions, tolerance: f64) -> Result<f64> {
+    fn solve_friction(&mut self, problem: &TractionProblem, tractions: &mut Tractions, tolerance: f64) -> Result<f64> {
         // Within Coulomb's bound from the start: a shear left over from a much larger pressure would make strains that
         // swamp those of this one.
         let mut clamped = 0.0_f64;
@@ -282,7 +288,7 @@ impl Mechanics {
         tractions.friction.copy_from_slice(problem.friction);
         if m == 0 {
             tractions.slip.fill(0.0);
-            tractions.saturation.fill(0.0);
+            tractions.utilisation.fill(0.0);
             if problem.path.is_some() {
                 tractions.speed.fill(0.0);
                 tractions.flow.fill(0.0);
@@ -298,7 +304,7 @@ impl Mechanics {
             self.local.pressure[row] = tractions.pressure[node];
             self.local.shear[row] = tractions.shear[node];
             self.local.friction[row] = problem.friction[node];
-            self.local.saturation[row] = tractions.saturation[node];
+            self.local.utilisation[row] = tractions.utilisation[node];
             self.local.slip[row] = law_slip(problem, &self.displacement, node);
         }
         self.prepare_path(problem);
@@ -311,7 +317,7 @@ impl Mechanics {
         );
         let solved = self
             .tangential
-            .solve(&tangential, &self.local.saturation[..m], &mut shear[..m]);
+            .solve(&tangential, &self.local.utilisation[..m], &mut shear[..m]);
         self.local.shear = shear;
         let change = solved?;
         let point = self.tangential.point(m);
@@ -326,11 +332,11 @@ impl Mechanics {
         *tractions.penetration += dense::dot(&self.response.penetration()[..m], point.change);
         tractions.shear.fill(0.0);
         tractions.slip.fill(0.0);
-        tractions.saturation.fill(0.0);
+        tractions.utilisation.fill(0.0);
         for (row, &node) in self.nodes.iter().enumerate() {
             tractions.shear[node] = self.local.shear[row];
             tractions.slip[node] = mean_slip(problem, &self.displacement, node);
-            tractions.saturation[node] = point.saturation[row];
+            tractions.utilisation[node] = point.utilisation[row];
             tractions.pressure[node] = point.pressure[row];
         }
         if problem.path.is_some() {
@@ -342,14 +348,14 @@ impl Mechanics {
                 tractions.flow[node] = point.of_slip[row].flow();
                 tractions.speed[node] = point.slip[row].abs();
                 tractions.share[node] = point.of_slip[row].share;
-                tractions.cap[node] = point.of_slip[row].cap();
+                tractions.layer_bound[node] = point.of_slip[row].layer_bound();
             }
         }
         Ok(change.max(clamped))
     }
 
-    /// The friction law of the nodes under pressure, at what their particles bring along.
-    fn prepare_path(&mut self, problem: &MechanicsProblem) {
+    /// Sets the friction law of the nodes under pressure for the history that their particles bring along.
+    fn prepare_path(&mut self, problem: &TractionProblem) {
         let Some((law, path)) = &problem.path else {
             return;
         };
@@ -366,7 +372,7 @@ impl Mechanics {
 }
 
 /// Slip velocity of the law at a node, without what the leading edge adds, `m/s`.
-pub(super) fn law_slip(problem: &MechanicsProblem, displacement: &[f64], node: usize) -> f64 {
+pub(super) fn law_slip(problem: &TractionProblem, displacement: &[f64], node: usize) -> f64 {
     let ahead = node_ahead(node, problem.is_forward());
     let strain = |u: &[f64]| u[node] - u[ahead];
     let before = problem.displacement_before;
@@ -382,20 +388,20 @@ pub(super) fn law_slip(problem: &MechanicsProblem, displacement: &[f64], node: u
 /// Slip velocity that heats, wears and takes power: the mean of those in the middle of the two cells beside a node, `m/s`.
 /// With it the work of the tractions on the body vanishes in the sum over the nodes, as it does on an elastic body, but for
 /// the edges. With the slip of the law, taken on one side, it would not.
-fn mean_slip(problem: &MechanicsProblem, displacement: &[f64], node: usize) -> f64 {
+fn mean_slip(problem: &TractionProblem, displacement: &[f64], node: usize) -> f64 {
     problem.rigid_slip
         + 0.5 * problem.strain_speed * (displacement[node - 1] - displacement[node + 1])
         + problem.transient.rate * (displacement[node] - problem.displacement_before[node])
 }
 
-fn leading_edge<'a>(problem: &MechanicsProblem, response: &'a Response, nodes: &[usize], gap: f64) -> LeadingEdge<'a> {
+fn leading_rows<'a>(problem: &TractionProblem, response: &'a Response, nodes: &[usize], gap: f64) -> LeadingRows<'a> {
     let m = nodes.len();
     let forward = problem.is_forward();
     // Rows from the leading node on; a contact of fewer than three nodes has only the first.
     let last = m.saturating_sub(1);
     let rows = [0, 1, 2].map(|k: usize| if forward { last - k.min(last) } else { k.min(last) });
-    LeadingEdge {
-        front: Front {
+    LeadingRows {
+        edge: LeadingEdge {
             near_field: problem.near_field,
             resolved: m >= 4 && nodes[rows[0]].abs_diff(nodes[rows[2]]) == 2,
             forward,
@@ -408,7 +414,7 @@ fn leading_edge<'a>(problem: &MechanicsProblem, response: &'a Response, nodes: &
 }
 
 fn tangential_problem<'a>(
-    problem: &MechanicsProblem,
+    problem: &TractionProblem,
     (response, slip_response): (&'a Response, &'a [f64]),
     (local, nodes, gap): (&'a Local, &[usize], f64),
     tolerance: f64,
@@ -421,7 +427,7 @@ fn tangential_problem<'a>(
         slip_response,
         friction: &local.friction[..m],
         path: problem.path.as_ref().map(|(law, _)| (*law, &local.path[..m])),
-        edge: leading_edge(problem, response, nodes, gap),
+        leading: leading_rows(problem, response, nodes, gap),
         regularisation: problem.regularisation,
         tolerance,
     }
@@ -434,10 +440,10 @@ mod tests {
     use crate::body::half_plane::HalfPlanes;
     use crate::body::mesh::Mesh;
     use crate::body::pair;
-    use crate::friction::coulomb::saturation;
-    use crate::mechanics::front::{Edge, NearField};
-    use crate::mechanics::normal::problem::Constraint;
-    use crate::mechanics::problem::ProblemTangent;
+    use crate::friction::coulomb::utilisation;
+    use crate::mechanics::leading_edge::{EdgeValues, NearField};
+    use crate::mechanics::normal::normal_problem::Constraint;
+    use crate::mechanics::traction_problem::TractionProblemTangent;
     use crate::mechanics::transient::Transient;
     use crate::parameters::{Parameters, Wheel};
     use crate::settings::Settings;
@@ -465,33 +471,33 @@ mod tests {
         (pair, profile)
     }
 
-    struct Solved {
+    struct SolvedTractions {
         pressure: Vec<f64>,
         shear: Vec<f64>,
         slip: Vec<f64>,
-        saturation: Vec<f64>,
+        utilisation: Vec<f64>,
         friction: Vec<f64>,
         surfaces: Vec<f64>,
         flow: Vec<f64>,
         speed: Vec<f64>,
         share: Vec<f64>,
-        cap: Vec<f64>,
+        layer_bound: Vec<f64>,
         penetration: f64,
     }
 
-    impl Solved {
-        fn new() -> Solved {
-            Solved {
+    impl SolvedTractions {
+        fn new() -> SolvedTractions {
+            SolvedTractions {
                 pressure: vec![0.0; NODES],
                 shear: vec![0.0; NODES],
                 slip: vec![0.0; NODES],
-                saturation: vec![0.0; NODES],
+                utilisation: vec![0.0; NODES],
                 friction: vec![0.0; NODES],
                 surfaces: vec![0.0; NODES],
                 flow: vec![0.0; NODES],
                 speed: vec![0.0; NODES],
                 share: vec![0.0; NODES],
-                cap: vec![0.0; NODES],
+                layer_bound: vec![0.0; NODES],
                 penetration: 0.0,
             }
         }
@@ -501,13 +507,13 @@ mod tests {
                 pressure: &mut self.pressure,
                 shear: &mut self.shear,
                 slip: &mut self.slip,
-                saturation: &mut self.saturation,
+                utilisation: &mut self.utilisation,
                 friction: &mut self.friction,
                 surfaces: &mut self.surfaces,
                 flow: &mut self.flow,
                 speed: &mut self.speed,
                 share: &mut self.share,
-                cap: &mut self.cap,
+                layer_bound: &mut self.layer_bound,
                 penetration: &mut self.penetration,
             }
         }
@@ -554,8 +560,8 @@ mod tests {
             }
         }
 
-        fn problem<'a>(&'a self, pair: &'a RollingCompliance, normal_solver: NormalSolver) -> MechanicsProblem<'a> {
-            MechanicsProblem {
+        fn problem<'a>(&'a self, pair: &'a RollingCompliance, normal_solver: NormalSolver) -> TractionProblem<'a> {
+            TractionProblem {
                 compliance: &pair.at_rest,
                 normal_compliance: &pair.at_rest.normal_normal,
                 profile: &self.profile,
@@ -596,8 +602,8 @@ mod tests {
         NearField::new(&HalfPlanes::of_pair(&parameters), spacing, &Scales::new(&parameters))
     }
 
-    fn solve(problem: &MechanicsProblem) -> Solved {
-        let mut solved = Solved::new();
+    fn solve(problem: &TractionProblem) -> SolvedTractions {
+        let mut solved = SolvedTractions::new();
         let mut mechanics = Mechanics::new(NODES, &Settings::default());
         mechanics.solve(problem, &mut solved.tractions(), 1e-12).unwrap();
         solved
@@ -618,7 +624,7 @@ mod tests {
         }
     }
 
-    fn check(pair: &RollingCompliance, data: &Data, problem: &MechanicsProblem) {
+    fn check(pair: &RollingCompliance, data: &Data, problem: &TractionProblem) {
         let solved = solve(problem);
         let (p, tau) = (&solved.pressure, &solved.shear);
         assert!((p.iter().sum::<f64>() - data.total).abs() < 1e-9);
@@ -637,13 +643,13 @@ mod tests {
         let mut closed = (1..NODES - 1).filter(|&i| p[i] > 0.0);
         let first = if forward { closed.next_back() } else { closed.next() }.unwrap();
         let edge = [first, behind(first, 1), behind(first, 2)];
-        let added = Front {
+        let corrections = LeadingEdge {
             near_field: near_field(),
             resolved: true,
             forward,
             strain_speed: data.strain_speed.abs(),
         }
-        .added(&Edge {
+        .corrections(&EdgeValues {
             pressure: edge.map(|i| p[i]),
             shear: edge.map(|i| tau[i]),
             friction: data.friction[first],
@@ -663,15 +669,15 @@ mod tests {
             let mut slip = data.rigid_slip
                 + data.strain_speed.abs() * (along(i) - along(ahead(i)))
                 + rate * ((1.0 - centring) * since(i) + centring * since(ahead(i)));
-            for (row, added) in edge.iter().zip(added) {
+            for (row, correction) in edge.iter().zip(corrections) {
                 if *row == i {
-                    slip += added.slip;
+                    slip += correction.slip;
                 }
             }
-            let (phi, bound) = (solved.saturation[i], data.friction[i] * p[i]);
+            let (phi, bound) = (solved.utilisation[i], data.friction[i] * p[i]);
             assert!((tau[i] + bound * phi).abs() < 1e-9 && phi.abs() <= 1.0);
             if data.regularisation > 0.0 {
-                assert!((phi - saturation(slip, 1e-3)).abs() < 1e-5, "{i}: {phi} {slip}");
+                assert!((phi - utilisation(slip, 1e-3)).abs() < 1e-5, "{i}: {phi} {slip}");
             } else if phi.abs() == 1.0 {
                 assert!(phi * slip > -1e-8, "{i}: {phi} {slip}");
             } else {
@@ -713,12 +719,12 @@ mod tests {
             let mut solved = solve(&problem);
             let mut mechanics = Mechanics::new(NODES, &Settings::default());
             mechanics.linearise(&problem, &mut solved.tractions()).unwrap();
-            let mut tangent = Solved::new();
+            let mut tangent = SolvedTractions::new();
             // Of the magnitude of the strain speed.
             let sign = strain_speed.signum();
             mechanics.tangent(
                 &problem,
-                &ProblemTangent {
+                &TractionProblemTangent {
                     profile: &change.profile,
                     displacement: &change.displacement,
                     friction: &change.friction,
@@ -743,10 +749,10 @@ mod tests {
                 assert!(close(ahead.shear[i], behind.shear[i], tangent.shear[i]), "tau {i}");
                 assert!(close(ahead.slip[i], behind.slip[i], tangent.slip[i]), "s {i}");
                 assert!(
-                    close(ahead.saturation[i], behind.saturation[i], tangent.saturation[i]),
+                    close(ahead.utilisation[i], behind.utilisation[i], tangent.utilisation[i]),
                     "phi {i}: {} {}",
-                    (ahead.saturation[i] - behind.saturation[i]) / (2.0 * h),
-                    tangent.saturation[i]
+                    (ahead.utilisation[i] - behind.utilisation[i]) / (2.0 * h),
+                    tangent.utilisation[i]
                 );
             }
             assert!(close(ahead.penetration, behind.penetration, tangent.penetration));

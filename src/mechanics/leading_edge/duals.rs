@@ -1,13 +1,13 @@
-//! The derivatives of what the leading edge adds against dual numbers: the equations of the heading of [`super`] as they stand there.
+//! Derivatives of the corrections at the leading edge against dual numbers: the equations of the heading of [`super`] as they stand there.
 
-use super::tests::FRONT;
+use super::tests::EDGE;
 use super::*;
 use num_dual::{Dual64, DualNum};
 use proptest::prelude::*;
 
-/// What is added to the slip of both rows, from the heading.
+/// Corrections of the slip of both nodes, from the heading.
 fn of_the_equations(
-    front: &Front,
+    front: &LeadingEdge,
     pressure: [Dual64; 3],
     shear: [Dual64; 3],
     friction: Dual64,
@@ -20,11 +20,11 @@ fn of_the_equations(
     } = front.near_field;
     let [p, p1, p2] = pressure;
     // w/p, and γ = w E*/(2 Δx p).
-    let opening = gap / p;
-    let gamma = opening / direct;
+    let separation = gap / p;
+    let gamma = separation / direct;
     let held = if gamma.re < 1.0 { gamma } else { Dual64::from(1.0) };
     // w τ/p, and the layer's, which goes with γ.
-    let strain = (opening + held * layer * direct) * shear[0];
+    let strain = (separation + held * layer * direct) * shear[0];
     // The slip at an edge is against the shear there, which is that of a rail softer than the wheel along +x₁, and turned otherwise.
     let sign = coupling.signum() * if front.forward { 1.0 } else { -1.0 };
     let omega = gamma / (gamma + 1.0);
@@ -46,8 +46,8 @@ fn of_the_equations(
 }
 
 proptest! {
-    /// On edges that stick and that slip, ahead of and behind the axle, with the layer's share held and not, of rails softer and
-    /// harder than the wheel.
+    /// Partial derivatives at edges that stick and that slip, ahead of and behind the axle, with the layer's part held and not, on rails
+    /// softer and harder than the wheel.
     #[test]
     fn the_partial_derivatives_are_those_of_the_equations(
         pressure in prop::array::uniform3(0.05..0.5_f64),
@@ -57,14 +57,14 @@ proptest! {
         forward in any::<bool>(),
         soft_rail in any::<bool>(),
     ) {
-        let mut front = Front { forward, ..FRONT };
+        let mut front = LeadingEdge { forward, ..EDGE };
         if !soft_rail {
             front.near_field.coupling *= -1.0;
         }
         let shear: [f64; 3] = std::array::from_fn(|k| ratio[k] * pressure[k]);
-        let edge = Edge { pressure, shear, friction: 0.3, gap };
+        let edge = EdgeValues { pressure, shear, friction: 0.3, gap };
         let [a, b, c, d, e, f, friction, gap_change] = change;
-        let change = Edge { pressure: [a, b, c], shear: [d, e, f], friction, gap: gap_change };
+        let change = EdgeValues { pressure: [a, b, c], shear: [d, e, f], friction, gap: gap_change };
         let expected = of_the_equations(
             &front,
             std::array::from_fn(|k| Dual64::new(pressure[k], change.pressure[k])),
@@ -72,7 +72,7 @@ proptest! {
             Dual64::new(0.3, friction),
             Dual64::new(gap, gap_change),
         );
-        for (row, (added, expected)) in front.added(&edge).iter().zip(expected).enumerate() {
+        for (row, (added, expected)) in front.corrections(&edge).iter().zip(expected).enumerate() {
             let tangent = added.change(&change);
             prop_assert!((added.slip - expected.re).abs() < 1e-13 * (1.0 + expected.re.abs()), "{row}: {} {expected}", added.slip);
             prop_assert!((tangent - expected.eps).abs() < 1e-12 * (1.0 + expected.eps.abs()), "{row}: {tangent} {expected}");

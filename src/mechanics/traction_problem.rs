@@ -1,7 +1,7 @@
-//! The data of the mechanics problem and its unknowns.
+//! Data of the mechanics problem of a line and its unknowns, the tractions.
 
-use super::front::NearField;
-use super::normal::problem::Constraint;
+use super::leading_edge::NearField;
+use super::normal::normal_problem::Constraint;
 use super::transient::Transient;
 use crate::body::compliance::Compliance;
 use crate::friction::memory::ParticlePath;
@@ -9,12 +9,12 @@ use crate::friction::path::PathLaw;
 use crate::parameters::NormalSolver;
 use nalgebra::DMatrix;
 
-/// The data of one mechanics problem with n contact nodes, scaled.
+/// Data of one mechanics problem with n contact nodes, scaled.
 #[derive(Debug, Clone, Copy)]
-pub struct MechanicsProblem<'a> {
+pub struct TractionProblem<'a> {
     /// Compliance at rest.
     pub compliance: &'a Compliance,
-    /// Its C_nn, softened by the wear of the step where that is treated implicitly.
+    /// Normal compliance C_nn, with the wear compliance of the step where wear is treated implicitly.
     pub normal_compliance: &'a DMatrix<f64>,
     /// Profile of the wheel, less wear, plus the upward displacement that heat and inertia cause, n.
     pub profile: &'a [f64],
@@ -24,7 +24,7 @@ pub struct MechanicsProblem<'a> {
     pub displacement_before: &'a [f64],
     /// μ, n; where it depends on more than the temperature, that without slip.
     pub friction: &'a [f64],
-    /// How it depends on slip and on what was before; none where it does not.
+    /// Law by which μ depends on slip and on history, with the history; none where it does not.
     pub path: Option<(PathLaw, ParticlePath<'a>)>,
     /// Load or penetration.
     pub constraint: Constraint,
@@ -36,30 +36,30 @@ pub struct MechanicsProblem<'a> {
     pub strain_speed: f64,
     /// ∂u₁/∂t.
     pub transient: Transient,
-    /// The half-planes as one cell sees them.
+    /// Compliance of the half-planes within one cell.
     pub near_field: NearField,
     /// ε, `m/s`; 0 is Coulomb's law.
     pub regularisation: f64,
 }
 
-/// Change of a [`MechanicsProblem`]'s data in one direction, n contact nodes.
+/// Change of a [`TractionProblem`]'s data in one direction, n contact nodes.
 #[derive(Debug, Clone, Copy)]
-pub struct ProblemTangent<'a> {
-    /// Of the profile.
+pub struct TractionProblemTangent<'a> {
+    /// Change of the profile.
     pub profile: &'a [f64],
-    /// Of the displacement along x₁.
+    /// Change of the displacement along x₁ that heat and inertia cause.
     pub displacement: &'a [f64],
-    /// Of μ without slip.
+    /// Change of μ without slip.
     pub friction: &'a [f64],
-    /// Of μ at unchanged slip: the same where it does not depend on slip.
+    /// Change of μ at unchanged slip: that of μ without slip where μ does not depend on slip.
     pub friction_of_slip: &'a [f64],
-    /// Of Σp; without effect where the penetration is given.
+    /// Change of Σp; without effect where the penetration is given.
     pub total: f64,
-    /// Of ω r₀ − V, `m/s`.
+    /// Change of ω r₀ − V, `m/s`.
     pub rigid_slip: f64,
-    /// Of the strain speed's magnitude, `m/s`.
+    /// Change of the strain speed's magnitude, `m/s`.
     pub strain_speed: f64,
-    /// Of ∂u₁/∂t.
+    /// Change of ∂u₁/∂t.
     pub transient: Transient,
 }
 
@@ -71,26 +71,26 @@ pub struct Tractions<'a> {
     pub shear: &'a mut [f64],
     /// Slip velocity, `m/s`, 0 outside the contact: the mean of those in the middle of the two cells beside a node.
     pub slip: &'a mut [f64],
-    /// Share −τ/(μ p) of Coulomb's bound, with the sign of the slip: between −1 and 1.
-    pub saturation: &'a mut [f64],
+    /// Traction utilisation −τ/(μ p), with the sign of the slip: between −1 and 1.
+    pub utilisation: &'a mut [f64],
     /// μ; where a layer flows, its bound over the pressure.
     pub friction: &'a mut [f64],
-    /// Where μ depends on more than the temperature: μ of the surfaces, of the nodes in contact; that of the others stays.
+    /// Coefficient μ of the surfaces of the nodes in contact, where μ depends on more than the temperature; that of the others stays.
     pub surfaces: &'a mut [f64],
-    /// u_pl of a layer that flows, `m`, 0 outside the contact.
+    /// Flow u_pl of a layer, `m`, 0 outside the contact.
     pub flow: &'a mut [f64],
-    /// Where μ depends on slip: the magnitude of the law's slip velocity, `m/s`, 0 outside the contact.
+    /// Magnitude of the law's slip velocity where μ depends on slip, `m/s`, 0 outside the contact.
     pub speed: &'a mut [f64],
-    /// The derivative of `surfaces` by the μ without slip.
+    /// Derivative of `surfaces` by the μ without slip.
     pub share: &'a mut [f64],
-    /// And the bound of a layer over the pressure, 0 without one.
-    pub cap: &'a mut [f64],
+    /// Bound of a layer over the pressure, 0 without one.
+    pub layer_bound: &'a mut [f64],
     /// Penetration, scaled.
     pub penetration: &'a mut f64,
 }
 
-impl MechanicsProblem<'_> {
-    /// The weights with which strain and displacement of a node enter its slip: of u₁ less that of the node ahead, and of u₁ less
+impl TractionProblem<'_> {
+    /// Weights with which strain and displacement of a node enter its slip: of u₁ less that of the node ahead, and of u₁ less
     /// that of the step before, `m/s`.
     pub fn slip_weights(&self) -> (f64, f64) {
         let Transient { rate, centring } = self.transient;
@@ -108,13 +108,13 @@ impl MechanicsProblem<'_> {
     }
 }
 
-/// The nodes under pressure. The ends of the window have no neighbour on one side; a contact that reaches them is an error
+/// Nodes under pressure. The ends of the window have no neighbour on one side; a contact that reaches them is an error
 /// of the step.
 pub fn under_pressure(pressure: &[f64]) -> impl Iterator<Item = usize> + '_ {
     (1..pressure.len() - 1).filter(|&i| pressure[i] > 0.0)
 }
 
-/// The next node on the leading side.
+/// Next node on the leading side.
 pub fn node_ahead(node: usize, forward: bool) -> usize {
     if forward { node + 1 } else { node - 1 }
 }

@@ -1,10 +1,10 @@
-//! The leading edge of the contact, which falls between two nodes: what its cells add to the slip.
+//! Leading-edge correction: the edge of the contact falls between two nodes, and the slip of the leading nodes is corrected for it.
 //!
 //! **The strain of the leading node.** The difference to the node ahead contains the jump of u₁ out of the contact, as the
 //! difference of the gaps does: where pressure and shear leave the edge in a fixed ratio, both with the root of the distance,
 //! both jumps are in that ratio, too. The jump of the gap is known: the separation w of the node ahead. So w τ/p of the
-//! leading node is taken off its strain. A layer between wheel and rail is sheared from the edge on, not from the node ahead: what it
-//! adds to the strain is cτ over the distance d to the edge, in place of that to the node ahead. Where the pressure leaves the edge with the
+//! leading node is taken off its strain. A layer between wheel and rail is sheared from the edge on, not from the node ahead: it
+//! adds cτ over the distance d to the edge to the strain, in place of that to the node ahead. Where the pressure leaves the edge with the
 //! root of the distance, the separation goes with its power 3/2, γ = w E*/(2 Δx p) = ⅔ (1 − q)^{3/2}/√q with q = d/Δx, and
 //! 1/q − 1 is 3 γ within a sixth for q between ¼ and ¾. Beyond γ = 1, where the leading node has just joined and carries next to nothing, it is
 //! held: with a layer that is far softer than a cell, w τ/p of a pressure that falls to 0 in the midst of an iteration would outweigh all other
@@ -27,30 +27,30 @@ use crate::body::half_plane::HalfPlanes;
 
 /// Separation, pressures and shears below this multiple of the unit pressure are not divided by.
 const LEAST_PRESSURE: f64 = 1e-12;
-/// (1/q − 1)/γ.
-pub const LAYER_OPENING: f64 = 3.0;
-/// The largest γ in it.
-const LARGEST_OPENING: f64 = 1.0;
-/// S at ω = 0 and 1, and its rise towards ω = ½ over ω(1 − ω).
-const SHARE: [f64; 2] = [0.21, 0.57];
+/// Ratio (1/q − 1)/γ of the heading, by which a layer adds to the strain.
+pub const LAYER_STRAIN: f64 = 3.0;
+/// Largest γ that a layer's strain is taken for.
+const LARGEST_GAMMA: f64 = 1.0;
+/// Hidden slip S at ω = 0 and 1, and its rise towards ω = ½ over ω(1 − ω).
+const HIDDEN_SLIP: [f64; 2] = [0.21, 0.57];
 
-/// The half-planes as one cell sees them, scaled: displacement per traction on it.
+/// Compliance of the half-planes within one cell, scaled: displacement per traction on the cell.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct NearField {
     /// Σ (1 − ν)/γ over both bodies times Δx, that is 2Δx/E*.
     pub direct: f64,
     /// β Δx: (1 − 2ν)/(2γ) of the rail less that of the wheel, times Δx.
     pub coupling: f64,
-    /// Strain of the leading node that a layer adds to that of the cell ahead, per w τ/p: 0 without a layer.
+    /// Strain that a layer adds at the leading node, over the correction w τ/p of the strain without a layer: 0 without one.
     pub layer: f64,
 }
 
-/// The leading edge of one contact.
+/// Leading edge of one contact.
 #[derive(Debug, Clone, Copy)]
-pub struct Front {
-    /// The half-planes.
+pub struct LeadingEdge {
+    /// Compliance of the half-planes within one cell.
     pub near_field: NearField,
-    /// Whether the three leading nodes are neighbours, and at least one more follows them: else only the strain is mended.
+    /// Whether the three leading nodes are neighbours, and at least one more follows them: else only the strain is corrected.
     pub resolved: bool,
     /// Whether the leading side is that of +x₁.
     pub forward: bool,
@@ -60,7 +60,7 @@ pub struct Front {
 
 /// Values at the three leading nodes, the first of them first, and ahead of them.
 #[derive(Debug, Clone, Copy, Default)]
-pub struct Edge {
+pub struct EdgeValues {
     /// Pressure.
     pub pressure: [f64; 3],
     /// Shear.
@@ -71,24 +71,24 @@ pub struct Edge {
     pub gap: f64,
 }
 
-/// What the leading edge adds to the slip of one row, and its partial derivatives.
+/// Correction of the slip of one node at the leading edge, and its partial derivatives.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Added {
-    /// The slip, `m/s`.
+pub struct EdgeCorrection {
+    /// Slip that is added, `m/s`.
     pub slip: f64,
-    /// By the pressures.
+    /// Derivatives by the pressures.
     pub by_pressure: [f64; 3],
-    /// By the shears.
+    /// Derivatives by the shears.
     pub by_shear: [f64; 3],
-    /// By μ.
+    /// Derivative by μ.
     pub by_friction: f64,
-    /// By the separation.
+    /// Derivative by the separation ahead.
     pub by_gap: f64,
 }
 
-impl Added {
-    /// The change with a change of the edge.
-    pub fn change(&self, edge: &Edge) -> f64 {
+impl EdgeCorrection {
+    /// Change of the correction with a change of the values at the edge.
+    pub fn change(&self, edge: &EdgeValues) -> f64 {
         let mut change = self.by_friction * edge.friction + self.by_gap * edge.gap;
         for node in 0..3 {
             change += self.by_pressure[node] * edge.pressure[node] + self.by_shear[node] * edge.shear[node];
@@ -97,8 +97,16 @@ impl Added {
     }
 }
 
+/// Ratio w/p of the separation ahead to the pressure of the leading node, and its derivatives.
+#[derive(Debug, Clone, Copy)]
+struct SeparationRatio {
+    ratio: f64,
+    by_gap: f64,
+    by_pressure: f64,
+}
+
 impl NearField {
-    /// Of half-planes, on cells `spacing` `m` long.
+    /// Compliance of half-planes within cells `spacing` `m` long.
     pub fn new(half_planes: &HalfPlanes, spacing: f64, scales: &Scales) -> NearField {
         let cell = scales.compliance(spacing);
         NearField {
@@ -108,19 +116,19 @@ impl NearField {
         }
     }
 
-    /// The same with a layer of this compliance between the bodies, scaled.
+    /// Near field with a layer of this compliance, scaled, between the bodies.
     pub fn with_layer(self, compliance: f64) -> NearField {
         NearField {
-            layer: LAYER_OPENING * compliance / self.direct,
+            layer: LAYER_STRAIN * compliance / self.direct,
             ..self
         }
     }
 }
 
-impl Front {
-    /// What is added to the slip of the first and of the second row.
-    pub fn added(&self, edge: &Edge) -> [Added; 2] {
-        let mut rows = [Added::default(); 2];
+impl LeadingEdge {
+    /// Corrections of the slip of the first and of the second node.
+    pub fn corrections(&self, edge: &EdgeValues) -> [EdgeCorrection; 2] {
+        let mut rows = [EdgeCorrection::default(); 2];
         if edge.pressure[0] <= LEAST_PRESSURE {
             return rows;
         }
@@ -130,7 +138,7 @@ impl Front {
         let ratio_by_gap = opens / edge.pressure[0];
         let ratio_by_pressure = -ratio / edge.pressure[0];
         let NearField { direct, layer, .. } = self.near_field;
-        let held = LARGEST_OPENING * direct;
+        let held = LARGEST_GAMMA * direct;
         let slope = 1.0 + if ratio < held { layer } else { 0.0 };
         let (speed, strain) = (self.strain_speed, ratio + layer * ratio.min(held));
         rows[0].slip = speed * strain * edge.shear[0];
@@ -139,18 +147,23 @@ impl Front {
         rows[0].by_pressure[0] = speed * slope * ratio_by_pressure * edge.shear[0];
         let coupled = self.near_field.coupling != 0.0;
         if coupled && self.resolved && edge.pressure[1].min(edge.pressure[2]) > LEAST_PRESSURE {
-            self.add_hidden_slip(edge, (ratio, ratio_by_gap, ratio_by_pressure), &mut rows);
+            let separation = SeparationRatio {
+                ratio,
+                by_gap: ratio_by_gap,
+                by_pressure: ratio_by_pressure,
+            };
+            self.add_hidden_slip(edge, separation, &mut rows);
         }
         rows
     }
 
-    /// The slip that is smaller than a cell.
-    fn add_hidden_slip(
-        &self,
-        edge: &Edge,
-        (ratio, ratio_by_gap, ratio_by_pressure): (f64, f64, f64),
-        rows: &mut [Added; 2],
-    ) {
+    /// Adds the slip that is smaller than a cell.
+    fn add_hidden_slip(&self, edge: &EdgeValues, separation: SeparationRatio, rows: &mut [EdgeCorrection; 2]) {
+        let SeparationRatio {
+            ratio,
+            by_gap: ratio_by_gap,
+            by_pressure: ratio_by_pressure,
+        } = separation;
         let NearField { direct, coupling, .. } = self.near_field;
         // Sign of the shear at an edge that slips: + on a rail softer than the wheel that is travelled along +x₁. A harder rail
         // turns it, and so does travel along −x₁.
@@ -162,24 +175,25 @@ impl Front {
         let gamma = ratio / direct;
         let weight = gamma / (1.0 + gamma);
         let weight_by_ratio = 1.0 / (direct * (1.0 + gamma) * (1.0 + gamma));
-        let share = SHARE[0] + SHARE[1] * weight * (1.0 - weight);
-        let share_by_weight = SHARE[1] * (1.0 - 2.0 * weight);
+        let hidden = HIDDEN_SLIP[0] + HIDDEN_SLIP[1] * weight * (1.0 - weight);
+        let hidden_by_weight = HIDDEN_SLIP[1] * (1.0 - 2.0 * weight);
         let pressure = (1.0 - weight) * p1 + weight * p2;
         let exponent = (sign * ((1.0 - weight) * r1 + weight * r2) - edge.friction) / slope;
         let decay = exponent.min(0.0).exp();
         let falls = if exponent < 0.0 { decay / slope } else { 0.0 };
 
         let scale = sign * self.strain_speed * coupling.abs();
-        let slip = scale * share * pressure * decay;
+        let slip = scale * hidden * pressure * decay;
         let by_weight = scale
-            * ((share_by_weight * pressure + share * (p2 - p1)) * decay + share * pressure * falls * sign * (r2 - r1));
-        let by_exponent = scale * share * pressure * falls;
-        let whole = Added {
+            * ((hidden_by_weight * pressure + hidden * (p2 - p1)) * decay
+                + hidden * pressure * falls * sign * (r2 - r1));
+        let by_exponent = scale * hidden * pressure * falls;
+        let whole = EdgeCorrection {
             slip,
             by_pressure: [
                 by_weight * weight_by_ratio * ratio_by_pressure,
-                (1.0 - weight) * (scale * share * decay - by_exponent * sign * r1 / p1),
-                weight * (scale * share * decay - by_exponent * sign * r2 / p2),
+                (1.0 - weight) * (scale * hidden * decay - by_exponent * sign * r1 / p1),
+                weight * (scale * hidden * decay - by_exponent * sign * r2 / p2),
             ],
             by_shear: [
                 0.0,
@@ -211,7 +225,7 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    pub const FRONT: Front = Front {
+    pub const EDGE: LeadingEdge = LeadingEdge {
         near_field: NearField {
             direct: 0.04,
             coupling: 0.012,
@@ -223,20 +237,20 @@ mod tests {
     };
 
     proptest! {
-        /// Nothing jumps where the node ahead comes under pressure: it is then the leading one, without pressure yet.
+        /// Corrections do not jump where the node ahead comes under pressure: it is then the leading one, without pressure yet.
         #[test]
         fn a_node_that_joins_changes_nothing(pressure in prop::array::uniform3(0.1..0.5_f64), ratio in -0.3..0.28_f64) {
-            let touching = Edge { pressure, shear: pressure.map(|p| ratio * p), friction: 0.3, gap: 0.0 };
+            let touching = EdgeValues { pressure, shear: pressure.map(|p| ratio * p), friction: 0.3, gap: 0.0 };
             // The next node has joined: the pressure is next to nothing, the gap ahead of it finite.
-            let joined = Edge {
+            let joined = EdgeValues {
                 pressure: [1e-9, pressure[0], pressure[1]],
                 shear: [ratio * 1e-9, ratio * pressure[0], ratio * pressure[1]],
                 friction: 0.3,
                 gap: 0.02,
             };
-            let (before, after) = (FRONT.added(&touching), FRONT.added(&joined));
+            let (before, after) = (EDGE.corrections(&touching), EDGE.corrections(&joined));
             // Rows of the same nodes: the first before is the second after.
-            prop_assert!((before[0].slip - after[1].slip).abs() < 1e-4 * FRONT.strain_speed * FRONT.near_field.coupling);
+            prop_assert!((before[0].slip - after[1].slip).abs() < 1e-4 * EDGE.strain_speed * EDGE.near_field.coupling);
             prop_assert!(before[1].slip.abs() < 1e-15);
         }
     }
@@ -250,17 +264,17 @@ mod tests {
         let k = 0.012 / (std::f64::consts::PI * 0.04);
         let unit = 20.0 * 0.012;
         for (ratio, decay) in [(0.2, (-0.1 / k).exp()), (0.31, 1.0)] {
-            let edge = |gap: f64| Edge {
+            let edge = |gap: f64| EdgeValues {
                 pressure,
                 shear: [0.0, ratio * 0.2, ratio * 0.3],
                 friction: 0.3,
                 gap,
             };
-            let [first, second] = FRONT.added(&edge(0.0));
+            let [first, second] = EDGE.corrections(&edge(0.0));
             assert!((first.slip - unit * 0.21 * 0.2 * decay).abs() < 1e-15);
             assert_eq!(second.slip, 0.0);
             // w E*/(2 Δx p) = 1: ω = ½.
-            for row in FRONT.added(&edge(0.004)) {
+            for row in EDGE.corrections(&edge(0.004)) {
                 assert!((row.slip - 0.5 * unit * (0.21 + 0.57 / 4.0) * 0.25 * decay).abs() < 1e-15);
             }
         }
@@ -268,17 +282,17 @@ mod tests {
 
     #[test]
     fn like_bodies_have_no_hidden_slip() {
-        let mut front = FRONT;
+        let mut front = EDGE;
         front.near_field.coupling = 0.0;
-        let edge = Edge {
+        let edge = EdgeValues {
             pressure: [0.1, 0.2, 0.3],
             shear: [0.03, 0.06, 0.09],
             friction: 0.3,
             gap: 0.01,
         };
-        let [first, second] = front.added(&edge);
-        // The layer's share is held at γ = 1.
+        let [first, second] = front.corrections(&edge);
+        // The layer's part is held at γ = 1.
         assert!((first.slip - 20.0 * (0.01 / 0.1 + 0.7 * 0.04) * 0.03).abs() < 1e-15);
-        assert_eq!(second, Added::default());
+        assert_eq!(second, EdgeCorrection::default());
     }
 }
