@@ -8,7 +8,7 @@
 
 use super::leading_edge::EdgeValues;
 use super::normal_tangential::Mechanics;
-use super::traction_problem::{TractionProblem, TractionProblemTangent, Tractions, node_ahead};
+use super::traction_problem::{TractionProblem, TractionProblemTangent, Tractions};
 use crate::error::{Error, Result};
 use crate::numerics::dense;
 use crate::parameters::NormalSolver;
@@ -56,7 +56,7 @@ impl Mechanics {
         }
         self.displacement_tangent(problem, change, tractions);
         for &node in &self.nodes {
-            tractions.slip[node] = self.mean_slip_tangent(problem, change, node);
+            tractions.slip[node] = problem.mean_slip_tangent(change, &self.displacement, &self.moved, node);
         }
         self.friction_tangent(problem, change, tractions.friction);
         for (row, &node) in self.nodes.iter().enumerate() {
@@ -129,7 +129,7 @@ impl Mechanics {
             lowered - change.profile[ahead] - penetration
         });
         for (row, &node) in self.nodes.iter().enumerate() {
-            self.local.slip[row] = self.law_slip_tangent(problem, change, node);
+            self.local.slip[row] = problem.law_slip_tangent(change, &self.displacement, &self.moved, node);
         }
         let leading = self.leading_rows(problem);
         let point = self.tangential.point(m);
@@ -203,33 +203,6 @@ impl Mechanics {
         problem
             .compliance
             .add_along(1.0, tractions.pressure, tractions.shear, &mut self.moved);
-    }
-
-    /// Change of the law's slip with the data and with du₁, without the leading-edge correction.
-    fn law_slip_tangent(&self, problem: &TractionProblem, change: &TractionProblemTangent, node: usize) -> f64 {
-        let ahead = node_ahead(node, problem.is_forward());
-        let strain = |u: &[f64]| u[node] - u[ahead];
-        let (by_strain, by_displacement) = problem.slip_weights();
-        let since = |i: usize| self.displacement[i] - problem.displacement_before[i];
-        let (now, change_of) = (problem.transient, change.transient);
-        let centred = change_of.centring * now.rate + now.centring * change_of.rate;
-        change.rigid_slip
-            + change.strain_speed * strain(&self.displacement)
-            + by_strain * strain(&self.moved)
-            + by_displacement * self.moved[node]
-            + change_of.rate * since(node)
-            - centred * (since(node) - since(ahead))
-    }
-
-    /// Change of the mean slip with the data and with du₁.
-    fn mean_slip_tangent(&self, problem: &TractionProblem, change: &TractionProblemTangent, node: usize) -> f64 {
-        let sign = if problem.is_forward() { 1.0 } else { -1.0 };
-        let strain = |u: &[f64]| 0.5 * (u[node - 1] - u[node + 1]);
-        change.rigid_slip
-            + sign * change.strain_speed * strain(&self.displacement)
-            + problem.strain_speed * strain(&self.moved)
-            + change.transient.rate * (self.displacement[node] - problem.displacement_before[node])
-            + problem.transient.rate * self.moved[node]
     }
 
     /// Change of the traction utilisation φ = −τ/(μ p); none where a node slips by Coulomb's law.

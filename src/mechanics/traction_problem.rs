@@ -90,13 +90,6 @@ pub struct Tractions<'a> {
 }
 
 impl TractionProblem<'_> {
-    /// Weights with which strain and displacement of a node enter its slip: of u₁ less that of the node ahead, and of u₁ less
-    /// that of the step before, `m/s`.
-    pub fn slip_weights(&self) -> (f64, f64) {
-        let Transient { rate, centring } = self.transient;
-        (self.strain_speed.abs() - centring * rate, rate)
-    }
-
     /// Whether the leading side is towards +x₁: V ≥ 0.
     pub fn is_forward(&self) -> bool {
         self.strain_speed >= 0.0

@@ -3,7 +3,7 @@
 
 use super::fields::PatchFields;
 use super::memory;
-use super::problem::{PatchProblem, SlipWeights};
+use super::problem::PatchProblem;
 use super::response;
 use super::solvers::PatchSolvers;
 use crate::body::grid::Grid;
@@ -12,6 +12,7 @@ use crate::contact::interface::Interface;
 use crate::error::Result;
 use crate::friction::coulomb;
 use crate::friction::path::Passed;
+use crate::mechanics::kinematics::SlipWeights;
 use crate::mechanics::normal_tangential::TractionChange;
 use crate::mechanics::patch::contact::Contact;
 use crate::mechanics::patch::friction::{FrictionProblem, PathOfCells};
@@ -260,10 +261,8 @@ fn free_slip(
             let rigid = problem.rigid_slip(grid.x(cell) + half, y);
             for (component, rigid) in rigid.into_iter().enumerate() {
                 let (given, before) = (&solvers.given[component], &solvers.before[component]);
-                solvers.free_slip[component][place] = rigid
-                    + weights.strain * (given[place] - given[next])
-                    + weights.strain_before * (before[place] - before[next])
-                    + weights.change * (given[place] - before[place]);
+                solvers.free_slip[component][place] =
+                    weights.slip(rigid, [given[place], given[next]], [before[place], before[next]]);
             }
         }
     }

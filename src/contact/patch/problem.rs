@@ -5,60 +5,33 @@ use super::operators::PatchOperators;
 use crate::friction::coulomb::Sliding;
 use crate::heat::strips::StripHeatMarch;
 use crate::heat::surface::{SurfaceCondition, SurfaceExchange};
+use crate::mechanics::kinematics::{self, SlipWeights};
 use crate::mechanics::transient::Transient;
-use crate::signals::Motion;
 use crate::wear::strips::StripWearMarch;
 use std::ops::Range;
 
 /// Problem of a step of the patch.
 pub type PatchProblem<'a> = crate::contact::problem::Problem<'a, PatchOperators>;
 
-/// Weights with which displacements enter the slip ahead of a cell, `m/s` per scaled displacement.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct SlipWeights {
-    /// Weight of the displacement u of the cell less that of the cell ahead.
-    pub strain: f64,
-    /// Weight of u less u before the step.
-    pub change: f64,
-    /// Weight of u before the step less that of the cell ahead then.
-    pub strain_before: f64,
-    /// |V| times the displacement scale over the length of a cell.
-    pub strain_speed: f64,
-}
-
-impl SlipWeights {
-    /// Slip by a displacement u at a cell and at the one ahead, and u at both before the step.
-    pub fn slip(&self, [own, next]: [f64; 2], [before, before_next]: [f64; 2]) -> f64 {
-        self.strain * (own - next) + self.strain_before * (before - before_next) + self.change * (own - before)
-    }
-}
-
 impl<'a> PatchProblem<'a> {
-    /// Weights with which displacements enter the slip.
+    /// Weights with which displacements enter the slip ahead of a cell.
     pub fn slip_weights(&self, transient: Transient) -> SlipWeights {
-        let speed = self.conditions.motion.rolling_speed.abs();
-        let strain_speed = speed * self.operators.scales.displacement / self.operators.grid.length;
-        let centred = transient.centring * transient.rate;
-        SlipWeights {
-            strain: strain_speed - centred,
-            change: transient.rate,
-            strain_before: centred,
-            strain_speed,
-        }
+        SlipWeights::new(transient, self.strain_speed(self.conditions.motion.rolling_speed.abs()))
     }
 
     /// Change of the weights with |V|, by `speed` `m/s`.
     pub fn slip_weights_tangent(&self, fields: &PatchFields, speed: f64) -> SlipWeights {
-        let transient = self.transient(fields.relaxation_length);
-        let change = self.transient_per_speed(fields.relaxation_length);
-        let strain_speed = speed * self.operators.scales.displacement / self.operators.grid.length;
-        let centred = speed * (change.centring * transient.rate + transient.centring * change.rate);
-        SlipWeights {
-            strain: strain_speed - centred,
-            change: speed * change.rate,
-            strain_before: centred,
-            strain_speed,
-        }
+        SlipWeights::tangent(
+            self.transient(fields.relaxation_length),
+            self.transient_per_speed(fields.relaxation_length),
+            speed,
+            self.strain_speed(speed),
+        )
+    }
+
+    /// Speed times the displacement scale over the length of a cell, `m/s`.
+    fn strain_speed(&self, speed: f64) -> f64 {
+        speed * self.operators.scales.displacement / self.operators.grid.length
     }
 
     /// Ratio of the separation `gap` ahead of a leading cell to the cell's pressure, to which the leading-edge correction of the slip
@@ -89,7 +62,7 @@ impl<'a> PatchProblem<'a> {
 
     /// Rigid slip of the rail relative to the wheel at a point, `m/s`: w_x = V(ξ + φ y), w_y = −V(η + φ x).
     pub fn rigid_slip(&self, x: f64, y: f64) -> [f64; 2] {
-        rigid_slip(&self.conditions.motion, x, y)
+        kinematics::rigid_slip(&self.conditions.motion, x, y)
     }
 
     /// Heat march of the step.
@@ -161,14 +134,6 @@ impl<'a> PatchProblem<'a> {
     pub fn breadth(&self, fields: &PatchFields) -> f64 {
         super::extent::extent(self.operators, &fields.pressure).breadth
     }
-}
-
-/// Rigid slip under a motion, or its change under that of a motion, `m/s`.
-pub fn rigid_slip(motion: &Motion, x: f64, y: f64) -> [f64; 2] {
-    [
-        motion.rigid_slip + motion.spin_rate * y,
-        -(motion.lateral_speed + motion.spin_rate * x),
-    ]
 }
 
 /// Slip and shear of a cell.

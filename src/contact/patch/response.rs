@@ -2,8 +2,9 @@
 //! step give them.
 
 use super::operators::PatchOperators;
-use super::problem::{PatchProblem, SlipWeights};
+use super::problem::PatchProblem;
 use crate::body::influence::ShiftedKernels;
+use crate::mechanics::kinematics::SlipWeights;
 use crate::mechanics::patch::friction::SlipResponse;
 
 /// Response that is not adapted to any weights yet.

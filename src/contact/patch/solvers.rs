@@ -2,12 +2,12 @@
 
 use super::expansion;
 use super::operators::PatchOperators;
-use super::problem::SlipWeights;
 use super::response;
 use crate::body::influence;
 use crate::friction::path::PathNode;
 use crate::heat::strips::StripHeatScratch;
 use crate::heat::surface::SurfaceExchange;
+use crate::mechanics::kinematics::SlipWeights;
 use crate::mechanics::patch::contact::Contact;
 use crate::mechanics::patch::friction::{Friction, SlipResponse};
 use crate::mechanics::patch::normal::Normal;

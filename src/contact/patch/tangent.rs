@@ -7,7 +7,7 @@ use super::expansion;
 use super::fields::PatchFields;
 use super::memory;
 use super::operators::PatchOperators;
-use super::problem::{PatchProblem, SlipWeights, rigid_slip};
+use super::problem::PatchProblem;
 use super::response;
 use super::solvers::{PatchSolvers, PathScratch};
 use crate::body::influence::{self, Window};
@@ -18,6 +18,7 @@ use crate::error::Result;
 use crate::friction::path::PathLaw;
 use crate::heat::strips::StripHeatScratch;
 use crate::heat::surface::{ExchangeTangent, SurfaceExchange};
+use crate::mechanics::kinematics::{SlipWeights, rigid_slip};
 use crate::mechanics::normal::normal_problem::Constraint;
 use crate::mechanics::patch::contact::Contact;
 use crate::mechanics::patch::friction::{
@@ -83,12 +84,7 @@ impl PatchTangent {
             friction: Friction::new(grid, transform, settings.patch),
             response: response::none(operators),
             products: transform.scratch(),
-            weights: SlipWeights {
-                strain: 0.0,
-                change: 0.0,
-                strain_before: 0.0,
-                strain_speed: 0.0,
-            },
+            weights: SlipWeights::default(),
             scheme: [0.0; 3],
             slip: vectors(),
             separation: on_grid(),
@@ -143,7 +139,7 @@ impl PatchTangent {
                     let rigid = problem.rigid_slip(grid.x(cell) + 0.5 * ahead as f64 * grid.length, grid.y(strip));
                     let displaced = self
                         .weights
-                        .slip([now[place], now[next]], [before[place], before[next]]);
+                        .displaced([now[place], now[next]], [before[place], before[next]]);
                     slip[place] = rigid[component] + displaced;
                 }
             }
@@ -379,8 +375,8 @@ impl PatchTangent {
                     let next = place.wrapping_add_signed(ahead);
                     let x = grid.x(cell) + 0.5 * ahead as f64 * grid.length;
                     self.free_slip[component][place] = rigid_slip(&direction.motion, x, grid.y(strip))[component]
-                        + self.weights.slip([given[place], given[next]], [0.0; 2])
-                        + weights_change.slip([now[place], now[next]], [before[place], before[next]]);
+                        + self.weights.displaced([given[place], given[next]], [0.0; 2])
+                        + weights_change.displaced([now[place], now[next]], [before[place], before[next]]);
                 }
             }
         }
