@@ -35,14 +35,14 @@
 //! | | equation | what | unit | where |
 //! |---|---|---|---|---|
 //! | (12), (13) | μ = μ₀ up to θ₀, linear to μ_F at θ_F, μ_F beyond | friction coefficient (the default law) | 1 | `friction` |
-//! | (16) | s = ∂u₁/∂t − V ∂u₁/∂x₁ + (ω r₀ − V) | slip velocity of the rail relative to the wheel; the paper drops ∂u₁/∂t | m/s | `mechanics::normal_tangential`, `mechanics::transient` |
+//! | (16) | s = ∂u₁/∂t − V ∂u₁/∂x₁ + (ω r₀ − V) | slip velocity of the rail relative to the wheel; the paper drops ∂u₁/∂t | m/s | `mechanics::kinematics`, `mechanics::transient` |
 //! | (18), (27) | div σ(u) − ρV² u,₁₁ − α(3λ+2γ) ∇θ = 0 in Ω, u = 0 on Γ₀ | displacement of the rail | N/m³ | `body`, `heat::thermal_map` |
-//! | (16) of a patch | s = (V(ξ + φ y), −V(η + φ x)) − V ∂u/∂x + ∂u/∂t | the same across the rail too, with lateral creepage η and spin φ | m/s | `contact::patch::problem` |
+//! | (16) of a patch | s = (V(ξ + φ y), −V(η + φ x)) − V ∂u/∂x + ∂u/∂t | the same across the rail too, with lateral creepage η and spin φ | m/s | `mechanics::kinematics`, `contact::patch::problem` |
 //! | (18) of a patch | u = ∫ Boussinesq's and Cerruti's influence · (τ, p) dA | displacement of half-spaces, rail against wheel | m | `body::half_space`, `body::influence` |
 //! | (9), (22) | u₂ + g − W ≤ 0, p ≥ 0, p (u₂ + g − W) = 0, g = δ − r₀ + √(r₀² − x₁²) | contact; of a patch g = δ − x²/2r₀ − ½(κ_r + κ_w) y² | m, Pa | `contact::line`, `contact::patch` |
 //! | (37) | min ½ pᵀC p − (b + δ)ᵀp, p ≥ 0 | the discrete contact problem | scaled | `mechanics::normal`, `mechanics::patch::normal` |
 //! | (10), (30) | Coulomb's law, or τ = −μ(θ) p (2/π) arctan(s/ε) | friction; of a patch with vectors | Pa | `friction::coulomb`, `mechanics::tangential`, `mechanics::patch` |
-//! | (31) | (37) for given τ ↔ (30) for given p | mechanics for given temperature and wear | | `mechanics` |
+//! | (31) | (37) for given τ ↔ (30) for given p | mechanics for given temperature and wear | | `mechanics::normal_tangential` |
 //! | (19) | ∂θ/∂t − V ∂θ/∂x₁ = κ ∂²θ/∂x₂² in Ω | temperature rise of the rail; of a patch in each strip | K/s | `heat::march`, `heat::strips` |
 //! | (23) | κ ρ c_p ∂θ/∂n = ᾱ (\|τ s\| − k ρ c_p θ \|s\| p − (θ − θ_w) p / r) on Γ_C | friction power, heat carried off by debris, conduction into the wheel at θ_w | W/m² | `heat::march` |
 //! | (11), (24) | ∂W/∂t − V ∂W/∂x₁ = k \|s\| p | Archard wear | m/s | `wear` |
@@ -83,11 +83,12 @@
 //! 3. `friction`: the laws of μ(θ), and Coulomb's law. `mechanics`: tractions for given temperature and wear.
 //! 4. `transport`, `heat`, `wear`: temperature and wear of the rail for given tractions; `heat::incoming`: the rail that the
 //!    wheel ahead has left.
-//! 5. `contact`: one implicit step, by an engine. `contact::line` is the paper's, the operator split over
-//!    mechanics, heat and wear, with its derivatives. `contact::patch` resolves the contact across the rail as well: read
-//!    `body::half_space` and `body::influence` for its displacements, `mechanics::patch` for its tractions, `transport::strips` and
-//!    `heat::strips` for what its strips carry along, then `contact::patch::split`. `contact::rim` is the wheel's temperature
-//!    and wear, `contact::outputs` what all this sums up to.
+//! 5. `contact`: one implicit step. `contact::engine` says what a contact offers to it, `contact::interface` what passes between
+//!    mechanics and heat; `contact::step` iterates on that vector, `contact::newton` where this does not converge, and
+//!    `contact::sensitivity` is the derivative. `contact::line` is the paper's contact; `contact::patch` resolves the contact across
+//!    the rail as well: read `body::half_space` and `body::influence` for its displacements, `mechanics::patch` for its tractions,
+//!    `transport::strips` and `heat::strips` for what its strips carry along. `contact::rim` is the wheel's temperature and wear,
+//!    `contact::integrals` and `contact::outputs` are the results.
 //! 6. `wheel_rail`: the stepped model. `simulation`: a wheel's way through time.
 //! 7. `verification`: the closed forms and published numbers that all this is held against.
 //!    `torture`: random parameters and drives, which no step may fail.

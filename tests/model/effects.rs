@@ -154,7 +154,8 @@ fn every_input_moves_an_output() {
     assert!(
         idle.is_empty(),
         "inputs that move no output: {idle:?}. Use them where they act: `motion` of src/signals.rs, \
-         src/contact/line/problem.rs for mechanics and heat, src/contact/line/split.rs for what enters with the rail"
+         src/contact/line/mechanics.rs for the mechanics, src/contact/line/heat_and_wear.rs for heat, wear and what \
+         enters with the rail"
     );
 }
 

@@ -175,7 +175,7 @@ pub fn check(parameters: Parameters, inputs: Inputs, step: f64) -> Result<usize,
             let place = if output.kind == OutputKind::Counted {
                 "src/signals.rs has the output as Counted, and it is not"
             } else {
-                "A tangent stands beside its primal: where the input is used, or in sensitivity.rs of src/contact/line or \
+                "A tangent stands beside its primal: where the input is used, or in tangent.rs of src/contact/line or \
                  src/contact/patch, which puts the tangents together"
             };
             assert!(
