@@ -3,6 +3,7 @@
 use super::fields::PatchFields;
 use super::heat_and_wear;
 use super::integrals;
+use super::linearisation::Solution;
 use super::march_tangent;
 use super::mechanics;
 use super::operators::PatchOperators;
@@ -275,7 +276,12 @@ impl Engine for PatchOperators {
         solvers: &mut PatchSolvers,
         tangent: &mut PatchTangent,
     ) -> Result<()> {
-        tangent.linearise(problem, interface, fields, solvers)
+        let solution = Solution {
+            interface,
+            fields,
+            solvers,
+        };
+        tangent.linearise(problem, solution)
     }
 
     fn begin_direction(
@@ -289,16 +295,12 @@ impl Engine for PatchOperators {
     }
 
     fn mechanics_tangent(at: &mut Linearised<Self>, along: &Along, change: &mut PatchFields) -> Result<()> {
-        let Linearised {
-            problem,
-            interface,
-            fields,
-            solvers,
-            tangent,
-            tolerance,
-            ..
-        } = at;
-        tangent.tractions(problem, (*interface, &**fields, &**solvers), along, change, *tolerance)
+        let solution = Solution {
+            interface: at.interface,
+            fields: &*at.fields,
+            solvers: &*at.solvers,
+        };
+        at.tangent.tractions(at.problem, solution, along, change, at.tolerance)
     }
 
     fn march_tangent(at: &mut Linearised<Self>, along: &Along, change: &mut PatchFields) -> Result<()> {

@@ -51,15 +51,18 @@ impl Expansion {
     pub fn new(parameters: &Parameters, grid: &Grid, transform: &Transform, rail: f64, scale: f64) -> Expansion {
         let body = HalfPlane::new(parameters.lame_lambda, parameters.shear_modulus);
         let swelling = (1.0 + body.poisson_ratio) * parameters.thermal_expansion / scale;
-        let pull = swelling / PI;
+        let displacement = swelling / PI;
         let cell = Rectangle {
             half_length: 0.5 * grid.length,
             half_breadth: 0.5 * grid.breadth,
         };
-        let place = |(along, across): (isize, isize)| (along as f64 * grid.length, across as f64 * grid.breadth);
+        let kernel = |lag, of: fn(&Rectangle, f64, f64) -> f64| {
+            let (x, y) = grid.distance(lag);
+            displacement * of(&cell, x, y)
+        };
         let cells = transform.tables(
-            |lag| pull * cell.x_over_r3(place(lag).0, place(lag).1),
-            |lag| pull * cell.y_over_r3(place(lag).0, place(lag).1),
+            |lag| kernel(lag, Rectangle::x_over_r3),
+            |lag| kernel(lag, Rectangle::y_over_r3),
             |_| 0.0,
         );
         let beyond = Rectangle {
@@ -71,7 +74,7 @@ impl Expansion {
             let mut rows = vec![0.0; grid.len()];
             for strip in 0..grid.strips {
                 for (cell, value) in rows[grid.row(strip)].iter_mut().enumerate() {
-                    *value = pull * kernel(&beyond, grid.x(cell) - middle, strip as f64 * grid.breadth);
+                    *value = displacement * kernel(&beyond, grid.x(cell) - middle, strip as f64 * grid.breadth);
                 }
             }
             rows

@@ -140,8 +140,14 @@ fn solve_friction(
         for (index, static_friction) in fields.memory.now.static_friction.iter_mut().enumerate() {
             *static_friction = law.coefficient(interface.temperature(index)).0;
         }
-        let contact = (&solvers.contact, &fields.pressure[..]);
-        memory::prepare(problem, path_law, contact, fields, &mut solvers.path);
+        memory::prepare(
+            problem,
+            path_law,
+            &solvers.contact,
+            &fields.pressure,
+            fields,
+            &mut solvers.path,
+        );
     }
     // Coulomb's bound, and the leading-edge correction: u jumps out of the contact as the gap does, in the ratio of the tractions.
     if path_law.is_none() {
@@ -173,18 +179,20 @@ fn solve_friction(
     }
     keep_within_bounds(grid, &solvers.contact, &solvers.bound, fields, &mut solvers.nothing);
     free_slip(problem, interface, &weights, fields, solvers);
-    let own = f64::from(solvers.response.strip_kernels[0][solvers.response.origin]);
+    let diagonal = f64::from(solvers.response.strip_kernels[0][solvers.response.origin]);
     let peak = largest(&fields.pressure);
     let path = path_law.map(|law| PathOfCells {
         law,
         nodes: &solvers.path.nodes,
         pressure: &solvers.path.pressure,
     });
-    if own == 0.0 {
+    if diagonal == 0.0 {
         slide_on_the_spot(
             problem,
             path.as_ref(),
-            (&solvers.contact, &mut solvers.bound, &solvers.free_slip),
+            &solvers.contact,
+            &mut solvers.bound,
+            &solvers.free_slip,
             fields,
         );
     } else {
@@ -197,8 +205,8 @@ fn solve_friction(
             free_slip: [&solvers.free_slip[0], &solvers.free_slip[1]],
             bound: &solvers.bound,
             path,
-            scale: 1.0 / own,
-            noise: problem.settings.patch.noise * own * peak,
+            scale: 1.0 / diagonal,
+            noise: problem.settings.patch.noise * diagonal * peak,
             regularisation: problem.parameters.slip_regularisation,
             tolerance: peak * tolerance.max(problem.settings.patch.least_tolerance),
         };
@@ -302,7 +310,9 @@ fn given_displacement(problem: &PatchProblem, interface: &Interface, fields: &Pa
 fn slide_on_the_spot(
     problem: &PatchProblem,
     path: Option<&PathOfCells>,
-    (contact, bound, free_slip): (&Contact, &mut [f64], &[Vec<f64>; 2]),
+    contact: &Contact,
+    bound: &mut [f64],
+    free_slip: &[Vec<f64>; 2],
     fields: &mut PatchFields,
 ) {
     let grid = &problem.operators.grid;
@@ -383,10 +393,10 @@ pub fn finalise_displacement(problem: &PatchProblem, fields: &mut PatchFields, s
             .iter()
             .zip(&solvers.shear_displacement[component])
             .zip(&solvers.before[component]);
-        let own = fields.displacement[component]
+        let displacements = fields.displacement[component]
             .iter_mut()
             .zip(&mut fields.displacement_change[component]);
-        for ((now, change), ((given, by_shear), before)) in own.zip(parts) {
+        for ((now, change), ((given, by_shear), before)) in displacements.zip(parts) {
             *now = given + by_shear;
             *change = *now - before;
         }

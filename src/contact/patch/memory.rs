@@ -18,7 +18,8 @@ fn cells(problem: &PatchProblem, strip: usize) -> Range<usize> {
 pub fn prepare(
     problem: &PatchProblem,
     law: &PathLaw,
-    (contact, pressure): (&Contact, &[f64]),
+    contact: &Contact,
+    pressure: &[f64],
     fields: &PatchFields,
     scratch: &mut PathScratch,
 ) {
@@ -32,9 +33,9 @@ pub fn prepare(
     }
     let PathScratch { nodes, index, .. } = scratch;
     for strip in 0..grid.strips {
-        let own = cells(problem, strip);
-        let (index, static_friction) = (&index[own.clone()], &fields.memory.now.static_friction[own.clone()]);
-        let path = fields.memory.before.path(own);
+        let range = cells(problem, strip);
+        let (index, static_friction) = (&index[range.clone()], &fields.memory.now.static_friction[range.clone()]);
+        let path = fields.memory.before.path(range);
         law.prepare(
             &path,
             static_friction,

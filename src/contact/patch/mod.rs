@@ -1,9 +1,9 @@
 //! The patch: half-spaces, the contact resolved along the rail and across it.
 //!
-//! [`operators`] are what is computed once, with the [`expansion`] by heat. [`fields`] are what a step changes, [`solvers`] its
+//! [`operators`] are what is computed once, by the influence functions in [`kernels`] and the [`expansion`] by heat. [`fields`] are what a step changes, [`solvers`] its
 //! solvers and buffers, [`problem`] has the parts of its equations. The parts of a step are [`mechanics`], pressure and then friction
 //! with the [`response`] of the slip to it and what the cells' particles bring along ([`memory`]), and [`heat_and_wear`]; their
-//! derivatives are [`tangent`] and [`march_tangent`]. [`engine`] puts them together. [`integrals`], with the [`extent`] of the
+//! derivatives are [`tangent`], at the point of [`linearisation`], and [`march_tangent`]. [`engine`] puts them together. [`integrals`], with the [`extent`] of the
 //! contact, and [`profiles`] are read off the fields.
 
 mod engine;
@@ -12,6 +12,8 @@ mod extent;
 pub mod fields;
 mod heat_and_wear;
 mod integrals;
+mod kernels;
+mod linearisation;
 mod march_tangent;
 mod mechanics;
 mod memory;

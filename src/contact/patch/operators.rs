@@ -1,9 +1,10 @@
 //! Operators of a patch: everything that is computed once, at initialisation.
 
 use super::expansion::Expansion;
+use super::kernels::Kernels;
 use crate::body::compliance::Scales;
 use crate::body::grid::Grid;
-use crate::body::half_space::{HalfSpaces, Rectangle};
+use crate::body::half_space::HalfSpaces;
 use crate::body::influence::{Tables, Transform};
 use crate::body::mesh::Mesh;
 use crate::error::Result;
@@ -83,84 +84,34 @@ impl PatchOperators {
         };
         let pair = HalfSpaces::of_pair(parameters);
         let transform = Transform::new(&grid, grid.strips);
-        let narrow: Vec<Transform> = NARROW
-            .map(|share| Transform::new(&grid, (share * grid.strips as f64).ceil() as usize))
-            .into_iter()
-            .filter(|narrow| narrow.strips() < transform.strips())
-            .collect();
-        let rectangle = Rectangle {
-            half_length: 0.5 * grid.length,
-            half_breadth: 0.5 * grid.breadth,
+        let kernels = Kernels {
+            pair: &pair,
+            grid: &grid,
+            unit: scales.compliance(1.0),
+            layer: scales.compliance(1.0) * parameters.layer_compliance,
         };
-        let place = |(along, across): (isize, isize)| (along as f64 * grid.length, across as f64 * grid.breadth);
-        let unit = scales.compliance(1.0);
-        let normal = |lag| {
-            let (x, y) = place(lag);
-            unit * pair.normal() * rectangle.one_over_r(x, y)
-        };
-        // A cell's own shear alone moves the layer over it.
-        let layer = unit * parameters.layer_compliance;
-        let own_layer = |lag| if lag == (0, 0) { layer } else { 0.0 };
-        let along = |lag| {
-            let (x, y) = place(lag);
-            normal(lag) + unit * pair.lateral * rectangle.xx_over_r3(x, y) + own_layer(lag)
-        };
-        let across = |lag| {
-            let (x, y) = place(lag);
-            normal(lag) + unit * pair.lateral * rectangle.yy_over_r3(x, y) + own_layer(lag)
-        };
-        let mixed = |lag| {
-            let (x, y) = place(lag);
-            unit * pair.lateral * rectangle.xy_over_r3(x, y)
-        };
-        let coupling = (pair.coupling != 0.0).then(|| {
-            let factor = -unit * pair.coupling;
-            transform.tables(
-                |lag| factor * rectangle.x_over_r2(place(lag).0, place(lag).1),
-                |lag| factor * rectangle.y_over_r2(place(lag).0, place(lag).1),
-                |_| 0.0,
-            )
-        });
-        let columns = 2 * grid.stride() as isize + 8;
-        let on_strip = |kernel: &dyn Fn((isize, isize)) -> f64| -> Vec<f64> {
-            (0..columns)
-                .map(|lag| kernel((lag - grid.stride() as isize, 0)))
-                .collect()
-        };
-        let strip_kernels = [on_strip(&along), on_strip(&across)];
-        let curvature = parameters.rail_transverse_curvature + parameters.wheel_transverse_curvature;
-        let radius = parameters.wheel_radius;
-        let mut gap = vec![0.0; grid.len()];
-        for strip in 0..grid.strips {
-            for (cell, gap) in gap[grid.row(strip)].iter_mut().enumerate() {
-                let (x, y) = (grid.x(cell), grid.y(strip));
-                *gap = (0.5 * x * x / radius + 0.5 * curvature * y * y) / scales.displacement;
-            }
-        }
-        let outer = (OUTER_COLUMNS * (grid.cells as f64 / 61.0).sqrt()).round().max(2.0) as usize;
-        let depths = parameters.depth_nodes - 1;
-        let mesh = Mesh::graded(
-            grid.x(grid.cells - 1),
-            grid.cells,
-            parameters.strip_half_length,
-            outer,
-            parameters.strip_height,
-            depths,
-            FIRST_DEPTH * 40.0 / depths as f64,
-        );
+        let mesh = graded_mesh(parameters, &grid);
         let basis = DepthBasis::new(&mesh.depth)?;
         Ok(PatchOperators {
-            normal_influence: NormalInfluence::new(&grid, &transform, normal),
-            displacement: transform.tables(along, mixed, across),
-            narrow: narrow
+            normal_influence: NormalInfluence::new(&grid, &transform, |lag| kernels.normal(lag)),
+            displacement: shear_tables(&kernels, &transform),
+            narrow: NARROW
+                .map(|share| Transform::new(&grid, (share * grid.strips as f64).ceil() as usize))
                 .into_iter()
-                .map(|transform| {
-                    let tables = transform.tables(along, mixed, across);
-                    (transform, tables)
+                .filter(|narrow| narrow.strips() < transform.strips())
+                .map(|narrow| {
+                    let tables = shear_tables(&kernels, &narrow);
+                    (narrow, tables)
                 })
                 .collect(),
-            strip_kernels,
-            coupling,
+            strip_kernels: strip_kernels(&kernels),
+            coupling: (pair.coupling != 0.0).then(|| {
+                transform.tables(
+                    |lag| kernels.coupling_along(lag),
+                    |lag| kernels.coupling_across(lag),
+                    |_| 0.0,
+                )
+            }),
             expansion: Expansion::new(
                 parameters,
                 &grid,
@@ -168,12 +119,8 @@ impl PatchOperators {
                 parameters.strip_half_length,
                 scales.displacement,
             ),
-            edge_factors: {
-                // The edges of the strips are nearly straight: the pressure of a cell displaces half-planes by 2Δ/E*, 1/E* = π normal.
-                let edge = LAYER_STRAIN * layer / (2.0 * PI * pair.normal() * unit * grid.length);
-                [1.0 + edge, pair.direct / pair.normal() + edge]
-            },
-            gap,
+            edge_factors: edge_factors(&kernels),
+            gap: undeformed_gap(parameters, &grid, &scales),
             strips: Strips::new(&mesh.x, mesh.window(), grid.strips, grid.breadth),
             incoming: Incoming::new(&mesh.depth, &basis, parameters.skin_depth),
             depth: mesh.depth,
@@ -197,6 +144,67 @@ impl PatchOperators {
     pub fn unit_force(&self) -> f64 {
         self.grid.cell_area() * self.scales.pressure
     }
+}
+
+/// Tables of u by shear.
+fn shear_tables(kernels: &Kernels, transform: &Transform) -> Tables<f64> {
+    transform.tables(
+        |lag| kernels.along(lag),
+        |lag| kernels.mixed(lag),
+        |lag| kernels.across(lag),
+    )
+}
+
+/// Kernels of u_x by τ_x and of u_y by τ_y of a strip on itself, by the lag along x, as long as the rows of the tables.
+fn strip_kernels(kernels: &Kernels) -> [Vec<f64>; 2] {
+    let stride = kernels.grid.stride() as isize;
+    let lags = || (0..2 * stride + 8).map(|place| (place - stride, 0));
+    [
+        lags().map(|lag| kernels.along(lag)).collect(),
+        lags().map(|lag| kernels.across(lag)).collect(),
+    ]
+}
+
+/// Factors of the leading-edge correction. The edges of the strips are nearly straight: the pressure of a cell displaces half-planes by
+/// 2Δ/E*, 1/E* = π normal.
+fn edge_factors(kernels: &Kernels) -> [f64; 2] {
+    let Kernels {
+        pair,
+        grid,
+        unit,
+        layer,
+    } = kernels;
+    let edge = LAYER_STRAIN * layer / (2.0 * PI * pair.normal() * unit * grid.length);
+    [1.0 + edge, pair.direct / pair.normal() + edge]
+}
+
+/// Undeformed gap of the cells, scaled, on the grid.
+fn undeformed_gap(parameters: &Parameters, grid: &Grid, scales: &Scales) -> Vec<f64> {
+    let curvature = parameters.rail_transverse_curvature + parameters.wheel_transverse_curvature;
+    let radius = parameters.wheel_radius;
+    let mut gap = vec![0.0; grid.len()];
+    for strip in 0..grid.strips {
+        for (cell, gap) in gap[grid.row(strip)].iter_mut().enumerate() {
+            let (x, y) = (grid.x(cell), grid.y(strip));
+            *gap = (0.5 * x * x / radius + 0.5 * curvature * y * y) / scales.displacement;
+        }
+    }
+    gap
+}
+
+/// Columns and depths of the strips: the cells in the window, graded outside of it and downwards.
+fn graded_mesh(parameters: &Parameters, grid: &Grid) -> Mesh {
+    let outer = (OUTER_COLUMNS * (grid.cells as f64 / 61.0).sqrt()).round().max(2.0) as usize;
+    let depths = parameters.depth_nodes - 1;
+    Mesh::graded(
+        grid.x(grid.cells - 1),
+        grid.cells,
+        parameters.strip_half_length,
+        outer,
+        parameters.strip_height,
+        depths,
+        FIRST_DEPTH * 40.0 / depths as f64,
+    )
 }
 
 /// Relaxation length of a patch, the distance of rolling on which a change of its shear force F decays, `m`. With C the displacement
@@ -225,6 +233,7 @@ fn compliance(pair: &HalfSpaces, c: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::body::half_space::Rectangle;
 
     /// Compares the closed form with the sum over small squares that the tables are made of.
     #[test]
