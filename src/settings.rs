@@ -138,8 +138,6 @@ pub struct TangentialSettings {
     pub round_off: f64,
     /// Limit of the halvings of one step in the line search. A step that does not help at 2⁻¹² of its length points uphill.
     pub halvings: usize,
-    /// Half-decades by which ε is raised where Newton's method fails at the given one, and then lowered again.
-    pub continuation: usize,
     /// A factorisation is kept while each step is shorter than this share of the one before.
     pub slow_contraction: f64,
     /// Ratio of two steps that is expected of a fresh factorisation until a second step has shown it. Where that was too
@@ -293,10 +291,9 @@ impl Default for TangentialSettings {
         TangentialSettings {
             newton_steps: 60,
             exchanges: 12,
-            path_exchanges_per_node: 40,
+            path_exchanges_per_node: 3,
             round_off: 1e-13,
             halvings: 12,
-            continuation: 10,
             slow_contraction: 0.1,
             fresh_contraction: 0.01,
             continuation_ratio: 0.1,
@@ -482,7 +479,6 @@ pub(crate) mod limits {
         }),
         ("tangential Newton solver", |settings, limit| {
             settings.tangential.newton_steps = limit;
-            settings.tangential.continuation = 0;
         }),
         ("coupling of normal and tangential contact", |settings, limit| {
             settings.split.iterations = limit;

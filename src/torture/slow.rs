@@ -43,7 +43,6 @@ const METHODS: [Method; 6] = [
     }),
     ("shorter tries", |settings| settings.step.retries = 0),
     ("continuation in the regularisation", |settings| {
-        settings.tangential.continuation = 0;
         settings.patch.continuation = 0;
     }),
     ("descent in the normal problem", |settings| {

@@ -5,22 +5,9 @@ use crate::friction::coulomb::{utilisation_slope, utilisations};
 use crate::numerics::dense::largest;
 
 impl Tangential {
-    /// Solves (30), from a larger ε where that is needed.
+    /// Solves (30).
     pub(super) fn solve_regularised(&mut self, problem: &TangentialProblem, shear: &[f64]) -> Ended {
-        let m = shear.len();
-        let mut end = self.newton(problem, problem.regularisation, shear);
-        let mut iterations = end.steps();
-        if let Ended::Stalled(_) = end {
-            // From a large ε, where the law is nearly linear, down to the one asked for.
-            self.change[..m].fill(0.0);
-            for half_decades in (0..=self.settings.continuation).rev() {
-                self.forget();
-                let regularisation = problem.regularisation * 10.0_f64.powf(0.5 * half_decades as f64);
-                end = self.newton(problem, regularisation, shear);
-                iterations += end.steps();
-            }
-            self.forget();
-        }
+        let end = self.newton(problem, problem.regularisation, shear);
         match end {
             Ended::Converged(_) => {
                 // Stiff bodies need it not, and keep the digits that they had before there was a layer.
@@ -28,10 +15,10 @@ impl Tangential {
                 if layer || problem.path.is_some() {
                     self.take_saturation(shear);
                 }
-                Ended::Converged(iterations)
             }
-            Ended::Stalled(_) => Ended::Stalled(iterations),
+            Ended::Stalled(_) => self.forget(),
         }
+        end
     }
 
     /// φ = −τ/(μ p) in place of φ(s), the same at the solution. On compliant bodies with a small ε the step of τ that may be left out is one of
