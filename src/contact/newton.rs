@@ -25,9 +25,27 @@ pub struct Newton<E: Engine> {
     /// Iterate with the least residual so far, and that residual.
     best: Interface,
     least_residual: f64,
+    /// Iterate with the least change so far, and that change: what a step ends with that gets no further.
+    closest: Closest,
     /// Iterations of the fixed point since the residual was halved last, and that residual.
     idle: usize,
     halved: f64,
+}
+
+/// Iterate with the least change of a step.
+struct Closest {
+    iterate: Interface,
+    change: f64,
+}
+
+impl Closest {
+    /// Keeps an iterate if its change is the least so far.
+    fn keep(&mut self, iterate: &Interface, change: f64) {
+        if change < self.change {
+            self.change = change;
+            self.iterate.values_mut().copy_from_slice(iterate.values());
+        }
+    }
 }
 
 impl<E: Engine> Newton<E> {
@@ -39,6 +57,10 @@ impl<E: Engine> Newton<E> {
             system: LinearSystem::new(operators, settings),
             step: interface.clone(),
             moved: operators.fields(),
+            closest: Closest {
+                iterate: interface.clone(),
+                change: f64::INFINITY,
+            },
             best: interface,
             least_residual: f64::INFINITY,
             idle: 0,
@@ -49,11 +71,13 @@ impl<E: Engine> Newton<E> {
     /// Forgets the step before.
     pub fn restart(&mut self) {
         (self.least_residual, self.halved, self.idle) = (f64::INFINITY, f64::INFINITY, 0);
+        self.closest.change = f64::INFINITY;
     }
 
     /// Keeps an iterate of the fixed-point iteration if its residual is the least so far: Newton's method begins there. Returns for how
     /// many iterations the residual has not been halved.
-    pub fn keep(&mut self, iterate: &Interface, image: &Interface) -> usize {
+    pub fn keep(&mut self, iterate: &Interface, image: &Interface, change: f64) -> usize {
+        self.closest.keep(iterate, change);
         let residual = distance(iterate, image);
         self.idle += 1;
         if residual < 0.5 * self.halved {
@@ -134,6 +158,7 @@ pub fn solve<E: Engine>(
         system,
         step,
         best,
+        closest,
         ..
     } = newton;
     sweeps.iterate.values_mut().copy_from_slice(best.values());
@@ -142,6 +167,7 @@ pub fn solve<E: Engine>(
     for _ in 0..settings.newton_steps {
         let change = sweeps.iterate.change_to(sweeps.image, split.least_temperature);
         test.amend(change);
+        closest.keep(sweeps.iterate, change);
         if change <= settings.newton_margin * split.tolerance {
             return Ok(count);
         }
@@ -186,8 +212,8 @@ pub fn solve<E: Engine>(
         }
     }
     // Neither method gets further: the iterate may be as good as the mesh all the same.
-    if test.change() <= split.stalled_tolerance {
-        sweeps.iterate.values_mut().copy_from_slice(best.values());
+    if closest.change <= split.stalled_tolerance {
+        sweeps.iterate.values_mut().copy_from_slice(closest.iterate.values());
         return Ok(count);
     }
     Err(test.error(count))

@@ -123,7 +123,7 @@ pub fn solve<E: Engine>(
             E::map_displacement(problem, now, solvers, image);
             test.amend(iterate.change_to(image, settings.least_temperature));
         }
-        let idle = newton.keep(iterate, image);
+        let idle = newton.keep(iterate, image, test.change());
         if idle >= problem.settings.interface.idle_iterations || iterations >= fixed_point_iterations {
             let sweeps = Sweeps {
                 before,
