@@ -149,6 +149,8 @@ pub struct TangentialSettings {
     pub least_regularisation: f64,
     /// Residual to which those before the law are solved, relative to the largest pressure.
     pub continuation_tolerance: f64,
+    /// Work of a sub-step, in multiplications and additions, after which no longer way is begun.
+    pub work: u64,
     /// Limit of the arcs along the path of solutions, where that way does not lead to the law.
     pub arcs: usize,
     /// Newton steps back to the path after one of them.
@@ -254,7 +256,7 @@ impl Default for SplitSettings {
 impl Default for MechanicsSettings {
     fn default() -> Self {
         MechanicsSettings {
-            iterations: 200,
+            iterations: 40,
             overlap: 1e-9,
             least_load: 1e-12,
             linearisation_tolerance: 1e-10,
@@ -299,6 +301,7 @@ impl Default for TangentialSettings {
             continuation_ratio: 0.1,
             least_regularisation: 1e-7,
             continuation_tolerance: 1e-4,
+            work: 20_000_000,
             arcs: 120,
             arc_corrections: 8,
             arc_tolerance: 1e-8,

@@ -36,7 +36,7 @@ impl Tangential {
             self.update_point(problem, shear);
             let mut regularisation = largest(&self.slip[..m]);
             let least = (self.settings.least_regularisation * regularisation).max(problem.regularisation);
-            while regularisation > least {
+            while regularisation > least && self.work <= self.settings.work {
                 // A law that is solved to a few digits only, or not quite, still leads closer.
                 let rough = self.settings.continuation_tolerance * largest_pressure;
                 steps += self.search(problem, regularisation, shear, rough).steps();
@@ -45,7 +45,8 @@ impl Tangential {
             end = self.search(problem, problem.regularisation, shear, tolerance);
             steps += end.steps();
         }
-        if let Ended::Stalled(_) = end {
+        // A sub-step in which all that has cost too much is tried again at a shorter length.
+        if matches!(end, Ended::Stalled(_)) && self.work <= self.settings.work {
             steps += self.follow_regularisation(problem, shear);
             end = self.search(problem, problem.regularisation, shear, tolerance);
             steps += end.steps();
@@ -121,6 +122,9 @@ impl Tangential {
         self.tangent[..m].fill(0.0);
         let mut tangent_by_logarithm = -1.0;
         for _ in 0..settings.arcs {
+            if self.work > settings.work {
+                break;
+            }
             // Back where it began: it has lost the path.
             if logarithm <= last || logarithm > first.ln() || arc < settings.least_arc {
                 break;
