@@ -237,7 +237,7 @@ impl Default for SplitSettings {
             iterations: 100,
             tolerance: 1e-9,
             shear_tolerance: 1e-9,
-            stalled_tolerance: 1e-6,
+            stalled_tolerance: 1e-5,
             first_mechanics_tolerance: 1e-8,
             mechanics_tolerance: 1e-4,
             last_mechanics_tolerance: 1e-12,
