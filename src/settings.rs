@@ -56,11 +56,11 @@ pub struct StepSettings {
 pub struct SplitSettings {
     /// Limit of the iterations. Most steps take two, those of a wheel slide three to five.
     pub iterations: usize,
-    /// Error at which the split rests (η of section 4): of the surface temperature relative to its largest value, of wear and
+    /// Error at which the split has converged (η of section 4): of the surface temperature relative to its largest value, of wear and
     /// thermal displacement relative to the displacement scale. 1e-9 is far below what a mesh resolves, and above
     /// round-off.
     pub tolerance: f64,
-    /// Error of the shear at which it rests, relative to the peak pressure.
+    /// Error of the shear at which it has converged, relative to the peak pressure.
     pub shear_tolerance: f64,
     /// Change at which it is ended where neither the fixed point nor Newton's method gets further: below what the mesh resolves. Slip that
     /// heats so much that friction has hardly one solution leaves it.
@@ -73,7 +73,7 @@ pub struct SplitSettings {
     pub last_mechanics_tolerance: f64,
     /// Tolerance of the mechanics where they are solved alone, for the initial state.
     pub mechanics_alone_tolerance: f64,
-    /// A change of the thermal displacement below this share of `tolerance` is not handed to the mechanics.
+    /// Change of the thermal displacement that is not handed to the mechanics, relative to `tolerance`.
     pub negligible: f64,
     /// Iterations after which Anderson's method takes part. Two plain ones settle most steps.
     pub accelerate_after: usize,
@@ -200,7 +200,7 @@ pub struct HeatSettings {
 /// Derivatives of the outputs.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SensitivitySettings {
-    /// Change of the tangents, relative to the largest, at which the linear split rests.
+    /// Change of the tangents, relative to the largest, at which the linear split has converged.
     pub tolerance: f64,
     /// Residual of the linear system, relative to its right-hand side, above which it counts as not solved: what round-off leaves may be
     /// more than `tolerance`.
@@ -265,7 +265,7 @@ impl Default for MechanicsSettings {
 }
 
 impl MechanicsSettings {
-    /// The load that the contact carries: none where it is too small to be felt.
+    /// Load that the contact carries: none where it is negligible.
     pub fn carried_load(&self, load: f64, largest_load: f64) -> f64 {
         if load < self.least_load * largest_load {
             0.0
@@ -376,16 +376,16 @@ impl Settings {
 /// Pressure and shear of a patch.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PatchSettings {
-    /// Error at which the split of a patch rests, of the surface temperature relative to its largest value, of lift and wear relative
-    /// to the displacement scale.
+    /// Error at which the split of a patch has converged, of the surface temperature relative to its largest value, of upward
+    /// displacement and wear relative to the displacement scale.
     pub split_tolerance: f64,
-    /// Error of the shear at which it rests, relative to the peak pressure.
+    /// Error of the shear at which it has converged, relative to the peak pressure.
     pub shear_tolerance: f64,
     /// Tolerance of the tractions in the first iteration of the split, whose temperature is only a guess.
     pub first_mechanics_tolerance: f64,
     /// Tolerance of the tractions where they are solved alone, for the initial state.
     pub tolerance: f64,
-    /// The smallest that is asked of them.
+    /// Smallest tolerance that is asked of the tractions.
     pub least_tolerance: f64,
     /// Largest separation ahead of a cell over its pressure, in displacements of a cell under its own pressure: a cell that has just
     /// joined has next to none.
@@ -426,8 +426,8 @@ pub struct PatchSettings {
     pub continuation_tolerance: f64,
     /// The last of them, relative to the largest slip.
     pub least_regularisation: f64,
-    /// Error of the tangents, relative to the largest, at which the linear split of the derivatives rests, and residual of its linear
-    /// systems, which a small change of the pressure by heat feels a hundredfold. Each digit costs a tenth of the time.
+    /// Error of the tangents, relative to the largest, at which the linear split of the derivatives has converged, and residual of its linear
+    /// systems, which a small change of the pressure by heat magnifies a hundredfold. Each digit costs a tenth of the time.
     pub sensitivity_tolerance: f64,
 }
 

@@ -23,7 +23,7 @@ impl<E: Engine> Problem<'_, E> {
         )
     }
 
-    /// Load or penetration, scaled. A load too small to be felt counts as none.
+    /// Load or penetration, scaled. A negligible load counts as none.
     pub fn constraint(&self) -> Constraint {
         match self.parameters.control {
             Control::Load => {

@@ -114,7 +114,7 @@ impl<E: Engine> Sweeps<'_, E> {
         Ok(residual)
     }
 
-    /// One sweep x ↦ G(x), with mechanics that have come to rest and the wheel at the temperature of the iterate: a function of x
+    /// One sweep x ↦ G(x), with converged mechanics and the wheel at the temperature of the iterate: a function of x
     /// and of the fields before, whatever was swept last. Returns |x − G(x)|.
     fn sweep(&mut self, problem: &Problem<E>) -> Result<f64> {
         let settings = &problem.settings.interface;

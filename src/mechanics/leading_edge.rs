@@ -8,7 +8,7 @@
 //! root of the distance, the separation goes with its power 3/2, γ = w E*/(2 Δx p) = ⅔ (1 − q)^{3/2}/√q with q = d/Δx, and
 //! 1/q − 1 is 3 γ within a sixth for q between ¼ and ¾. Beyond γ = 1, where the leading node has just joined and carries next to nothing, it is
 //! held: with a layer that is far softer than a cell, w τ/p of a pressure that falls to 0 in the midst of an iteration would outweigh all other
-//! slip, and Newton's method would not come to rest.
+//! slip, and Newton's method would not converge.
 //!
 //! **The slip that is smaller than a cell.** Unlike bodies (Dundurs) have τ/p that grows towards the leading edge with the
 //! logarithm of the distance from it, until the edge slips, on less than a cell. The strain between the nodes contains that slip,

@@ -158,8 +158,8 @@ fn falling(random: &mut Random, parameters: &mut Parameters) {
     }
 }
 
-/// A layer between wheel and rail, elastic, plastic or both: of a strength far below the friction bound to above it, and of a hardening that is
-/// not felt within the contact to one that hardly lets it flow.
+/// Draws a layer between wheel and rail, elastic, plastic or both: of a strength far below the friction bound to above it, and of a hardening
+/// from negligible within the contact to so large that it hardly flows.
 fn layer(random: &mut Random, parameters: &mut Parameters) {
     if random.chance(0.3) {
         parameters.layer_compliance = random.decades(1e-14, 1e-12);

@@ -161,7 +161,7 @@ fn solve_friction(
             let temperature = interface.temperature(run.strip * grid.cells + cell);
             let mut mu = law.coefficient(temperature).0;
             if path_law.is_some() {
-                // The bound of the first guess. Rail that cools remembers less than it would have at rest, rail that warms more.
+                // The bound of the first guess. Rail that cools remembers a smaller μ than its static one, rail that warms a larger one.
                 mu = mu.max(fields.friction[place]);
             }
             fields.friction[place] = mu;

@@ -89,7 +89,7 @@ impl Tangential {
             self.rows[i] = if phi == 0.0 {
                 let compliance = self.own_slip(problem, i);
                 LawRow {
-                    // A node whose shear moves nothing: at rest, before any time has passed. It carries none.
+                    // The shear of a node moves nothing at V = 0 before any time has passed: it stays 0.
                     by_shear: if compliance > 0.0 { 0.0 } else { 1.0 },
                     by_slip: if compliance > 0.0 { 1.0 / compliance } else { 0.0 },
                     ..LawRow::default()
