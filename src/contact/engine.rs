@@ -161,7 +161,7 @@ pub trait Engine: Sized + 'static {
     /// Marches the heat (19), (23) for the tractions with the wheel at θ_w.
     ///
     /// # Errors
-    /// [`crate::error::Error::SurfaceNotConverged`].
+    /// [`crate::error::Error::SurfaceHeatNotConverged`].
     fn march_heat(
         problem: &Problem<Self>,
         before: &Self::Fields,
@@ -187,7 +187,7 @@ pub trait Engine: Sized + 'static {
     ) {
     }
 
-    /// Sets friction coefficient and shear of the fields to those at their temperature; traction over bound stays. The friction power
+    /// Sets friction coefficient and shear of the fields to those at their temperature; the traction utilisation stays. The friction power
     /// of the fields is then, to round-off, the friction power that heats rail and wheel.
     fn finalise_friction(problem: &Problem<Self>, now: &mut Self::Fields, solvers: &Self::Solvers);
 
@@ -204,7 +204,7 @@ pub trait Engine: Sized + 'static {
     /// window.
     ///
     /// # Errors
-    /// [`crate::error::Error::SurfaceNotConverged`].
+    /// [`crate::error::Error::SurfaceHeatNotConverged`].
     fn finalise(
         problem: &Problem<Self>,
         before: &Self::Fields,

@@ -77,7 +77,7 @@ pub fn march_wear(problem: &LineProblem, before: &LineFields, now: &mut LineFiel
 /// Marches the heat (19), (23) with the wheel at θ_w.
 ///
 /// # Errors
-/// [`crate::error::Error::SurfaceNotConverged`].
+/// [`crate::error::Error::SurfaceHeatNotConverged`].
 pub fn march_heat(
     problem: &LineProblem,
     before: &LineFields,

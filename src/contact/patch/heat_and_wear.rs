@@ -73,7 +73,7 @@ fn set_wear_compliance(per_slip: f64, now: &PatchFields, solvers: &mut PatchSolv
 /// Marches the heat (19), (23) with the wheel at θ_w.
 ///
 /// # Errors
-/// [`crate::error::Error::SurfaceNotConverged`].
+/// [`crate::error::Error::SurfaceHeatNotConverged`].
 pub fn march_heat(
     problem: &PatchProblem,
     wheel_rise: f64,

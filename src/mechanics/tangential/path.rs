@@ -68,7 +68,7 @@ impl Tangential {
         false
     }
 
-    /// s = slip[0] + response · change, at the present point.
+    /// Linearises the slip at the present point, s = `slip[0]` + response · change.
     fn linearise_slip(&mut self, problem: &TangentialProblem, m: usize) {
         self.path.slip_response[..m * m].copy_from_slice(&problem.slip_response[..m * m]);
         for column in 0..m {
