@@ -39,7 +39,7 @@ pub fn braking() -> Result<Vec<(f64, Outputs)>, Error> {
     for (number, step) in schedule.steps(1e-3)?.enumerate() {
         simulation.follow(&step)?;
         if (number + 1) % 500 == 0 {
-            table.push((step.to.time, simulation.outputs().clone()));
+            table.push((step.to.time, *simulation.outputs()));
         }
     }
     Ok(table)

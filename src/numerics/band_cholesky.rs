@@ -90,12 +90,13 @@ impl Band {
             |arithmetic| {
                 for row in first..n {
                     let mut sum = rows[row];
-                    for column in row.saturating_sub(width).max(first)..row {
+                    let start = row.saturating_sub(width).max(first);
+                    for (column, solved) in (start..).zip(&rows[start..row]) {
                         subtract(
                             arithmetic,
                             &mut sum,
                             self.values[column * stride + row - column],
-                            &rows[column],
+                            solved,
                         );
                     }
                     rows[row] = sum.map(|value| value / self.values[row * stride]);
