@@ -554,8 +554,8 @@ impl Default for InterfaceSettings {
     fn default() -> Self {
         InterfaceSettings {
             fixed_point_iterations: 20,
-            idle_iterations: 6,
-            newton_sweeps: 60,
+            idle_iterations: 8,
+            newton_sweeps: 40,
             newton_steps: 25,
             newton_margin: 0.3,
             newton_krylov_tolerance: 1e-3,

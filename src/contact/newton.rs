@@ -68,6 +68,16 @@ impl<E: Engine> Newton<E> {
         }
     }
 
+    /// Whether the closest iterate so far changes by no more than a tolerance.
+    pub fn is_close(&self, tolerance: f64) -> bool {
+        self.closest.change <= tolerance
+    }
+
+    /// Sets the iterate to the closest one so far.
+    pub fn take_closest(&self, iterate: &mut Interface) {
+        iterate.values_mut().copy_from_slice(self.closest.iterate.values());
+    }
+
     /// Forgets the step before.
     pub fn restart(&mut self) {
         (self.least_residual, self.halved, self.idle) = (f64::INFINITY, f64::INFINITY, 0);
@@ -139,18 +149,18 @@ impl<E: Engine> Sweeps<'_, E> {
     }
 }
 
-/// Solves x = G(x) from the best iterate so far. The iterate is the solution in the end; the caller sweeps it once more, and closes the
-/// step. Returns the number of sweeps.
+/// Solves x = G(x) from the best iterate so far. The caller sweeps the iterate that it ends with once more. Returns the number of sweeps
+/// and whether that iterate is the solution, or as good as one.
 ///
 /// # Errors
-/// The first solver that did not converge; the error of `test` where |x − G(x)| does not fall any more.
+/// A solver that fails where it begins, or a budget of work that is spent.
 pub fn solve<E: Engine>(
     problem: &Problem<E>,
     newton: &mut Newton<E>,
     mut sweeps: Sweeps<E>,
     test: &mut ConvergenceTest,
     work: &mut Work,
-) -> Result<usize> {
+) -> Result<(usize, bool)> {
     let settings = problem.settings.interface;
     let split = E::split_settings(problem.settings);
     let Newton {
@@ -169,7 +179,7 @@ pub fn solve<E: Engine>(
         test.amend(change);
         closest.keep(sweeps.iterate, change);
         if change <= settings.newton_margin * split.tolerance {
-            return Ok(count);
+            return Ok((count, true));
         }
         best.values_mut().copy_from_slice(sweeps.iterate.values());
         let values = sweeps.iterate.values().iter().zip(sweeps.image.values());
@@ -211,12 +221,9 @@ pub fn solve<E: Engine>(
             residual = sweeps.counted_sweep(problem, work)??;
         }
     }
-    // Neither method gets further: the iterate may be as good as the mesh all the same.
-    if closest.change <= split.stalled_tolerance {
-        sweeps.iterate.values_mut().copy_from_slice(closest.iterate.values());
-        return Ok(count);
-    }
-    Err(test.error(count))
+    // It gets no further: the closest iterate may be as good as the mesh all the same.
+    sweeps.iterate.values_mut().copy_from_slice(closest.iterate.values());
+    Ok((count, closest.change <= split.stalled_tolerance))
 }
 
 /// Sets the iterate to the best one moved by `damping` times a step.

@@ -94,7 +94,9 @@ pub fn solve<E: Engine>(
     newton.restart();
     let mut test = ConvergenceTest::new(settings);
     let fixed_point_iterations = problem.settings.interface.fixed_point_iterations;
-    let mut newton_sweeps = 0;
+    let mut newton_sweeps = None;
+    // Whether the iterate is as good as the methods get it: one more sweep ends the step.
+    let mut ends = false;
     for iterations in 1..=settings.iterations {
         let before_mechanics = E::mechanics_work(solvers);
         let tractions = E::solve_mechanics(problem, iterate, now, solvers, test.mechanics_tolerance());
@@ -102,8 +104,8 @@ pub fn solve<E: Engine>(
         let tractions = tractions?;
         E::march_wear(problem, before, now, solvers);
         rail_and_rim::march_heat(problem, before, iterate, now, solvers)?;
-        // Newton's method has solved the step for the wear compliance that there is.
-        if newton_sweeps == 0 {
+        // An iterate that is to end the step is one for the wear compliance that there is.
+        if !ends {
             E::update_wear_compliance(problem, now, solvers);
         }
         E::read(problem, now, solvers, image);
@@ -115,8 +117,8 @@ pub fn solve<E: Engine>(
         };
         let change = iterate.change_to(image, settings.least_temperature);
         let passes = test.is_passed(change.max(pending), &tractions);
-        if passes || newton_sweeps > 0 && change.max(pending) <= settings.stalled_tolerance {
-            let iterations = iterations + newton_sweeps;
+        if passes || ends && change.max(pending) <= settings.stalled_tolerance {
+            let iterations = iterations + newton_sweeps.unwrap_or(0);
             return finish(problem, before, iterate, now, solvers, iterations, &test);
         }
         if pending > settings.negligible * settings.tolerance {
@@ -124,7 +126,8 @@ pub fn solve<E: Engine>(
             test.amend(iterate.change_to(image, settings.least_temperature));
         }
         let idle = newton.keep(iterate, image, test.change());
-        if idle >= problem.settings.interface.idle_iterations || iterations >= fixed_point_iterations {
+        let hard = idle >= problem.settings.interface.idle_iterations || iterations >= fixed_point_iterations;
+        if hard && newton_sweeps.is_none() {
             let sweeps = Sweeps {
                 before,
                 now: &mut *now,
@@ -132,8 +135,22 @@ pub fn solve<E: Engine>(
                 iterate: &mut *iterate,
                 image: &mut *image,
             };
-            newton_sweeps += newton::solve(problem, newton, sweeps, &mut test, work)?;
+            // Where Newton's method gets no further either, the fixed point goes on from the closest iterate.
+            let (count, solved) = match newton::solve(problem, newton, sweeps, &mut test, work) {
+                Err(error @ Error::TooMuchWork { .. }) => return Err(error),
+                Err(_) => {
+                    newton.take_closest(iterate);
+                    (0, false)
+                }
+                Ok(end) => end,
+            };
+            (newton_sweeps, ends) = (Some(count), solved);
             anderson.restart();
+            continue;
+        }
+        ends = iterations + 1 == settings.iterations && newton.is_close(settings.stalled_tolerance);
+        if ends {
+            newton.take_closest(iterate);
             continue;
         }
         if iterations > settings.accelerate_after {
