@@ -226,7 +226,7 @@ impl Default for StepSettings {
             shortest: 1e-100,
             retries: 12,
             substeps_at_limit: 4,
-            work: 200_000_000,
+            work: 1_000_000_000,
         }
     }
 }

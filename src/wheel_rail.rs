@@ -500,14 +500,10 @@ mod tests {
                 }
                 let mut state = before.clone();
                 let Err(interrupted) = step(&limited, &mut state, 2e-3) else {
-                    // The split goes on where the tractions within it fall short for once, to its own tolerance; the friction of a line
+                    // A step goes on where its tractions fall short for once, and may end with the iterate that is as good as the mesh; the friction of a line
                     // is solved by another method then.
                     let share = state.outputs.traction_force / undisturbed.outputs.traction_force;
-                    let tolerance = match contact_model {
-                        ContactModel::Line => 1e-9,
-                        ContactModel::Patch => 1e-5,
-                    };
-                    let short = (share - 1.0).abs() < tolerance;
+                    let short = (share - 1.0).abs() < 1e-5;
                     assert!(state == undisturbed || short, "{words}, limit {limit}: {share}");
                     break;
                 };
@@ -536,6 +532,7 @@ mod tests {
     fn a_failed_step_leaves_nothing_in_the_workspace() {
         let mut settings = Settings::default();
         settings.split.iterations = 6;
+        settings.step.retries = 0;
         let limited = model(NormalSolver::ActiveSet, settings);
         let mut workspace = limited.workspace();
         let start = limited.initial_state(&mut workspace, &Inputs::default()).unwrap();
