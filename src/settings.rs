@@ -62,6 +62,12 @@ pub struct SplitSettings {
     pub tolerance: f64,
     /// Error of the shear at which it has converged, relative to the peak pressure.
     pub shear_tolerance: f64,
+    /// Iterations of the fixed point after which Newton's method takes over: a step that contracts is done by then.
+    pub fixed_point_iterations: usize,
+    /// Iterations in which |x − G(x)| has not been halved after which it takes over, too.
+    pub idle_iterations: usize,
+    /// Change of the closest iterate at which a step ends then, before Newton's method is tried: a patch's costs as much as many sweeps.
+    pub accepted_change: f64,
     /// Change at which it is ended where neither the fixed point nor Newton's method gets further: below what the mesh resolves. Slip that
     /// heats so much that friction has hardly one solution leaves it.
     pub stalled_tolerance: f64,
@@ -237,6 +243,9 @@ impl Default for SplitSettings {
             iterations: 100,
             tolerance: 1e-9,
             shear_tolerance: 1e-9,
+            fixed_point_iterations: 20,
+            idle_iterations: 8,
+            accepted_change: 0.0,
             stalled_tolerance: 1e-5,
             first_mechanics_tolerance: 1e-8,
             mechanics_tolerance: 1e-4,
@@ -354,6 +363,9 @@ impl Settings {
         SplitSettings {
             tolerance: self.patch.split_tolerance,
             shear_tolerance: self.patch.shear_tolerance,
+            fixed_point_iterations: 40,
+            idle_iterations: 40,
+            accepted_change: 1e-3,
             stalled_tolerance: 1e-3,
             first_mechanics_tolerance: self.patch.first_mechanics_tolerance,
             last_mechanics_tolerance: self.patch.least_tolerance,
@@ -518,10 +530,6 @@ pub(crate) mod limits {
 /// The interface vector of hard steps by Newton's method, and the linear systems of its changes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct InterfaceSettings {
-    /// Iterations of the fixed point after which Newton's method takes over: a step that contracts is done by then.
-    pub fixed_point_iterations: usize,
-    /// Iterations in which |x − G(x)| has not been halved after which it takes over, too.
-    pub idle_iterations: usize,
     /// Limit of the sweeps of Newton's method, line search included.
     pub newton_sweeps: usize,
     /// Limit of the Newton steps.
@@ -553,8 +561,6 @@ pub struct InterfaceSettings {
 impl Default for InterfaceSettings {
     fn default() -> Self {
         InterfaceSettings {
-            fixed_point_iterations: 20,
-            idle_iterations: 8,
             newton_sweeps: 40,
             newton_steps: 25,
             newton_margin: 0.3,

@@ -93,7 +93,6 @@ pub fn solve<E: Engine>(
     anderson.restart();
     newton.restart();
     let mut test = ConvergenceTest::new(settings);
-    let fixed_point_iterations = problem.settings.interface.fixed_point_iterations;
     let mut newton_sweeps = None;
     // Whether the iterate is as good as the methods get it: one more sweep ends the step.
     let mut ends = false;
@@ -126,7 +125,12 @@ pub fn solve<E: Engine>(
             test.amend(iterate.change_to(image, settings.least_temperature));
         }
         let idle = newton.keep(iterate, image, test.change());
-        let hard = idle >= problem.settings.interface.idle_iterations || iterations >= fixed_point_iterations;
+        let hard = idle >= settings.idle_iterations || iterations >= settings.fixed_point_iterations;
+        if hard && newton.is_close(settings.accepted_change) {
+            newton.take_closest(iterate);
+            ends = true;
+            continue;
+        }
         if hard && newton_sweeps.is_none() {
             let sweeps = Sweeps {
                 before,

@@ -35,8 +35,8 @@ type Method = (&'static str, fn(&mut Settings));
 /// The methods that only hard steps use.
 const METHODS: [Method; 6] = [
     ("Newton's method", |settings| {
-        settings.interface.idle_iterations = usize::MAX;
-        settings.interface.fixed_point_iterations = usize::MAX;
+        settings.split.idle_iterations = usize::MAX;
+        settings.split.fixed_point_iterations = usize::MAX;
     }),
     ("sub-steps", |settings| {
         settings.step.jump = f64::INFINITY;
