@@ -232,7 +232,7 @@ impl Default for StepSettings {
             shortest: 1e-100,
             retries: 12,
             substeps_at_limit: 4,
-            work: 1_000_000_000,
+            work: 2_000_000_000,
         }
     }
 }
@@ -365,8 +365,8 @@ impl Settings {
             shear_tolerance: self.patch.shear_tolerance,
             fixed_point_iterations: 40,
             idle_iterations: 40,
-            accepted_change: 1e-3,
-            stalled_tolerance: 1e-3,
+            accepted_change: 2e-3,
+            stalled_tolerance: 2e-3,
             first_mechanics_tolerance: self.patch.first_mechanics_tolerance,
             last_mechanics_tolerance: self.patch.least_tolerance,
             mechanics_tolerance: 1e-1,

@@ -7,9 +7,10 @@ use wheelrail::torture::{Engines, Torture};
 /// were too hot.
 const RUNS: [(Engines, u64, usize, usize); 2] = [(Engines::Line, 40, 150, 18_000), (Engines::Patch, 8, 40, 900)];
 
-/// What ends a run as it should, with the largest number of these runs: a penetration that is given takes more than the largest
-/// load.
-const KNOWN: [(&str, usize); 1] = [("ContactLeavesWindow", 1)];
+/// Ends of runs that are known, with the largest number of these runs: a penetration that is given takes more than the largest load; a line on a
+/// compliant layer that flows, whose friction is steep in temperature, finds no solution of a step (runs 53 and 55, docs/limits.md), and one that slides
+/// fast on a layer that flows without hardening takes more than a step's budget of work (run 89).
+const KNOWN: [(&str, usize); 3] = [("ContactLeavesWindow", 1), ("SplitNotConverged", 2), ("TooMuchWork", 1)];
 
 /// No other run fails, whatever the wheel goes through.
 #[test]
