@@ -10,6 +10,7 @@ import subprocess
 from pathlib import Path
 
 import matplotlib.pyplot as plt
+from matplotlib.ticker import NullFormatter
 
 REPOSITORY = Path(__file__).resolve().parent.parent
 STEP = re.compile(r"--run (\d+) step (\d+): (\d+) µs \(\d+ µs in the run\), (\d+) iterations")
@@ -31,7 +32,7 @@ def hard_steps(arguments):
 
 def draw(steps, path):
     """Draw iterations and time, each without against with."""
-    figure, axes = plt.subplots(1, 2, figsize=(9, 4.2), layout="constrained")
+    figure, axes = plt.subplots(1, 2, figsize=(9, 4.2))
     for axis, index, scale, name in [(axes[0], 1, 1, "sweeps of a step"), (axes[1], 0, 1e-3, "time of a step [ms]")]:
         pairs = [(scale * with_[index], scale * without[index]) for with_, without in steps if without]
         failed = [scale * with_[index] for with_, without in steps if not without]
@@ -44,7 +45,10 @@ def draw(steps, path):
         )
         axis.set(xlabel=f"{name}, with Newton's method", ylabel=f"{name}, fixed point alone", xlim=(low, high))
         axis.set_ylim(low, high)
+        for coordinate in (axis.xaxis, axis.yaxis):
+            coordinate.set_minor_formatter(NullFormatter())
     axes[0].legend(loc="lower right", fontsize=8)
+    figure.subplots_adjust(left=0.09, right=0.98, bottom=0.14, top=0.97, wspace=0.25)
     figure.savefig(path, dpi=130)
 
 
