@@ -232,7 +232,7 @@ impl Default for StepSettings {
             shortest: 1e-100,
             retries: 12,
             substeps_at_limit: 4,
-            work: 2_000_000_000,
+            work: 5_000_000_000,
         }
     }
 }

@@ -159,6 +159,11 @@ impl Engine for LineOperators {
         (6 * nodes * nodes + 10 * self.mesh.columns() * self.heat.basis.len()) as u64
     }
 
+    /// Factorisations take the third power of the nodes.
+    fn work_scale(&self) -> f64 {
+        (self.mesh.contact_nodes as f64 / 61.0).max(1.0).powi(3)
+    }
+
     fn set_surface_temperature(&self, interface: &Interface, now: &mut LineFields) {
         let window = &mut now.surface_temperature[self.mesh.window()];
         for (temperature, rise) in window.iter_mut().zip(interface.temperatures()) {
