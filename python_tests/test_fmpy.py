@@ -40,7 +40,8 @@ def test_simulation_with_inputs_and_parameters(archive, fmu):
         logger=lambda *arguments: messages.append(arguments),
     )
     assert result["time"][-1] == 0.1
-    assert 0.25 < result["traction_coefficient"][-1] <= 0.3
+    # The coefficient is the quotient of two sums over the nodes: it may exceed μ by their round-off.
+    assert 0.25 < result["traction_coefficient"][-1] <= 0.3 * (1.0 + 1e-14)
     assert result[pressure][-1].max() > 5e8
     assert messages
 

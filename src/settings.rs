@@ -64,7 +64,7 @@ pub struct SplitSettings {
     pub shear_tolerance: f64,
     /// Iterations of the fixed point after which Newton's method takes over: a step that contracts is done by then.
     pub fixed_point_iterations: usize,
-    /// Iterations in which |x − G(x)| has not been halved after which it takes over, too.
+    /// Iterations in which the change has not been halved after which it takes over, too.
     pub idle_iterations: usize,
     /// Change of the closest iterate at which a step ends then, before Newton's method is tried: a patch's costs as much as many sweeps.
     pub accepted_change: f64,

@@ -183,14 +183,8 @@ pub trait Engine: Sized + 'static {
         0.0
     }
 
-    /// Computes what [`Engine::pending_displacement`] bounds, into the fields and their interface vector.
-    fn map_displacement(
-        _problem: &Problem<Self>,
-        _now: &mut Self::Fields,
-        _solvers: &mut Self::Solvers,
-        _interface: &mut Interface,
-    ) {
-    }
+    /// Computes what [`Engine::pending_displacement`] bounds, into the fields.
+    fn map_displacement(_problem: &Problem<Self>, _now: &mut Self::Fields, _solvers: &mut Self::Solvers) {}
 
     /// Sets friction coefficient and shear of the fields to those at their temperature; the traction utilisation stays. The friction power
     /// of the fields is then, to round-off, the friction power that heats rail and wheel.
@@ -219,11 +213,6 @@ pub trait Engine: Sized + 'static {
 
     /// Whether the contact would reach beyond its window, had it not been held within it.
     fn is_cut_off(problem: &Problem<Self>, now: &Self::Fields, solvers: &Self::Solvers) -> bool;
-
-    /// Half-length of the window, `m`.
-    fn half_window(&self) -> f64 {
-        0.5 * self.window_length()
-    }
 
     /// Nodes as the rim sees them: those in contact of `fields`, with the values of `values`, which are the same fields or a change
     /// of them.

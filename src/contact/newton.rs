@@ -22,12 +22,12 @@ pub struct Newton<E: Engine> {
     pub(super) step: Interface,
     /// Fields that have moved along a change.
     pub(super) moved: E::Fields,
-    /// Iterate with the least residual so far, and that residual.
-    best: Interface,
-    least_residual: f64,
-    /// Iterate with the least change so far, and that change: what a step ends with that gets no further.
+    /// Iterate that the line search starts from.
+    origin: Interface,
+    /// Iterate with the least change so far, and that change: where Newton's method begins, and what a step ends with that gets no
+    /// further.
     closest: Closest,
-    /// Iterations of the fixed point since the residual was halved last, and that residual.
+    /// Iterations of the fixed point since its change was halved last, and that change.
     idle: usize,
     halved: f64,
 }
@@ -61,8 +61,7 @@ impl<E: Engine> Newton<E> {
                 iterate: interface.clone(),
                 change: f64::INFINITY,
             },
-            best: interface,
-            least_residual: f64::INFINITY,
+            origin: interface,
             idle: 0,
             halved: f64::INFINITY,
         }
@@ -80,22 +79,17 @@ impl<E: Engine> Newton<E> {
 
     /// Forgets the step before.
     pub fn restart(&mut self) {
-        (self.least_residual, self.halved, self.idle) = (f64::INFINITY, f64::INFINITY, 0);
+        (self.halved, self.idle) = (f64::INFINITY, 0);
         self.closest.change = f64::INFINITY;
     }
 
-    /// Keeps an iterate of the fixed-point iteration if its residual is the least so far: Newton's method begins there. Returns for how
-    /// many iterations the residual has not been halved.
-    pub fn keep(&mut self, iterate: &Interface, image: &Interface, change: f64) -> usize {
+    /// Keeps an iterate of the fixed-point iteration if its change is the least so far. Returns for how many iterations the change has
+    /// not been halved.
+    pub fn keep(&mut self, iterate: &Interface, change: f64) -> usize {
         self.closest.keep(iterate, change);
-        let residual = distance(iterate, image);
         self.idle += 1;
-        if residual < 0.5 * self.halved {
-            (self.halved, self.idle) = (residual, 0);
-        }
-        if residual < self.least_residual {
-            self.least_residual = residual;
-            self.best.values_mut().copy_from_slice(iterate.values());
+        if change < 0.5 * self.halved {
+            (self.halved, self.idle) = (change, 0);
         }
         self.idle
     }
@@ -143,13 +137,13 @@ impl<E: Engine> Sweeps<'_, E> {
         problem.operators.set_surface_temperature(self.iterate, self.now);
         E::march_heat(problem, self.before, rise, self.now, self.solvers)?;
         rail_and_rim::warm_wheel(problem, self.before, self.now);
+        E::map_displacement(problem, self.now, self.solvers);
         E::read(problem, self.now, self.solvers, self.image);
-        E::map_displacement(problem, self.now, self.solvers, self.image);
         Ok(distance(self.iterate, self.image))
     }
 }
 
-/// Solves x = G(x) from the best iterate so far. The caller sweeps the iterate that it ends with once more. Returns the number of sweeps
+/// Solves x = G(x) from the closest iterate so far. The caller sweeps the iterate that it ends with once more. Returns the number of sweeps
 /// and whether that iterate is the solution, or as good as one.
 ///
 /// # Errors
@@ -167,11 +161,11 @@ pub fn solve<E: Engine>(
         tangent,
         system,
         step,
-        best,
+        origin,
         closest,
         ..
     } = newton;
-    sweeps.iterate.values_mut().copy_from_slice(best.values());
+    sweeps.iterate.values_mut().copy_from_slice(closest.iterate.values());
     let mut residual = sweeps.counted_sweep(problem, work)??;
     let (mut count, mut jumps) = (1, 0);
     for _ in 0..settings.newton_steps {
@@ -181,7 +175,7 @@ pub fn solve<E: Engine>(
         if change <= settings.newton_margin * split.tolerance {
             return Ok((count, true));
         }
-        best.values_mut().copy_from_slice(sweeps.iterate.values());
+        origin.values_mut().copy_from_slice(sweeps.iterate.values());
         let values = sweeps.iterate.values().iter().zip(sweeps.image.values());
         for (step, (iterate, image)) in step.values_mut().iter_mut().zip(values) {
             *step = image - iterate;
@@ -195,7 +189,7 @@ pub fn solve<E: Engine>(
         let mut damping = 1.0;
         let mut falls = false;
         for _ in 0..=settings.halvings {
-            set_iterate(sweeps.iterate, best, step, damping);
+            set_iterate(sweeps.iterate, origin, step, damping);
             count += 1;
             // Where a solver fails, the step is too long.
             let trial = sweeps.counted_sweep(problem, work)?.unwrap_or(f64::INFINITY);
@@ -216,7 +210,7 @@ pub fn solve<E: Engine>(
                 break;
             }
             jumps += 1;
-            set_iterate(sweeps.iterate, best, step, 1.0);
+            set_iterate(sweeps.iterate, origin, step, 1.0);
             count += 1;
             residual = sweeps.counted_sweep(problem, work)??;
         }
@@ -226,11 +220,11 @@ pub fn solve<E: Engine>(
     Ok((count, closest.change <= split.stalled_tolerance))
 }
 
-/// Sets the iterate to the best one moved by `damping` times a step.
-fn set_iterate(iterate: &mut Interface, best: &Interface, step: &Interface, damping: f64) {
-    let values = best.values().iter().zip(step.values());
-    for (iterate, (best, step)) in iterate.values_mut().iter_mut().zip(values) {
-        *iterate = best + damping * step;
+/// Sets the iterate to where the line search starts, moved by `damping` times a step.
+fn set_iterate(iterate: &mut Interface, origin: &Interface, step: &Interface, damping: f64) {
+    let values = origin.values().iter().zip(step.values());
+    for (iterate, (origin, step)) in iterate.values_mut().iter_mut().zip(values) {
+        *iterate = origin + damping * step;
     }
 }
 

@@ -107,24 +107,28 @@ pub fn solve<E: Engine>(
         if !ends {
             E::update_wear_compliance(problem, now, solvers);
         }
-        E::read(problem, now, solvers, image);
-        // Not after the first sweep: the mechanics have not seen yet what it changed.
+        // The first sweep does not end the step: the mechanics have not seen yet what it changed.
         let pending = if iterations > 1 {
             E::pending_displacement(problem, now, solvers)
         } else {
+            E::map_displacement(problem, now, solvers);
             f64::INFINITY
         };
+        E::read(problem, now, solvers, image);
         let change = iterate.change_to(image, settings.least_temperature);
         let passes = test.is_passed(change.max(pending), &tractions);
         if passes || ends && change.max(pending) <= settings.stalled_tolerance {
             let iterations = iterations + newton_sweeps.unwrap_or(0);
             return finish(problem, before, iterate, now, solvers, iterations, &test);
         }
-        if pending > settings.negligible * settings.tolerance {
-            E::map_displacement(problem, now, solvers, image);
+        if iterations == 1 {
+            test.amend(change);
+        } else if pending > settings.negligible * settings.tolerance {
+            E::map_displacement(problem, now, solvers);
+            E::read(problem, now, solvers, image);
             test.amend(iterate.change_to(image, settings.least_temperature));
         }
-        let idle = newton.keep(iterate, image, test.change());
+        let idle = newton.keep(iterate, test.change());
         let hard = idle >= settings.idle_iterations || iterations >= settings.fixed_point_iterations;
         if hard && newton.is_close(settings.accepted_change) {
             newton.take_closest(iterate);
@@ -229,7 +233,7 @@ fn fills_window<E: Engine>(problem: &Problem<E>, now: &E::Fields, solvers: &E::S
     let load = problem.load(now);
     if cut_off && load > problem.parameters.largest_load * (1.0 + 1e-9) {
         return Err(Error::ContactLeavesWindow {
-            half_width: problem.operators.half_window(),
+            half_width: 0.5 * problem.operators.window_length(),
             load,
             largest_load: problem.parameters.largest_load,
         });

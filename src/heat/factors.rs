@@ -32,6 +32,8 @@ pub struct CellFactors {
     upstream_response: Vec<f64>,
     diagonal_response: Vec<f64>,
     response: f64,
+    /// Buffer of the linearised march: amplitudes of a column before the step, m.
+    pub(super) old: Vec<f64>,
 }
 
 /// Conditions that the factors depend on beside the length of a cell.
@@ -177,6 +179,7 @@ impl CellFactors {
             upstream_response: vec![0.0; m],
             diagonal_response: vec![0.0; m],
             response: 0.0,
+            old: vec![0.0; m],
         }
     }
 

@@ -180,7 +180,8 @@ impl HeatMarch<'_> {
         let diffusivity = self.surface.friction.parameters.thermal_diffusivity;
         cells.adapt(self.basis, self.conditions());
         // The amplitudes before the step follow from its result, column by column.
-        let mut old = change.replaced_inflow.to_vec();
+        let mut old = std::mem::take(&mut cells.old);
+        old.copy_from_slice(change.replaced_inflow);
         let (mut heated_upstream, mut upstream_flux) = (0.0, 0.0);
         for column in self.transport.columns() {
             let length = cells.length_of(&column);
@@ -238,6 +239,7 @@ impl HeatMarch<'_> {
                 &mut tangent.amplitudes[column.index * m..][..m],
             );
         }
+        cells.old = old;
     }
 }
 

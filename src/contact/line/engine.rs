@@ -57,10 +57,6 @@ impl Engine for LineOperators {
         2.0 * self.mesh.window_half_width()
     }
 
-    fn half_window(&self) -> f64 {
-        self.mesh.window_half_width()
-    }
-
     fn spacing(&self) -> f64 {
         self.mesh.contact_spacing()
     }
@@ -193,13 +189,8 @@ impl Engine for LineOperators {
         heat_and_wear::pending_displacement(problem, now, solvers)
     }
 
-    fn map_displacement(
-        problem: &LineProblem,
-        now: &mut LineFields,
-        solvers: &mut LineSolvers,
-        interface: &mut Interface,
-    ) {
-        heat_and_wear::map_displacement(problem, now, solvers, interface);
+    fn map_displacement(problem: &LineProblem, now: &mut LineFields, solvers: &mut LineSolvers) {
+        heat_and_wear::map_displacement(problem, now, solvers);
     }
 
     fn finalise_friction(problem: &LineProblem, now: &mut LineFields, _solvers: &LineSolvers) {

@@ -139,13 +139,8 @@ pub fn pending_displacement(problem: &LineProblem, now: &LineFields, solvers: &L
     }
 }
 
-/// Applies the thermal map, for the fields and their interface vector.
-pub fn map_displacement(
-    problem: &LineProblem,
-    now: &mut LineFields,
-    solvers: &mut LineSolvers,
-    interface: &mut Interface,
-) {
+/// Applies the thermal map.
+pub fn map_displacement(problem: &LineProblem, now: &mut LineFields, solvers: &mut LineSolvers) {
     let displacement = &mut now.thermal_displacement;
     let map = &problem.operators.heat.displacement;
     map.apply(&now.temperature, &mut solvers.moments, displacement);
@@ -154,7 +149,6 @@ pub fn map_displacement(
     solvers
         .mapped_temperature
         .copy_from_slice(&now.surface_temperature[window]);
-    read_displacement(problem, now, interface.parts().displacement);
 }
 
 /// Writes the interface vector of the fields, or of a change of them.
@@ -168,12 +162,8 @@ pub fn read(problem: &LineProblem, fields: &LineFields, solvers: &LineSolvers, i
     solvers
         .wear_compliance
         .subtract_proportional(&fields.pressure, parts.gap);
-    read_displacement(problem, fields, parts.displacement);
-}
-
-/// Writes the displacement by heat and by the convective inertia of the tractions.
-fn read_displacement(problem: &LineProblem, fields: &LineFields, displacement: &mut [f64]) {
-    displacement.copy_from_slice(&fields.thermal_displacement);
-    let (along, upward) = displacement.split_at_mut(fields.pressure.len());
+    // The displacement is that by heat and by the convective inertia of the tractions.
+    parts.displacement.copy_from_slice(&fields.thermal_displacement);
+    let (along, upward) = parts.displacement.split_at_mut(fields.pressure.len());
     problem.add_inertia(problem.rho_v2(), &fields.pressure, &fields.shear, along, upward);
 }

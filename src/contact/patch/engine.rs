@@ -59,10 +59,6 @@ impl Engine for PatchOperators {
         2.0 * self.grid.half_length()
     }
 
-    fn half_window(&self) -> f64 {
-        self.grid.half_length()
-    }
-
     fn spacing(&self) -> f64 {
         self.grid.length
     }

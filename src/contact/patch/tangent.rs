@@ -178,10 +178,14 @@ impl PatchTangent {
         self.friction
             .tangent(&law, &fields.shear, &change, &mut tangent.shear)?;
         if let Some(path) = &path {
-            let places: Vec<usize> = self.point.contact.places(grid).collect();
-            self.friction.friction_changes(path, places.len(), |index, friction| {
-                tangent.friction[places[index]] += friction;
-            });
+            // The change of the bound has been used: its buffer takes that of μ.
+            let change = &mut self.bound_change;
+            let contact = &self.point.contact;
+            self.friction
+                .friction_changes(path, contact.cells(), |index, friction| change[index] = friction);
+            for (place, change) in contact.places(grid).zip(&*change) {
+                tangent.friction[place] += change;
+            }
         }
         self.mean_slip(problem, fields, tangent);
         Ok(())

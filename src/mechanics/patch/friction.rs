@@ -85,6 +85,8 @@ pub struct Friction {
     /// Linearised law of the cells.
     rows: Vec<CellLawRow>,
     step: Vec<f32>,
+    /// Change of the rows by the data in a linearised problem.
+    given: Vec<Vector>,
     /// Law of the cells where μ depends on slip.
     on_path: OnPath,
     /// Multiplications and additions in this step.
@@ -117,6 +119,7 @@ impl Friction {
             scratch_single: transform.scratch(),
             rows: vec![CellLawRow::default(); total],
             step: vec![0.0; 2 * total],
+            given: Vec::with_capacity(total),
             on_path: OnPath::new(total),
             work: 0,
         }
@@ -129,7 +132,6 @@ impl Friction {
     }
 
     /// Multiplications and additions in this step, about: a measure of time that is the same on every machine.
-    #[allow(dead_code, reason = "for the budget of a step")]
     pub fn work(&self) -> u64 {
         self.work
     }

@@ -87,13 +87,13 @@ impl Friction {
         let behind = if problem.response.forward { -1 } else { 1 };
         let sum = |terms: [Vector; 5]| [0, 1].map(|i| terms.iter().map(|term| term[i]).sum::<f64>());
         let at = |values: &[Vec<f64>; 2], place: usize| [values[0][place], values[1][place]];
-        let mut given: Vec<Vector> = Vec::with_capacity(n);
+        self.given.clear();
         for run in problem.contact.runs() {
             for (index, place) in run.indices().zip(run.places(grid)) {
                 let (row, edge, own) = (&self.rows[index], change.edge[index], at(shear, place));
                 let slip = |place: usize| [change.free_slip[0][place], change.free_slip[1][place]];
                 let bound = change.bound[index];
-                given.push(sum([
+                self.given.push(sum([
                     multiply(row.by_ahead, slip(place)),
                     multiply(row.by_ahead, [edge[0] * own[0], edge[1] * own[1]]),
                     multiply(row.by_behind, slip(place.wrapping_add_signed(behind))),
@@ -103,7 +103,7 @@ impl Friction {
             }
         }
         let largest = |values: &mut dyn Iterator<Item = f64>| values.fold(0.0, |m: f64, v| v.abs().max(m));
-        let cause = largest(&mut given.iter().flatten().copied()).max(LEAST_CHANGE);
+        let cause = largest(&mut self.given.iter().flatten().copied()).max(LEAST_CHANGE);
         let (mut residual, mut size) = (f64::INFINITY, cause);
         for _ in 0..=self.settings.newton_steps {
             {
@@ -122,7 +122,7 @@ impl Friction {
                     }
                     let row = &mut self.rows[index];
                     row.residual = sum([
-                        given[index],
+                        self.given[index],
                         multiply(row.by_shear, own),
                         multiply(row.by_ahead, ahead),
                         multiply(row.by_behind, at(&self.response, place.wrapping_add_signed(behind))),
