@@ -47,6 +47,8 @@ pub struct StepSettings {
     pub retries: usize,
     /// Sub-steps at that limit after which it is doubled.
     pub substeps_at_limit: usize,
+    /// Number of sub-steps in which the rest of a step is taken whose coupled equations are not solved.
+    pub staggered_substeps: f64,
     /// Budget of a step in multiplications and additions, about: counted, not timed.
     pub work: u64,
 }
@@ -232,7 +234,8 @@ impl Default for StepSettings {
             shortest: 1e-100,
             retries: 12,
             substeps_at_limit: 4,
-            work: 5_000_000_000,
+            staggered_substeps: 4.0,
+            work: 200_000_000,
         }
     }
 }

@@ -7,7 +7,7 @@ use crate::contact::line::operators::LineOperators;
 use crate::contact::patch::fields::PatchFields;
 #[cfg(feature = "verification")]
 use crate::contact::patch::operators::PatchOperators;
-use crate::contact::problem::{StepConditions, Task};
+use crate::contact::problem::{Coupling, StepConditions, Task};
 use crate::contact::{ContactState, ContactWorkspace, Operators};
 use crate::error::{Error, Result};
 use crate::friction;
@@ -163,8 +163,14 @@ impl Model {
     /// Inputs out of range, or a solver that did not converge.
     pub fn initial_state(&self, workspace: &mut Workspace, inputs: &Inputs) -> Result<State> {
         inputs.check(&self.parameters)?;
-        let task = self.task(inputs, f64::INFINITY);
-        let (contact, integrals) = self.operators.initial_state(&task, &mut workspace.contact)?;
+        let first = |coupling, workspace: &mut Workspace| {
+            let task = self.task(inputs, f64::INFINITY, coupling);
+            self.operators.initial_state(&task, &mut workspace.contact)
+        };
+        let (contact, convergence, integrals) = first(Coupling::Implicit, workspace).or_else(|error| match error {
+            Error::ContactLeavesWindow { .. } | Error::OtherContactModel => Err(error),
+            _ => first(Coupling::Staggered, workspace).map_err(|_| error),
+        })?;
         let outputs = integrals.outputs(&self.parameters, inputs);
         Ok(State {
             time: 0.0,
@@ -173,7 +179,7 @@ impl Model {
             contact,
             outputs,
             output_rates: Outputs::default(),
-            convergence: Convergence::default(),
+            convergence,
         })
     }
 
@@ -190,7 +196,8 @@ impl Model {
     ///
     /// The step is implicit in time, of order 1. It is divided after a jump of the inputs, from a quarter of the
     /// passage of the contact window on with doubling sub-steps, and where the rates change the inputs by more
-    /// than a fifth of their scale. A sub-step that does not converge is tried again in quarters.
+    /// than a fifth of their scale. A sub-step that does not converge is tried again in quarters. Where that does not help, or the
+    /// budget of work is spent, the rest of the step is taken staggered, and [`Convergence::staggered`] says so.
     ///
     /// # Errors
     /// [`Interrupted`]: the state stands at the last committed sub-step, bit for bit.
@@ -227,6 +234,7 @@ impl Model {
         }
         let mut convergence = Convergence::default();
         let (mut retries, mut at_limit) = (0, 0);
+        let mut failure = None;
         while committed < duration {
             // The last sub-step takes the rest, so that no sliver is left over by rounding.
             let remaining = duration - committed;
@@ -237,31 +245,41 @@ impl Model {
                 committed + length
             };
             let at_end = self.inputs_at(inputs, rates, end);
-            let solved = match self.advance(workspace, state, &at_end, length) {
-                Ok(solved) => solved,
-                // A shorter sub-step starts closer to its solution; what the window cannot hold no step can.
-                Err(error)
-                    if !matches!(
-                        error,
-                        Error::ContactLeavesWindow { .. } | Error::TooMuchWork { .. } | Error::OtherContactModel
-                    ) && retries < settings.retries =>
-                {
-                    retries += 1;
-                    substep = 0.25 * length;
-                    largest_substep = largest_substep.min(0.5 * length);
+            let coupling = failure.as_ref().map_or(Coupling::Implicit, |_| Coupling::Staggered);
+            let solved = match (self.advance(workspace, state, &at_end, length, coupling), failure.take()) {
+                (Ok(solved), before) => {
+                    failure = before;
+                    solved
+                }
+                // What the window cannot hold no step can, and of two failures the first says why.
+                (Err(error @ (Error::ContactLeavesWindow { .. } | Error::OtherContactModel)), _) => {
+                    return Err(interrupted(committed, error));
+                }
+                (Err(_), Some(first)) => return Err(interrupted(committed, first)),
+                (Err(error), None) => {
+                    if retries < settings.retries && !matches!(error, Error::TooMuchWork { .. }) {
+                        // A shorter sub-step starts closer to its solution.
+                        retries += 1;
+                        substep = 0.25 * length;
+                        largest_substep = largest_substep.min(0.5 * length);
+                    } else {
+                        substep = remaining / settings.staggered_substeps;
+                        largest_substep = substep;
+                        failure = Some(error);
+                    }
                     continue;
                 }
-                Err(error) => return Err(interrupted(committed, error)),
             };
             committed = end;
             state.time = start + committed;
             convergence.iterations += solved.iterations;
             convergence.residual = solved.residual;
             convergence.fills_window |= solved.fills_window;
+            convergence.staggered |= solved.staggered;
             state.convergence = convergence;
             // After some sub-steps at the limit that a failure has set, longer ones are tried.
             at_limit = if length >= largest_substep { at_limit + 1 } else { 0 };
-            if at_limit >= settings.substeps_at_limit {
+            if at_limit >= settings.substeps_at_limit && failure.is_none() {
                 (largest_substep, at_limit) = ((2.0 * largest_substep).min(planned), 0);
             }
             substep = (2.0 * substep).min(largest_substep);
@@ -269,15 +287,16 @@ impl Model {
         Ok(())
     }
 
-    /// One implicit step of `duration` to the given inputs; commits only on success.
+    /// One step of `duration` to the given inputs; commits only on success.
     fn advance(
         &self,
         workspace: &mut Workspace,
         state: &mut State,
         inputs: &Inputs,
         duration: f64,
+        coupling: Coupling,
     ) -> Result<Convergence> {
-        let task = self.task(inputs, duration);
+        let task = self.task(inputs, duration, coupling);
         let (convergence, integrals) =
             self.operators
                 .solve(&task, &mut workspace.contact, &state.contact, state.duration)?;
@@ -298,7 +317,7 @@ impl Model {
         inputs.advanced(rates, time).snapped(&self.parameters)
     }
 
-    fn task(&self, inputs: &Inputs, duration: f64) -> Task<'_> {
+    fn task(&self, inputs: &Inputs, duration: f64, coupling: Coupling) -> Task<'_> {
         Task {
             parameters: &self.parameters,
             settings: &self.settings,
@@ -306,6 +325,7 @@ impl Model {
                 inputs: *inputs,
                 motion: inputs.motion(&self.parameters),
                 duration,
+                coupling,
             },
         }
     }
@@ -359,7 +379,7 @@ impl Model {
         state: &State,
         inputs: impl IntoIterator<Item = usize>,
     ) -> Result<Vec<Outputs>> {
-        let task = self.task(&state.inputs, state.duration);
+        let task = self.task(&state.inputs, state.duration, Coupling::Implicit);
         self.operators
             .sensitivities(&task, &mut workspace.contact, &state.contact, inputs)
     }
@@ -377,7 +397,7 @@ impl Model {
     /// Profiles for plotting.
     pub fn profiles(&self, state: &State) -> Profiles {
         self.operators
-            .profiles(&self.task(&state.inputs, state.duration), &state.contact)
+            .profiles(&self.task(&state.inputs, state.duration, Coupling::Implicit), &state.contact)
     }
 }
 

@@ -36,7 +36,7 @@ use line::fields::LineFields;
 use line::operators::LineOperators;
 use patch::fields::PatchFields;
 use patch::operators::PatchOperators;
-use problem::{Convergence, Problem, Task};
+use problem::{Convergence, Coupling, Problem, Task};
 use profiles::{ContactNode, Profiles};
 use serde::{Deserialize, Serialize};
 use step::StepWorkspace;
@@ -116,29 +116,34 @@ impl Operators {
     ///
     /// # Errors
     /// A solver that did not converge, or [`Error::OtherContactModel`].
-    pub fn initial_state(&self, task: &Task, workspace: &mut ContactWorkspace) -> Result<(ContactState, Integrals)> {
+    pub fn initial_state(
+        &self,
+        task: &Task,
+        workspace: &mut ContactWorkspace,
+    ) -> Result<(ContactState, Convergence, Integrals)> {
         fn initial<E: Engine>(
             operators: &E,
             task: &Task,
             workspace: &mut StepWorkspace<E>,
-        ) -> Result<(EngineState<E::Fields>, Integrals)> {
+            wrap: fn(EngineState<E::Fields>) -> ContactState,
+        ) -> Result<(ContactState, Convergence, Integrals)> {
             let problem = Problem::new(operators, task);
-            let state = step::initial_state(&problem, workspace)?;
+            let (state, convergence) = step::initial_state(&problem, workspace)?;
             let integrals = E::integrals(&problem, &state.fields);
-            Ok((state, integrals))
+            Ok((wrap(state), convergence, integrals))
         }
         match (self, workspace) {
             (Operators::Line(operators), ContactWorkspace::Line(workspace)) => {
-                initial(operators, task, workspace).map(|(state, integrals)| (ContactState::Line(state), integrals))
+                initial(operators, task, workspace, ContactState::Line)
             }
             (Operators::Patch(operators), ContactWorkspace::Patch(workspace)) => {
-                initial(operators, task, workspace).map(|(state, integrals)| (ContactState::Patch(state), integrals))
+                initial(operators, task, workspace, ContactState::Patch)
             }
             _ => Err(Error::OtherContactModel),
         }
     }
 
-    /// Solves one implicit step from `state`; the solution stays in the workspace until [`ContactWorkspace::commit`]. The step
+    /// Solves one step from `state`; the solution stays in the workspace until [`ContactWorkspace::commit`]. The step
     /// before took `last_duration` `s`.
     ///
     /// # Errors
@@ -156,7 +161,10 @@ impl Operators {
             state: &EngineState<E::Fields>,
             last_duration: f64,
         ) -> Result<(Convergence, Integrals)> {
-            let convergence = step::solve(problem, state, last_duration, workspace)?;
+            let convergence = match problem.conditions.coupling {
+                Coupling::Implicit => step::solve(problem, state, last_duration, workspace)?,
+                Coupling::Staggered => step::solve_staggered(problem, state, workspace)?,
+            };
             Ok((convergence, E::integrals(problem, workspace.solution())))
         }
         with_model!(self, workspace, state, |operators, workspace, state| {

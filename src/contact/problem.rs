@@ -7,7 +7,7 @@ use crate::settings::Settings;
 use crate::signals::{Inputs, Motion};
 use serde::{Deserialize, Serialize};
 
-/// StepConditions that one implicit step holds fixed.
+/// Conditions that one step holds fixed.
 #[derive(Debug, Clone, Copy)]
 pub struct StepConditions {
     /// Inputs at the end of the step.
@@ -16,6 +16,8 @@ pub struct StepConditions {
     pub motion: Motion,
     /// Length of the step, `s`.
     pub duration: f64,
+    /// Coupling of mechanics with heat and wear.
+    pub coupling: Coupling,
 }
 
 /// Task of a step, whatever the contact model: the parameters, the limits of the methods, the conditions.
@@ -25,7 +27,7 @@ pub struct Task<'a> {
     pub parameters: &'a Parameters,
     /// Limits and tolerances.
     pub settings: &'a Settings,
-    /// StepConditions of the step.
+    /// Conditions of the step.
     pub conditions: StepConditions,
 }
 
@@ -39,6 +41,19 @@ pub struct Convergence {
     /// Whether the contact would reach beyond its window: it is held within it, and the groove that the wheel has worn is as wide
     /// as the window.
     pub fills_window: bool,
+    /// Whether a part of the step was taken staggered: the mechanics for temperature and wear before it, because neither method found
+    /// the solution of the coupled equations within the budget of work.
+    pub staggered: bool,
+}
+
+/// Coupling of mechanics with heat and wear over a step.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Coupling {
+    /// The mechanics see temperature and wear at the end of the step.
+    Implicit,
+    /// The mechanics see temperature and wear at its beginning. Where friction has no solution that is found, they take the one for the
+    /// least regularisation that has one.
+    Staggered,
 }
 
 /// Problem of one implicit step of a contact model.
@@ -49,7 +64,7 @@ pub struct Problem<'a, E> {
     pub parameters: &'a Parameters,
     /// Limits and tolerances.
     pub settings: &'a Settings,
-    /// StepConditions of the step.
+    /// Conditions of the step.
     pub conditions: StepConditions,
 }
 

@@ -9,7 +9,7 @@ use super::fields::{EngineState, Fields};
 use super::interface::Interface;
 use super::memory;
 use super::newton::{self, Newton, Sweeps};
-use super::problem::{Convergence, Problem};
+use super::problem::{Convergence, Coupling, Problem};
 use super::rail_and_rim;
 use super::work::Work;
 use crate::error::{Error, Result};
@@ -169,6 +169,49 @@ pub fn solve<E: Engine>(
     Err(test.error(settings.iterations))
 }
 
+/// Takes the step staggered: the mechanics for temperature and wear as the step finds them, then heat and wear for those tractions, once.
+/// For a step whose interface vector is not found: of first order as the implicit one, with an error that its residual shows.
+///
+/// # Errors
+/// The first solver that did not converge, or [`Error::ContactLeavesWindow`].
+pub fn solve_staggered<E: Engine>(
+    problem: &Problem<E>,
+    state: &EngineState<E::Fields>,
+    workspace: &mut StepWorkspace<E>,
+) -> Result<Convergence> {
+    let settings = E::split_settings(problem.settings);
+    let before = &state.fields;
+    let StepWorkspace {
+        solvers,
+        trial: now,
+        iterate,
+        image,
+        ..
+    } = workspace;
+    now.guess_from(before);
+    memory::begin(problem, before, now);
+    E::begin(problem, Some(before), now, solvers)?;
+    E::read(problem, now, solvers, iterate);
+    let mut tractions = TractionChange::NONE;
+    for _ in 0..problem.settings.interface.mechanics_sweeps {
+        tractions = E::solve_mechanics(problem, iterate, now, solvers, settings.last_mechanics_tolerance)?;
+        if !tractions.set_changed && tractions.shear_change <= settings.shear_tolerance {
+            break;
+        }
+    }
+    E::march_wear(problem, before, now, solvers);
+    rail_and_rim::march_heat(problem, before, iterate, now, solvers)?;
+    E::map_displacement(problem, now, solvers);
+    E::read(problem, now, solvers, image);
+    let mut test = ConvergenceTest::new(settings);
+    test.is_passed(iterate.change_to(image, settings.least_temperature), &tractions);
+    let convergence = finish(problem, before, iterate, now, solvers, 1, &test)?;
+    Ok(Convergence {
+        staggered: true,
+        ..convergence
+    })
+}
+
 /// Ends a step whose interface vector has converged.
 fn finish<E: Engine>(
     problem: &Problem<E>,
@@ -189,17 +232,19 @@ fn finish<E: Engine>(
         iterations,
         residual: test.change(),
         fills_window,
+        staggered: false,
     })
 }
 
-/// Solves the mechanics alone: rail and wheel at ambient and unworn, no time passes.
+/// Solves the mechanics alone: rail and wheel at ambient and unworn, no time passes. With the staggered coupling the tractions need not
+/// rest.
 ///
 /// # Errors
 /// The first solver that did not converge, or [`Error::ContactLeavesWindow`].
 pub fn initial_state<E: Engine>(
     problem: &Problem<E>,
     workspace: &mut StepWorkspace<E>,
-) -> Result<EngineState<E::Fields>> {
+) -> Result<(EngineState<E::Fields>, Convergence)> {
     let settings = E::split_settings(problem.settings);
     let tolerance = settings.mechanics_alone_tolerance;
     let StepWorkspace { solvers, iterate, .. } = workspace;
@@ -207,15 +252,22 @@ pub fn initial_state<E: Engine>(
     E::set_wheel_temperature(&mut now, problem.conditions.inputs.ambient_temperature);
     now.memory_mut().start_steady();
     E::begin(problem, None, &mut now, solvers)?;
+    let staggered = problem.conditions.coupling == Coupling::Staggered;
     let mut tractions = TractionChange::NONE;
-    for _ in 0..settings.iterations {
+    for iterations in 1..=settings.iterations {
         E::read(problem, &now, solvers, iterate);
         tractions = E::solve_mechanics(problem, iterate, &mut now, solvers, tolerance)?;
-        if tractions.has_converged(tolerance) {
-            fills_window(problem, &now, solvers)?;
+        let rests = tractions.has_converged(tolerance);
+        if rests || staggered && iterations == settings.iterations {
+            let convergence = Convergence {
+                iterations: if rests { 0 } else { iterations },
+                residual: if rests { 0.0 } else { tractions.shear_change },
+                fills_window: fills_window(problem, &now, solvers)?,
+                staggered: !rests,
+            };
             E::finalise_displacement(problem, iterate, &mut now, solvers);
             memory::end(problem, &mut now);
-            return Ok(EngineState::at_rest(now));
+            return Ok((EngineState::at_rest(now), convergence));
         }
     }
     Err(Error::MechanicsNotConverged {

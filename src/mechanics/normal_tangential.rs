@@ -429,6 +429,7 @@ fn tangential_problem<'a>(
         path: problem.path.as_ref().map(|(law, _)| (*law, &local.path[..m])),
         leading,
         regularisation: problem.regularisation,
+        accepts_regularised: problem.accepts_regularised,
         tolerance,
     }
 }

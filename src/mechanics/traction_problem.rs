@@ -40,6 +40,8 @@ pub struct TractionProblem<'a> {
     pub near_field: NearField,
     /// ε, `m/s`; 0 is Coulomb's law.
     pub regularisation: f64,
+    /// Whether a solution for a larger ε will do where the law has none that is found.
+    pub accepts_regularised: bool,
 }
 
 /// Change of a [`TractionProblem`]'s data in one direction, n contact nodes.

@@ -105,6 +105,8 @@ pub struct StepTime {
     pub time: f64,
     /// Iterations of the split over all sub-steps.
     pub iterations: usize,
+    /// Whether a part of it was taken staggered.
+    pub staggered: bool,
 }
 
 /// Extent, load and temperature of a run after a step.
@@ -225,6 +227,7 @@ impl Torture {
                     step: number,
                     time,
                     iterations: state.convergence.iterations,
+                    staggered: state.convergence.staggered,
                 });
                 run.reach.push(reach(model, &parameters, &state));
             }

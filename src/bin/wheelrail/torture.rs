@@ -82,6 +82,8 @@ struct Summary {
     slowest: Vec<StepTime>,
     /// Failures by their kind, with run and step.
     failures: BTreeMap<String, Vec<(u64, usize, RunFailure)>>,
+    /// Steps that were taken staggered.
+    staggered: usize,
     /// Rails that were too hot.
     replaced: usize,
     /// Outermost contact in units of the half-length at `largest_load`.
@@ -159,6 +161,7 @@ impl Summary {
         self.slowest.extend(&run.steps);
         self.slowest.sort_by(|a, b| b.time.total_cmp(&a.time));
         self.slowest.truncate(slowest);
+        self.staggered += run.steps.iter().filter(|step| step.staggered).count();
         self.replaced += run.replaced;
         let reaches = run.reach.iter().map(|reach| reach.outermost);
         self.outermost = reaches.fold(self.outermost, f64::max);
@@ -182,6 +185,11 @@ impl Summary {
                 writeln!(out, "  --run {run} step {step}: {failure}")?;
             }
         }
+        writeln!(
+            out,
+            "{} steps taken staggered, as their coupled equations were not solved",
+            self.staggered
+        )?;
         writeln!(
             out,
             "{} rails above {LARGEST_TEMPERATURE} K, or too thick for a penetration, replaced by cold ones",

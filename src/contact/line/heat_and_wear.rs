@@ -4,6 +4,7 @@ use super::fields::LineFields;
 use super::mechanics::LineProblem;
 use super::solvers::LineSolvers;
 use crate::contact::interface::Interface;
+use crate::contact::problem::Coupling;
 use crate::error::Result;
 use crate::friction::coulomb::Sliding;
 use crate::heat::march::{HeatMarch, Heated};
@@ -97,13 +98,17 @@ pub fn march_heat(
     march.advance(&before.temperature, &solvers.exchange, &mut after, &mut solvers.cells)
 }
 
-/// Adapts the normal compliance to the wear of the step.
+/// Adapts the normal compliance to the wear of the step; in a staggered one the wear follows the mechanics.
 pub fn update_wear_compliance(problem: &LineProblem, now: &LineFields, solvers: &mut LineSolvers) {
+    let wear_coefficient = match problem.conditions.coupling {
+        Coupling::Implicit => problem.parameters.wear_coefficient,
+        Coupling::Staggered => 0.0,
+    };
     let (operators, transport) = (problem.operators, problem.upwind());
     let changed = solvers.wear_compliance.update(
         &operators.compliance.at_rest.normal_normal,
         &now.slip,
-        operators.scales.compliance(problem.parameters.wear_coefficient),
+        operators.scales.compliance(wear_coefficient),
         CellStep::new(
             1.0 / problem.conditions.duration,
             operators.mesh.contact_spacing(),

@@ -141,6 +141,7 @@ impl Data {
             transient: self.transient,
             near_field: near_field(),
             regularisation: self.regularisation,
+            accepts_regularised: false,
         }
     }
 }

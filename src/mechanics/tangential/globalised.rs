@@ -27,6 +27,9 @@ impl Tangential {
         let largest_pressure = largest(problem.pressure);
         let tolerance = problem.tolerance * largest_pressure;
         self.change[..m].fill(0.0);
+        let rough = self.settings.continuation_tolerance * largest_pressure;
+        // Least ε for which the law was solved.
+        let mut regularised = None;
         let mut end = self.search(problem, problem.regularisation, shear, tolerance);
         let mut steps = spent + end.steps();
         if let Ended::Stalled(_) = end {
@@ -36,10 +39,15 @@ impl Tangential {
             self.update_point(problem, shear);
             let mut regularisation = largest(&self.slip[..m]);
             let least = (self.settings.least_regularisation * regularisation).max(problem.regularisation);
-            while regularisation > least && self.work <= self.settings.work {
+            let sought = |solved: Option<f64>| problem.accepts_regularised && solved.is_none();
+            while regularisation > least && (self.work <= self.settings.work || sought(regularised)) {
                 // A law that is solved to a few digits only, or not quite, still leads closer.
-                let rough = self.settings.continuation_tolerance * largest_pressure;
-                steps += self.search(problem, regularisation, shear, rough).steps();
+                let part = self.search(problem, regularisation, shear, rough);
+                steps += part.steps();
+                if let Ended::Converged(_) = part {
+                    self.regularised[..m].copy_from_slice(&self.change[..m]);
+                    regularised = Some(regularisation);
+                }
                 regularisation *= self.settings.continuation_ratio;
             }
             end = self.search(problem, problem.regularisation, shear, tolerance);
@@ -52,13 +60,21 @@ impl Tangential {
             steps += end.steps();
         }
         self.forget();
-        match end {
-            Ended::Converged(_) => {
-                self.close_globalised(problem, shear);
-                Ended::Converged(steps)
+        match (end, regularised) {
+            (Ended::Converged(_), _) => self.close_globalised(problem, shear),
+            (Ended::Stalled(_), Some(regularisation)) if problem.accepts_regularised => {
+                let problem = TangentialProblem {
+                    regularisation,
+                    ..*problem
+                };
+                self.change[..m].copy_from_slice(&self.regularised[..m]);
+                // Pressure, slip and μ at that point, which is a solution.
+                steps += self.search(&problem, regularisation, shear, rough).steps();
+                self.close_globalised(&problem, shear);
             }
-            Ended::Stalled(_) => Ended::Stalled(steps),
+            (Ended::Stalled(_), _) => return Ended::Stalled(steps),
         }
+        Ended::Converged(steps)
     }
 
     /// Newton's method with a line search at one ε, from the present change of the shear.

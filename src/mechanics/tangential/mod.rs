@@ -43,6 +43,8 @@ pub struct TangentialProblem<'a> {
     pub leading: LeadingRows<'a>,
     /// ε, `m/s`; 0 is Coulomb's law.
     pub regularisation: f64,
+    /// Whether a solution for a larger ε will do where the law has none that is found.
+    pub accepts_regularised: bool,
     /// Newton step that may be left out, relative to the largest pressure.
     pub tolerance: f64,
 }
@@ -164,6 +166,8 @@ pub struct Tangential {
     step: Vec<f64>,
     /// The change before the step.
     before: Vec<f64>,
+    /// The change that solves the law for the least ε so far.
+    regularised: Vec<f64>,
     rows: Vec<LawRow>,
     factor: Vec<f64>,
     pivots: Vec<usize>,
@@ -202,6 +206,7 @@ impl Tangential {
             residual: vector(),
             step: vector(),
             before: vector(),
+            regularised: vector(),
             rows: vec![LawRow::default(); nodes],
             factor: vec![0.0; nodes * nodes],
             pivots: vec![0; nodes],

@@ -40,6 +40,7 @@ fn stiff<'a>(pressure: &'a [f64], slip: &'a [f64], zero: &'a [f64], friction: &'
         path: None,
         leading: no_edge(&zero[..pressure.len()]),
         regularisation: 1e-3,
+        accepts_regularised: false,
         tolerance: 1e-12,
     }
 }
@@ -125,6 +126,7 @@ proptest! {
             path: None,
             leading: no_edge(&zero),
             regularisation,
+            accepts_regularised: false,
             tolerance: 1e-12,
         };
         let mut shear = vec![0.0; NODES];
@@ -167,6 +169,7 @@ proptest! {
             path: None,
             leading: no_edge(&zero),
             regularisation: 0.0,
+            accepts_regularised: false,
             tolerance: 1e-12,
         };
         let settings = TangentialSettings { exchanges, ..TangentialSettings::default() };
@@ -244,6 +247,7 @@ fn the_line_search_finds_the_solution_of_friction_that_falls_with_slip() {
                     path: Some((law, &nodes)),
                     leading: no_edge(&zero),
                     regularisation,
+                    accepts_regularised: false,
                     tolerance: 1e-12,
                 };
                 let mut solver = Tangential::new(NODES, TangentialSettings::default());
