@@ -47,8 +47,9 @@ pub struct StepSettings {
     pub retries: usize,
     /// Sub-steps at that limit after which it is doubled.
     pub substeps_at_limit: usize,
-    /// Number of sub-steps in which the rest of a step is taken whose coupled equations are not solved.
-    pub staggered_substeps: f64,
+    /// Number of sub-steps in which the rest of a step is taken staggered whose coupled equations are not solved; 0 refuses such a
+    /// step.
+    pub staggered_substeps: usize,
     /// Budget of a step in multiplications and additions, about: counted, not timed.
     pub work: u64,
 }
@@ -234,8 +235,8 @@ impl Default for StepSettings {
             shortest: 1e-100,
             retries: 12,
             substeps_at_limit: 4,
-            staggered_substeps: 4.0,
-            work: 200_000_000,
+            staggered_substeps: 4,
+            work: 100_000_000,
         }
     }
 }
@@ -246,8 +247,8 @@ impl Default for SplitSettings {
             iterations: 100,
             tolerance: 1e-9,
             shear_tolerance: 1e-9,
-            fixed_point_iterations: 20,
-            idle_iterations: 8,
+            fixed_point_iterations: 40,
+            idle_iterations: 20,
             accepted_change: 0.0,
             stalled_tolerance: 1e-5,
             first_mechanics_tolerance: 1e-8,
@@ -361,6 +362,15 @@ impl Default for SensitivitySettings {
 }
 
 impl Settings {
+    /// Settings with which a step is solved or refused, whatever work it takes up to a hundred times the usual budget: none is taken
+    /// staggered.
+    pub fn strict() -> Settings {
+        let mut settings = Settings::default();
+        settings.step.staggered_substeps = 0;
+        settings.step.work *= 100;
+        settings
+    }
+
     /// Convergence of the operator split of a patch.
     pub fn patch_split(&self) -> SplitSettings {
         SplitSettings {
@@ -547,6 +557,8 @@ pub struct InterfaceSettings {
     pub jumps: usize,
     /// Share of the decrease that the linear system predicts which must be there for a step to be taken.
     pub descent: f64,
+    /// Share of a step's budget of work that Newton's method may take.
+    pub work: f64,
     /// Limit of the solutions of the mechanics for one interface vector: nodes under pressure may change in each.
     pub mechanics_sweeps: usize,
     /// Change of the shear at which they end, relative to the peak pressure.
@@ -571,6 +583,7 @@ impl Default for InterfaceSettings {
             halvings: 6,
             jumps: 3,
             descent: 1e-4,
+            work: 0.03,
             mechanics_sweeps: 30,
             mechanics_tolerance: 1e-11,
             krylov_iterations: 60,

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any
 
 from .archive import example, fmu_path, preset
 from .creep import creep_curves
-from .errors import InstanceClosedError, SimulationError
+from .errors import InstanceClosedError, SimulationError, SimulationWarning
 from .instance import Instance
 from .simulation import simulate
 from .states import SavedState
@@ -31,6 +31,7 @@ __all__ = [
     "InstanceClosedError",
     "SavedState",
     "SimulationError",
+    "SimulationWarning",
     "creep_curves",
     "example",
     "fmu_path",

@@ -1,6 +1,7 @@
 """What an instance is told and asked: variables by name, and calls that are refused before they can do harm."""
 
 import math
+import warnings
 from collections.abc import Mapping, Sequence
 from itertools import groupby
 from types import TracebackType
@@ -11,7 +12,7 @@ from fmpy.fmi1 import FMICallException
 from fmpy.model_description import ModelVariable
 
 from .arguments import names_of, plain
-from .errors import SimulationError
+from .errors import SimulationError, SimulationWarning
 from .native import FMU3Component, Phase
 from .variables import bounds, choices, near, shape, start_values
 
@@ -56,10 +57,12 @@ class Calls:
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        """Undo what failed, and say it in the component's words."""
+        """Undo what failed, and say it in the component's words; warn of what it says of a call that did not fail."""
         slave = self.slave
         try:
             if error is None:
+                for words in slave.messages:
+                    warnings.warn(words, SimulationWarning, stacklevel=3)
                 return
             words, failed = "; ".join(slave.messages), slave.phase is Phase.FAILED
             back = self.undo and slave.gone is None and slave.go_back()

@@ -1,4 +1,4 @@
-"""What the package raises beside ValueError and TypeError."""
+"""What the package raises, beside ValueError and TypeError, and warns of."""
 
 from typing import Any
 
@@ -20,3 +20,7 @@ class SimulationError(RuntimeError):
 
 class InstanceClosedError(SimulationError):
     """The instance was closed: nothing can be asked of it, nor of its saved states."""
+
+
+class SimulationWarning(UserWarning):
+    """The component did what it was asked and has something to say of it: a step whose equations were not solved together."""

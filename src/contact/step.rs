@@ -144,8 +144,10 @@ pub fn solve<E: Engine>(
                 image: &mut *image,
             };
             // Where Newton's method gets no further either, the fixed point goes on from the closest iterate.
-            let (count, solved) = match newton::solve(problem, newton, sweeps, &mut test, work) {
-                Err(error @ Error::TooMuchWork { .. }) => return Err(error),
+            let mut share = work.share(problem.settings.interface.work);
+            let end = newton::solve(problem, newton, sweeps, &mut test, &mut share);
+            work.add(share.spent())?;
+            let (count, solved) = match end {
                 Err(_) => {
                     newton.take_closest(iterate);
                     (0, false)

@@ -21,6 +21,16 @@ impl Work {
         self.spent = 0;
     }
 
+    /// Budget of a method that may take so large a share of the whole.
+    pub fn share(&self, share: f64) -> Work {
+        Work::new((share * self.limit as f64) as u64)
+    }
+
+    /// Work so far.
+    pub fn spent(&self) -> u64 {
+        self.spent
+    }
+
     /// Adds work.
     ///
     /// # Errors

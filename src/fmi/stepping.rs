@@ -50,6 +50,7 @@ impl Component {
                 self.time = end;
                 // Derivatives hold from the beginning of one step to its end.
                 self.rates = Inputs::ZERO;
+                self.warn_of_staggered_step();
                 self.inform_about_step();
                 Ok(())
             }
@@ -88,6 +89,19 @@ impl Component {
                     .failure(Blame::Unused, || format!("t = {time} s: {unused}"));
             }
         }
+    }
+
+    /// Tells that a part of the step was taken staggered. The status of the step is not touched.
+    fn warn_of_staggered_step(&mut self) {
+        let Some(state) = self.state.as_ref().filter(|state| state.convergence.staggered) else {
+            return;
+        };
+        let (time, residual) = (self.time, state.convergence.residual);
+        self.journal.failure(Blame::Unused, || {
+            format!(
+                "t = {time} s: mechanics, heat and wear of the step were not solved together within its budget of work, but one after the other (residual {residual:e}); a shorter step may be solved"
+            )
+        });
     }
 
     /// Goes on from where a step stopped half-way, as from any communication point.
@@ -174,7 +188,7 @@ mod tests {
             component.do_step(1e-3, 2e-3).unwrap();
             let undisturbed = outputs(&mut component);
             for allowed in 0.. {
-                let mut settings = Settings::default();
+                let mut settings = Settings::strict();
                 settings.step.retries = 0;
                 set_limit(&mut settings, allowed);
                 limit(&mut component, settings);

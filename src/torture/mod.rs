@@ -20,6 +20,7 @@ use drive::Drive;
 use random::Random;
 use std::fmt;
 use std::ops::Range;
+use std::panic::AssertUnwindSafe;
 use std::time::Instant;
 
 pub use drive::DriveStep;
@@ -69,6 +70,8 @@ pub enum RunFailure {
     Output(&'static str, f64),
     /// A state that the model would not accept.
     State,
+    /// A panic.
+    Panic,
 }
 
 impl fmt::Display for RunFailure {
@@ -77,6 +80,7 @@ impl fmt::Display for RunFailure {
             RunFailure::Model(error) => write!(f, "{error}"),
             RunFailure::Changed => write!(f, "a step that failed has changed the state"),
             RunFailure::Output(name, value) => write!(f, "the output {name} is {value}"),
+            RunFailure::Panic => write!(f, "a panic"),
             RunFailure::State => write!(f, "the model does not accept the state"),
         }
     }
@@ -187,7 +191,11 @@ impl Torture {
                     Ok(model) => model
                         .retune(&self.parameters(number))
                         .map_err(RunFailure::Model)
-                        .and_then(|()| self.follow(model, &mut run)),
+                        .and_then(|()| {
+                            // What a panic leaves is not used any more.
+                            let follow = AssertUnwindSafe(|| self.follow(model, &mut run));
+                            std::panic::catch_unwind(follow).unwrap_or(Err(RunFailure::Panic))
+                        }),
                     Err(error) => Err(RunFailure::Model(error.clone())),
                 };
                 run.failure = outcome.err();

@@ -6,7 +6,7 @@
 //! rigid wheel takes the part of its mirror image, which makes the creepage of two like bodies that of a rigid wheel.
 
 use super::row::Row;
-use super::set_up::mechanics_alone;
+use super::set_up::{self, mechanics_alone};
 use crate::error::Result;
 use crate::friction::coulomb;
 use crate::parameters::{Parameters, Wheel};
@@ -49,7 +49,7 @@ fn traction_share(parameters: &Parameters, load: f64, creepage: f64) -> f64 {
 /// A solver that did not converge.
 pub fn curve() -> Result<Vec<Vec<f64>>> {
     let parameters = parameters();
-    let mut run = Simulation::new(&parameters, &Inputs::default())?;
+    let mut run = set_up::simulation(&parameters, &Inputs::default())?;
     let mut points = Vec::new();
     for step in 0..=60 {
         let inputs = Inputs {
@@ -74,7 +74,7 @@ pub fn rows() -> Result<Vec<Row>> {
         ..Inputs::default()
     };
     let load = inputs(0.0).normal_load;
-    let mut run = Simulation::new(&parameters, &inputs(0.0))?;
+    let mut run = set_up::simulation(&parameters, &inputs(0.0))?;
     let mut rows = Vec::new();
     for creepage in CREEPAGES {
         let outputs = run.hold(&inputs(creepage), PASSAGE, 1)?;

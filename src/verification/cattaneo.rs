@@ -8,7 +8,7 @@
 //! the displacement is f(T) = direct/(2π) (μN − T) ln(1 − T/(μN)) per width, and a cycle between ±T* takes the area of its loop.
 
 use super::row::Row;
-use super::set_up::mechanics_alone;
+use super::set_up::{self, mechanics_alone};
 use crate::body::half_plane::HalfPlanes;
 use crate::error::Result;
 use crate::parameters::{Parameters, SlipSource, Wheel};
@@ -44,7 +44,7 @@ struct Ramp {
 impl Ramp {
     fn new() -> Result<Ramp> {
         Ok(Ramp {
-            run: Simulation::new(&parameters(), &Ramp::inputs(0.0))?,
+            run: set_up::simulation(&parameters(), &Ramp::inputs(0.0))?,
             share: 0.0,
             work: 0.0,
         })

@@ -7,6 +7,7 @@
 //! Solids, 10.3).
 
 use super::row::Row;
+use super::set_up;
 use crate::error::Result;
 use crate::parameters::{FrictionLaw, Parameters};
 use crate::signals::{Inputs, Outputs};
@@ -53,8 +54,8 @@ impl Pair {
         let delay = ((DISTANCE - 2.0 * HALF_LENGTH) / SPEED / STEP).round() as usize;
         let ambient = inputs().ambient_temperature;
         Ok(Pair {
-            front: Simulation::new(parameters, &inputs())?,
-            rear: Simulation::new(parameters, &inputs())?,
+            front: set_up::simulation(parameters, &inputs())?,
+            rear: set_up::simulation(parameters, &inputs())?,
             between: VecDeque::from(vec![(ambient, 0.0); delay]),
             gone: 0.0,
         })

@@ -8,7 +8,6 @@ use crate::error::Result;
 use crate::numerics::dense::largest_change;
 use crate::parameters::{Parameters, Wheel};
 use crate::signals::{Inputs, Outputs};
-use crate::simulation::Simulation;
 
 const SOURCE: &str = "the same on 401 nodes";
 /// Nodes of the limit: its own error is a fifth of that at 121.
@@ -34,7 +33,7 @@ fn creepages() -> impl Iterator<Item = f64> {
 /// T/(μN) over the creepages, load by load.
 fn curves(wheel: Wheel, contact_nodes: usize) -> Result<Vec<f64>> {
     let parameters = parameters(wheel, contact_nodes);
-    let mut run = Simulation::new(&parameters, &Inputs::default())?;
+    let mut run = set_up::simulation(&parameters, &Inputs::default())?;
     let mut values = Vec::new();
     for normal_load in LOADS {
         for creepage in creepages() {
@@ -92,7 +91,7 @@ fn free_rolling(contact_nodes: usize) -> Result<f64> {
         creepage,
         ..Inputs::default()
     };
-    let mut run = Simulation::new(&parameters(Wheel::Rigid, contact_nodes), &inputs(0.0))?;
+    let mut run = set_up::simulation(&parameters(Wheel::Rigid, contact_nodes), &inputs(0.0))?;
     set_up::free_rolling([-0.001, -0.002], |creepage| {
         Ok(run.hold(&inputs(creepage), PASSAGE, 1)?.traction_coefficient)
     })
@@ -115,7 +114,7 @@ fn hot_rows() -> Result<Vec<Row>> {
             creepage: 0.005,
             ..Inputs::default()
         };
-        Ok(*Simulation::new(&parameters, &inputs)?.hold(&inputs, PASSAGE, 30)?)
+        Ok(*set_up::simulation(&parameters, &inputs)?.hold(&inputs, PASSAGE, 30)?)
     };
     let (limit, default) = (settled(FINE)?, settled(Parameters::default().contact_nodes)?);
     let row = |quantity: &str, unit, limit, default| Row::relative(quantity, unit, limit, default, 0.003, SOURCE);

@@ -2,11 +2,10 @@
 //! step of ∂u₁/∂t is fitted to the exponential by which rolling forgets a change. Constant μ.
 
 use super::row::{Row, larger};
-use super::set_up::mechanics_alone;
+use super::set_up::{self, mechanics_alone};
 use crate::error::Result;
 use crate::parameters::{Parameters, SlipSource, Wheel};
 use crate::signals::Inputs;
-use crate::simulation::Simulation;
 
 const SOURCE: &str = "the same in steps of a fortieth of the half-length";
 const SPEED: f64 = 1.0;
@@ -34,7 +33,7 @@ fn transient(wheel: Wheel, jump: f64, half_lengths: usize, steps: usize) -> Resu
         wheel_speed: SPEED * (1.0 + creepage) / parameters.wheel_radius,
         ..Inputs::default()
     };
-    let mut run = Simulation::new(&parameters, &inputs(0.0))?;
+    let mut run = set_up::simulation(&parameters, &inputs(0.0))?;
     // Steady: nothing is left of the state before it.
     run.hold(&inputs(0.0), 1e3 * half_length / SPEED, 1)?;
     let step = half_lengths as f64 * half_length / SPEED / steps as f64;

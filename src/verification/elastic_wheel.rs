@@ -115,7 +115,7 @@ fn like_bodies(contact_nodes: usize) -> Result<Simulation> {
         contact_nodes,
         ..mechanics_alone()
     };
-    Simulation::new(&parameters, &Inputs::default())
+    set_up::simulation(&parameters, &Inputs::default())
 }
 
 /// Creepage, Carter's T/(μN) and ours at the given creepages.
@@ -141,7 +141,7 @@ fn free_rolling(parameters: Parameters) -> Result<f64> {
         friction_law: FrictionLaw::Constant,
         ..parameters
     };
-    let mut run = Simulation::new(&parameters, &Inputs::default())?;
+    let mut run = set_up::simulation(&parameters, &Inputs::default())?;
     // Like bodies roll freely at the second guess.
     set_up::free_rolling([-0.001, 0.0], |creepage| {
         let inputs = Inputs {

@@ -8,6 +8,7 @@
 //! friction power, not ᾱ of it.
 
 use super::row::{Row, larger};
+use super::set_up;
 use crate::contact::line::fields::LineFields;
 use crate::contact::rim;
 use crate::error::Result;
@@ -230,7 +231,7 @@ fn largest_defect(
         incoming_temperature,
         ..Inputs::default()
     };
-    let mut run = Simulation::new(parameters, &inputs(&steps[0]))?;
+    let mut run = set_up::simulation(parameters, &inputs(&steps[0]))?;
     // The balance is one of implicit steps: of a step that was divided it would compare the wrong states, and is NaN.
     let (mut defect, mut total_defect, mut shares) = (0.0_f64, 0.0_f64, Balance::default());
     for step in steps {

@@ -3,10 +3,10 @@
 //! an explicit master must be able to take steps of a millisecond.
 
 use super::row::Row;
+use super::set_up;
 use crate::error::Result;
 use crate::parameters::{Parameters, SlipSource};
 use crate::signals::Inputs;
-use crate::simulation::Simulation;
 
 const SOURCE: &str = "stability: the swing on the contact's spring dies down";
 /// Moment of inertia of a driven wheelset's wheel, `kg m²`.
@@ -27,7 +27,7 @@ fn growth(speed: f64) -> Result<f64> {
         ..Inputs::default()
     };
     let rolling = speed / parameters.wheel_radius;
-    let mut run = Simulation::new(&parameters, &inputs(rolling))?;
+    let mut run = set_up::simulation(&parameters, &inputs(rolling))?;
     // A drive that asks for a third of what friction carries.
     let drive = parameters.friction_cold / 3.0 * Inputs::default().normal_load * parameters.wheel_radius;
     let mut wheel_speed = rolling;

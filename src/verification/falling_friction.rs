@@ -10,7 +10,7 @@
 //! unique here even without one: each column's temperature is solved together with its coefficient.
 
 use super::row::Row;
-use super::set_up::mechanics_alone;
+use super::set_up::{self, mechanics_alone};
 use crate::error::Result;
 use crate::parameters::{ContactModel, FrictionLaw, Parameters};
 use crate::settings::Settings;
@@ -63,10 +63,10 @@ const SPEED: f64 = 40.0;
 
 /// T/N over μ₀ at [`SPEED`] that different starts, steps and iterations lead to; none for those that lead nowhere.
 fn answers(parameters: &Parameters, creepage: f64) -> Result<Vec<Option<f64>>> {
-    let mut plain = Settings::default();
+    let mut plain = Settings::strict();
     plain.split.accelerate_after = usize::MAX;
     let mut answers = Vec::new();
-    for settings in [Settings::default(), plain] {
+    for settings in [Settings::strict(), plain] {
         let model = Arc::new(Model::with_settings(parameters.clone(), settings)?);
         for (step, steps) in [(0.1, 5), (2e-3, 50)] {
             for start in [creepage, 0.2, 1e-4] {
@@ -110,7 +110,7 @@ pub fn rows() -> Result<Vec<Row>> {
     for (contact_model, name) in MODELS {
         let sliding = |distance: f64| -> Result<f64> {
             let parameters = parameters(contact_model, 0.7, distance);
-            let run = Simulation::new(&parameters, &inputs(speed, creepage))?;
+            let run = set_up::simulation(&parameters, &inputs(speed, creepage))?;
             Ok(run.outputs().traction_coefficient / parameters.friction_cold)
         };
         let slides = speed * creepage;

@@ -7,7 +7,7 @@
 //! that much less is worn off.
 
 use super::row::Row;
-use super::set_up::mechanics_alone;
+use super::set_up::{self, mechanics_alone};
 use crate::error::Result;
 use crate::parameters::{Parameters, SlipSource, Wheel};
 use crate::signals::Inputs;
@@ -38,7 +38,7 @@ impl Spinning {
             ..parameters
         };
         Ok(Spinning {
-            run: Simulation::new(&parameters, &inputs(&parameters, load))?,
+            run: set_up::simulation(&parameters, &inputs(&parameters, load))?,
             load,
             slip: 0.0,
         })

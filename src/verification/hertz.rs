@@ -5,10 +5,10 @@
 //! place of its parabola (a²/r₀² ≈ 1e-4).
 
 use super::row::Row;
+use super::set_up;
 use crate::error::Result;
 use crate::parameters::{FrictionLaw, Parameters, Wheel};
 use crate::signals::Inputs;
-use crate::simulation::Simulation;
 
 const SOURCE: &str = "Johnson, Contact Mechanics, 4.43 and 4.45";
 /// Half a node spacing is 6 % of the smallest half-length; because the ends are interpolated between nodes, about 1 % is left.
@@ -30,7 +30,7 @@ const PENETRATION_TOLERANCE: f64 = 0.001;
 pub fn rows() -> Result<Vec<Row>> {
     let mut rows = contact("rigid wheel", rigid(), &[10, 20, 35, 50, 75, 100])?;
     let inputs = Inputs::default();
-    let mut run = Simulation::new(&smooth(rigid()), &inputs)?;
+    let mut run = set_up::simulation(&smooth(rigid()), &inputs)?;
     // The penetration of a line contact depends on the size of the body, by a logarithm.
     let parameters = rigid();
     let (load, modulus) = (
@@ -74,7 +74,7 @@ fn smooth(parameters: Parameters) -> Parameters {
 /// A solver that did not converge.
 pub fn curve() -> Result<Vec<Vec<f64>>> {
     let parameters = smooth(rigid());
-    let mut run = Simulation::new(&parameters, &Inputs::default())?;
+    let mut run = set_up::simulation(&parameters, &Inputs::default())?;
     let mut points = Vec::new();
     for share in [0.2, 0.5, 1.0] {
         let load = share * parameters.largest_load;
@@ -98,7 +98,7 @@ pub fn curve() -> Result<Vec<Vec<f64>>> {
 /// A solver that did not converge.
 pub fn contact(pair: &str, parameters: Parameters, percents: &[u8]) -> Result<Vec<Row>> {
     let parameters = smooth(parameters);
-    let mut run = Simulation::new(&parameters, &Inputs::default())?;
+    let mut run = set_up::simulation(&parameters, &Inputs::default())?;
     let mut rows = Vec::new();
     for &percent in percents {
         let load = 0.01 * f64::from(percent) * parameters.largest_load;

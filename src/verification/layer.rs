@@ -8,11 +8,10 @@
 //! by Kalker's simplified theory: approximately, for the distributions of the shear differ.
 
 use super::row::Row;
-use super::set_up::mechanics_alone;
+use super::set_up::{self, mechanics_alone};
 use crate::error::Result;
 use crate::parameters::{ContactModel, Parameters};
 use crate::signals::Inputs;
-use crate::simulation::Simulation;
 use std::f64::consts::{FRAC_PI_2, PI};
 
 /// c over the compliance of the bodies is some 100.
@@ -42,7 +41,7 @@ fn rolling(parameters: &Parameters, creepage: f64) -> Result<(f64, f64)> {
         creepage,
         ..Inputs::default()
     };
-    let run = Simulation::new(parameters, &inputs)?;
+    let run = set_up::simulation(parameters, &inputs)?;
     let (half_length, pressure) = match parameters.contact_model {
         ContactModel::Line => (
             parameters.hertz_half_length(inputs.normal_load),

@@ -2,6 +2,7 @@
 //! image, diagonals included.
 
 use super::row::{Row, largest_difference};
+use super::set_up;
 use crate::error::Result;
 use crate::parameters::{Parameters, SlipSource, Wheel, WheelHeating};
 use crate::signals::Inputs;
@@ -113,7 +114,7 @@ fn braking(parameters: &Parameters, direction: f64) -> Result<Simulation> {
         incoming_wear_depth: 1e-7,
         ..Inputs::default()
     };
-    let mut run = Simulation::new(parameters, &inputs(0.0))?;
+    let mut run = set_up::simulation(parameters, &inputs(0.0))?;
     for step in 0..40 {
         run.step(&inputs(0.002 * f64::from(step)), 2e-3)?;
     }

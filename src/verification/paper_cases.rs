@@ -4,6 +4,7 @@
 //! that differs in front and behind, a temperature that falls fast with depth, and slower cooling behind the contact.
 
 use super::row::Row;
+use super::set_up;
 use crate::error::Result;
 use crate::parameters::{Control, FrictionLaw, Parameters, SlipSource, Wheel};
 use crate::signals::Inputs;
@@ -54,7 +55,7 @@ pub fn inputs(creepage: f64) -> Inputs {
 /// A solver that did not converge.
 pub fn settled(parameters: &Parameters, creepage: f64) -> Result<Simulation> {
     let inputs = inputs(creepage);
-    let mut run = Simulation::new(parameters, &inputs)?;
+    let mut run = set_up::simulation(parameters, &inputs)?;
     run.hold(&inputs, 1e-2, 200)?;
     Ok(run)
 }

@@ -2,6 +2,7 @@
 //! heat and no wear.
 
 use super::contact_points::{ELLIPSES, FRICTION, LAME_LAMBDA, LOAD, SHEAR_MODULUS, WHEEL_RADIUS};
+use super::set_up;
 use crate::error::Result;
 use crate::parameters::{ContactModel, FrictionLaw, Parameters};
 use crate::signals::{Inputs, Outputs};
@@ -61,7 +62,7 @@ impl Rolling {
     /// Parameters that do not go together.
     pub fn new(parameters: Parameters) -> Result<Rolling> {
         Ok(Rolling {
-            model: Arc::new(Model::new(parameters)?),
+            model: Arc::new(set_up::model(parameters)?),
         })
     }
 

@@ -9,6 +9,7 @@
 //! beside it. For wear, d/dt ∫ S + |V| B w (outflow less inflow) = k ∫ |s| p dA.
 
 use super::row::{Row, larger};
+use super::set_up;
 use crate::contact::patch::fields::PatchFields;
 use crate::contact::patch::operators::PatchOperators;
 use crate::contact::rim;
@@ -163,7 +164,7 @@ fn largest(
             ..Inputs::default()
         }
     };
-    let mut run = Simulation::new(parameters, &inputs(0))?;
+    let mut run = set_up::simulation(parameters, &inputs(0))?;
     let (mut defects, mut shares) = ([0.0; 3], [0.0; 9]);
     for step in 0..30 {
         let before = run.state.patch_fields()?.clone();

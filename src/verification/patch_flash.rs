@@ -6,6 +6,7 @@ use super::contact_points::{FLASH_TEMPERATURE, FRICTION, LOAD};
 use super::flash_temperature::largest_flash_integral;
 use super::patch_cases::{self, SPEED};
 use super::row::Row;
+use super::set_up;
 use crate::error::Result;
 use crate::parameters::Parameters;
 use crate::simulation::Simulation;
@@ -28,7 +29,7 @@ fn parameters(refinement: usize) -> Parameters {
 
 fn steady(parameters: &Parameters, creepage: f64) -> Result<Simulation> {
     let inputs = patch_cases::inputs(parameters, [creepage, 0.0, 0.0]);
-    let mut run = Simulation::new(parameters, &inputs)?;
+    let mut run = set_up::simulation(parameters, &inputs)?;
     run.hold(&inputs, PASSAGE, 3)?;
     Ok(run)
 }

@@ -7,11 +7,11 @@
 use super::contact_points::LOAD;
 use super::patch_cases;
 use super::row::{Row, larger};
+use super::set_up;
 use crate::error::Result;
 use crate::parameters::Parameters;
 use crate::signals::Inputs;
 use crate::simulation::Simulation;
-use crate::wheel_rail::Model;
 use std::f64::consts::PI;
 use std::sync::Arc;
 
@@ -49,7 +49,7 @@ fn loaded(load: f64) -> Inputs {
 
 /// The largest relative error of each quantity over the loads.
 fn largest_errors(parameters: Parameters) -> Result<[f64; 5]> {
-    let model = Arc::new(Model::new(parameters)?);
+    let model = Arc::new(set_up::model(parameters)?);
     let mut largest = [0.0; 5];
     for percent in PERCENTS.step_by(5) {
         let load = 0.01 * f64::from(percent) * LOAD;
@@ -108,7 +108,7 @@ pub fn rows() -> Result<Vec<Row>> {
 pub fn curve() -> Result<Vec<Vec<f64>>> {
     let parameters = smooth(0, 1);
     let hertz = parameters.hertz_ellipse(LOAD);
-    let run = Simulation::new(&parameters, &loaded(LOAD))?;
+    let run = set_up::simulation(&parameters, &loaded(LOAD))?;
     let nodes = run.contact_nodes();
     let nearest = nodes.iter().fold(f64::INFINITY, |m, node| m.min(node.position.abs()));
     let along = nodes.iter().filter(|node| node.lateral_position == 0.0);

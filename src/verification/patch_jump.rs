@@ -6,6 +6,7 @@
 use super::contact_points::{ELLIPSES, FRICTION, LOAD, SHEAR_MODULUS};
 use super::patch_cases::{self, SPEED};
 use super::row::{Row, larger};
+use super::set_up;
 use crate::error::Result;
 use crate::parameters::Parameters;
 use crate::simulation::Simulation;
@@ -64,7 +65,7 @@ fn jumps(direction: usize) -> Result<Vec<Jump>> {
         };
         let axis = patch_cases::mean_axis(&parameters);
         let unit = FRICTION * LOAD / (SHEAR_MODULUS * axis * axis * STIFFNESS);
-        let model = Arc::new(Model::new(parameters)?);
+        let model = Arc::new(set_up::model(parameters)?);
         jumps.extend(JUMPS.map(|jump| {
             let mut creepages = [0.0; 3];
             creepages[direction] = jump * unit;

@@ -8,6 +8,7 @@
 //! middle. Strain by pressure, where the bodies differ, comes from farther away: there it is a/b.
 
 use super::row::Row;
+use super::set_up;
 use crate::error::Result;
 use crate::parameters::{ContactModel, FrictionLaw, Parameters, Wheel};
 use crate::signals::Inputs;
@@ -63,7 +64,7 @@ fn steady(parameters: &Parameters, normal_load: f64, creepage: f64) -> Result<Si
         creepage,
         ..Inputs::default()
     };
-    let mut run = Simulation::new(parameters, &inputs)?;
+    let mut run = set_up::simulation(parameters, &inputs)?;
     run.hold(&inputs, PASSAGE, 3)?;
     Ok(run)
 }

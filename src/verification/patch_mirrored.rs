@@ -5,6 +5,7 @@
 //! same numbers in another order.
 
 use super::row::{Row, largest_difference};
+use super::set_up;
 use crate::error::Result;
 use crate::parameters::{ContactModel, Parameters, SlipSource, Wheel, WheelHeating};
 use crate::signals::{Inputs, Outputs};
@@ -61,7 +62,7 @@ fn braking(parameters: &Parameters, [x, y]: Mirror) -> Result<Simulation> {
         incoming_wear_depth: 1e-7,
         ..Inputs::default()
     };
-    let mut run = Simulation::new(parameters, &inputs(0.0))?;
+    let mut run = set_up::simulation(parameters, &inputs(0.0))?;
     for step in 0..40 {
         run.step(&inputs(0.002 * f64::from(step)), 2e-3)?;
     }

@@ -4,11 +4,10 @@
 //! cells, the work of the tractions on the elastic bodies vanishes in the sum, but for the nodes at the edges.
 
 use super::row::Row;
-use super::set_up::mechanics_alone;
+use super::set_up::{self, mechanics_alone};
 use crate::error::Result;
 use crate::parameters::{Parameters, Wheel};
 use crate::signals::Inputs;
-use crate::simulation::Simulation;
 
 const SOURCE: &str = "T(w r0 - V) + V N e/r0";
 
@@ -54,7 +53,7 @@ fn defect(wheel: Wheel, contact_nodes: usize, creepage: f64) -> Result<f64> {
         creepage,
         ..Inputs::default()
     };
-    let mut run = Simulation::new(&parameters, &inputs)?;
+    let mut run = set_up::simulation(&parameters, &inputs)?;
     let outputs = run.hold(&inputs, 0.5, 1)?;
     let motion = inputs.motion(&parameters);
     let supplied = outputs.traction_force * motion.rigid_slip

@@ -8,7 +8,6 @@ use super::set_up;
 use crate::error::Result;
 use crate::parameters::{FrictionLaw, Parameters, Wheel};
 use crate::signals::Inputs;
-use crate::simulation::Simulation;
 
 const SOURCE: &str = "independent prototype, 61 nodes over 12 mm";
 
@@ -22,7 +21,7 @@ pub fn rows() -> Result<Vec<Row>> {
         friction_law: FrictionLaw::Constant,
         ..Parameters::default()
     };
-    let mut run = Simulation::new(&parameters, &Inputs::default())?;
+    let mut run = set_up::simulation(&parameters, &Inputs::default())?;
     let mut traction = |creepage| -> Result<f64> {
         let inputs = Inputs {
             creepage,

@@ -4,12 +4,11 @@
 
 use super::carter;
 use super::row::Row;
-use super::set_up::mechanics_alone;
+use super::set_up::{self, mechanics_alone};
 use crate::error::Result;
 use crate::numerics::dense::largest_change;
 use crate::parameters::{Parameters, SlipSource, Wheel};
 use crate::signals::Inputs;
-use crate::simulation::Simulation;
 
 const SOURCE: &str = "the same in finer steps on finer nodes";
 const SPEED: f64 = 1.0;
@@ -45,7 +44,7 @@ fn transient(contact_nodes: usize, steps: usize) -> Result<Vec<f64>> {
     };
     let half_length = parameters.hertz_half_length(rest.normal_load);
     let step = half_length / SPEED / steps as f64;
-    let mut run = Simulation::new(&parameters, &rest)?;
+    let mut run = set_up::simulation(&parameters, &rest)?;
     let mut values = Vec::new();
     for _ in 0..WAY {
         let outputs = run.hold(&rolling, step, steps)?;

@@ -2,9 +2,30 @@
 
 use crate::error::Result;
 use crate::parameters::{FrictionLaw, Parameters};
+use crate::settings::Settings;
+use crate::signals::Inputs;
+use crate::simulation::Simulation;
+use crate::wheel_rail::Model;
+use std::sync::Arc;
 
 /// Most steps of the secant method: the creep curve is nearly straight where it crosses zero, and three are enough.
 const STEPS: usize = 5;
+
+/// Model whose steps are solved or refused, none taken staggered: what is compared with a closed form is a solution.
+///
+/// # Errors
+/// Those of [`Model::new`].
+pub fn model(parameters: Parameters) -> Result<Model> {
+    Model::with_settings(parameters, Settings::strict())
+}
+
+/// Simulation of such a model.
+///
+/// # Errors
+/// Those of [`Simulation::new`].
+pub fn simulation(parameters: &Parameters, inputs: &Inputs) -> Result<Simulation> {
+    Simulation::of(Arc::new(model(parameters.clone())?), inputs)
+}
 
 /// Mechanics alone: constant μ, and neither thermal expansion nor wear in the gap.
 pub fn mechanics_alone() -> Parameters {

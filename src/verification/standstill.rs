@@ -10,6 +10,7 @@
 //! method with the derivatives that the contact gives of its forces, going back to the state before the step for each try.
 
 use super::row::Row;
+use super::set_up;
 use crate::error::Result;
 use crate::parameters::{Parameters, SlipSource};
 use crate::signals::{INPUTS, Inputs};
@@ -74,7 +75,7 @@ impl Wheelset {
         };
         let speeds = [SPEED / parameters.wheel_radius, SPEED];
         let mut wheelset = Wheelset {
-            run: Simulation::new(&parameters, &inputs(speeds))?,
+            run: set_up::simulation(&parameters, &inputs(speeds))?,
             time: 0.0,
             place: 0.0,
             speeds,

@@ -3,7 +3,7 @@
 //! C and A of the ring (`rim_depth`, `rim_width`). What it wears is k_w ∫∫ |s| p dA dt, spread over the circumference.
 
 use super::row::Row;
-use super::set_up::mechanics_alone;
+use super::set_up::{self, mechanics_alone};
 use crate::error::Result;
 use crate::parameters::{Parameters, WheelHeating};
 use crate::signals::Inputs;
@@ -101,7 +101,7 @@ fn history(steps: usize) -> Result<Vec<Instant>> {
     let mut instants = Vec::new();
     for constants in [1_u8, 2] {
         let count = usize::from(constants) * steps;
-        let mut run = Simulation::new(&parameters, &sliding)?;
+        let mut run = set_up::simulation(&parameters, &sliding)?;
         let rise = |run: &Simulation| run.state.outputs.wheel_temperature - sliding.ambient_temperature;
         let power = run.hold(&sliding, constant / steps as f64, count)?.friction_power;
         let limit = (1.0 - parameters.heat_partition) * power / convection;
@@ -123,7 +123,7 @@ fn wear() -> Result<Row> {
         wheel_wear_coefficient: 2e-13,
         ..Parameters::default()
     };
-    let mut run = Simulation::new(&parameters, &Inputs::default())?;
+    let mut run = set_up::simulation(&parameters, &Inputs::default())?;
     let (duration, mut volume) = (1e-3, 0.0);
     let area = parameters.contact_width * run.model.line_operators()?.mesh.contact_spacing();
     for step in 0..50 {

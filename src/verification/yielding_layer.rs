@@ -14,11 +14,10 @@
 //! the same; and what the tractions work is what heats.
 
 use super::row::Row;
-use super::set_up::mechanics_alone;
+use super::set_up::{self, mechanics_alone};
 use crate::error::Result;
 use crate::parameters::{ContactModel, Parameters};
 use crate::signals::Inputs;
-use crate::simulation::Simulation;
 use std::f64::consts::{FRAC_2_PI, PI};
 
 const MODELS: [(ContactModel, &str); 2] = [(ContactModel::Line, "line"), (ContactModel::Patch, "patch")];
@@ -77,7 +76,7 @@ fn inputs(creepage: f64) -> Inputs {
 
 /// T/(μN) of steady rolling.
 fn rolling(parameters: &Parameters, creepage: f64) -> Result<f64> {
-    let run = Simulation::new(parameters, &inputs(creepage))?;
+    let run = set_up::simulation(parameters, &inputs(creepage))?;
     Ok(run.outputs().traction_coefficient / parameters.friction_cold)
 }
 
@@ -163,7 +162,7 @@ fn rolled_into(contact_model: ContactModel, name: &str) -> Result<Vec<Row>> {
     let mut rows = Vec::new();
     // Some three cells and a third of one in a step.
     for (duration, steps) in [(1e-4, 300), (1e-5, 3000)] {
-        let mut run = Simulation::new(&layer, &inputs(1e-3))?;
+        let mut run = set_up::simulation(&layer, &inputs(1e-3))?;
         run.hold(&inputs(creepage), duration, steps)?;
         let outputs = run.outputs();
         rows.push(Row::absolute(

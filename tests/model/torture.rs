@@ -1,18 +1,15 @@
 //! Some of the runs of `wheelrail torture`.
 
-use std::collections::BTreeMap;
 use wheelrail::torture::{Engines, Torture};
 
 /// Runs of a contact model: models, of four runs each, steps of a run, and how many of the steps are taken at least, not on rails that
 /// were too hot.
 const RUNS: [(Engines, u64, usize, usize); 2] = [(Engines::Line, 40, 150, 18_000), (Engines::Patch, 8, 40, 900)];
 
-/// Ends of runs that are known, with the largest number of these runs: a penetration that is given takes more than the largest load; a line on a
-/// compliant layer that flows, whose friction is steep in temperature, finds no solution of a step (runs 53 and 55, docs/limits.md), and one that slides
-/// fast on a layer that flows without hardening takes more than a step's budget of work (run 89).
-const KNOWN: [(&str, usize); 3] = [("ContactLeavesWindow", 1), ("SplitNotConverged", 2), ("TooMuchWork", 1)];
+/// Largest share of the steps that may be taken staggered. Of these runs it is 37 of 23 994 of the line and 3 of 1280 of the patch.
+const STAGGERED: f64 = 3e-3;
 
-/// No other run fails, whatever the wheel goes through.
+/// No run fails, whatever the wheel goes through, and nearly all steps are solved.
 #[test]
 fn wheels_driven_at_random_arrive() {
     for (engines, models, steps, least) in RUNS {
@@ -22,21 +19,21 @@ fn wheels_driven_at_random_arrive() {
             window: 1.0,
             engines,
         };
-        let (mut failures, mut taken) = (BTreeMap::new(), 0);
+        let (mut failed, mut taken, mut staggered) = (0, 0, 0);
         for model in 0..models {
             for run in torture.runs(Torture::runs_of_model(model)) {
                 taken += run.steps.len();
+                staggered += run.steps.iter().filter(|step| step.staggered).count();
                 if let Some(failure) = run.failure {
                     println!("{engines:?}, run {}, step {}: {failure}", run.number, run.length);
-                    *failures.entry(failure.kind()).or_insert(0) += 1;
+                    failed += 1;
                 }
             }
         }
         assert!(taken > least, "{engines:?}: {taken}");
-        for (kind, number) in failures {
-            let known = KNOWN.iter().find(|known| known.0 == kind).map_or(0, |known| known.1);
-            assert!(number <= known, "{engines:?}: {number} times {kind}");
-        }
+        assert_eq!(failed, 0, "{engines:?}");
+        let share = staggered as f64 / taken as f64;
+        assert!(share < STAGGERED, "{engines:?}: {staggered} of {taken}");
     }
 }
 

@@ -127,12 +127,13 @@ impl Simulate {
 
         let count = steps.len();
         let mut progress = Progress::new(count as u64);
-        let mut interrupted = None;
+        let (mut interrupted, mut staggered) = (None, 0);
         for step in steps {
             if let Err(source) = simulation.follow(&step) {
                 interrupted = Some(Box::new(source));
                 break;
             }
+            staggered += usize::from(simulation.state.convergence.staggered);
             write(&mut table, &step.to, simulation.outputs())?;
             progress.step();
         }
@@ -141,6 +142,11 @@ impl Simulate {
             fields::write(fields, &simulation)?;
         }
         progress.end(interrupted.is_some());
+        if staggered > 0 {
+            eprintln!(
+                "{staggered} steps: mechanics, heat and wear were not solved together, but one after the other; shorter steps may be solved"
+            );
+        }
         if let Some(source) = interrupted {
             let output = self.output.clone();
             return Err(Error::Interrupted { output, source });
