@@ -184,7 +184,11 @@ pub fn solve<E: Engine>(
         let tolerance = settings.krylov_tolerance;
         let mut at = Linearised::new(problem, sweeps.iterate, sweeps.now, sweeps.solvers, tangent, tolerance)?;
         // One correction: Newton's method takes a step that is not quite exact.
-        system.solve(&mut at, step.values_mut(), settings.newton_krylov_tolerance, 1)?;
+        let left = system.solve(&mut at, step.values_mut(), settings.newton_krylov_tolerance, 1)?;
+        // Next to a singular matrix single precision overflows.
+        if !left.is_finite() {
+            break;
+        }
         work.add(system.products() * problem.operators.sweep_work())?;
         let mut damping = 1.0;
         let mut falls = false;

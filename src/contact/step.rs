@@ -115,6 +115,10 @@ pub fn solve<E: Engine>(
             f64::INFINITY
         };
         E::read(problem, now, solvers, image);
+        // A wheel that digs and glows may lead to numbers that overflow.
+        if !image.is_finite() {
+            return Err(test.error(iterations));
+        }
         let change = iterate.change_to(image, settings.least_temperature);
         let passes = test.is_passed(change.max(pending), &tractions);
         if passes || ends && change.max(pending) <= settings.stalled_tolerance {
@@ -176,6 +180,8 @@ pub fn solve<E: Engine>(
 ///
 /// # Errors
 /// The first solver that did not converge, or [`Error::ContactLeavesWindow`].
+#[cold]
+#[inline(never)]
 pub fn solve_staggered<E: Engine>(
     problem: &Problem<E>,
     state: &EngineState<E::Fields>,
@@ -205,6 +211,9 @@ pub fn solve_staggered<E: Engine>(
     rail_and_rim::march_heat(problem, before, iterate, now, solvers)?;
     E::map_displacement(problem, now, solvers);
     E::read(problem, now, solvers, image);
+    if !image.is_finite() {
+        return Err(ConvergenceTest::new(settings).error(1));
+    }
     let mut test = ConvergenceTest::new(settings);
     test.is_passed(iterate.change_to(image, settings.least_temperature), &tractions);
     let convergence = finish(problem, before, iterate, now, solvers, 1, &test)?;

@@ -89,6 +89,10 @@ impl Anderson {
             return;
         };
         cholesky.solve_mut(&mut weights);
+        // Residuals so large that their squares overflow.
+        if !weights.iter().all(|weight| weight.is_finite()) {
+            return;
+        }
         for (j, weight) in weights.iter().take(k).enumerate() {
             dense::add_multiple(&self.image_changes[j * size..(j + 1) * size], -weight, image);
         }
