@@ -107,6 +107,7 @@ pub mod fmi2;
 #[cfg(feature = "fmi")]
 pub mod fmi3;
 mod friction;
+mod geometry;
 mod heat;
 mod mechanics;
 mod numerics;

@@ -19,6 +19,7 @@ use serde::{Deserialize, Serialize};
 
 pub use crate::contact::problem::Convergence;
 pub use crate::contact::profiles::{ContactNode, DEPTH_POINTS, PROFILE_POINTS, Profiles, STRIP_POINTS, StripProfiles};
+pub use crate::contact::work::Iterations;
 
 /// Everything that does not change after initialisation: the contact engine, the parameters (but for the tunable ones), the
 /// limits of the methods.
@@ -31,6 +32,13 @@ pub struct Model {
 /// Scratch of a step. What a step leaves in it changes no result of another one.
 pub struct Workspace {
     contact: ContactWorkspace,
+}
+
+impl Workspace {
+    /// Iterations of the mechanics since the workspace was made.
+    pub fn iterations(&self) -> Iterations {
+        self.contact.iterations()
+    }
 }
 
 /// Everything that changes in time.
@@ -278,6 +286,10 @@ impl Model {
             };
             committed = end;
             state.time = start + committed;
+            // The budget is that of a step which is hard, not of one with many sub-steps: each has it anew until one fails.
+            if retries == 0 && failure.is_none() {
+                workspace.contact.begin_step();
+            }
             convergence.iterations += solved.iterations;
             convergence.residual = solved.residual;
             convergence.fills_window |= solved.fills_window;
@@ -583,7 +595,7 @@ mod tests {
         assert!(step(&mut workspace, &easy, 1e-4) == expected);
     }
 
-    /// Where the coupled equations are not solved, here for want of iterations, the step is taken staggered. Over a passage friction falls
+    /// A step whose coupled equations are not solved, here for want of iterations, is taken staggered. Over a passage friction falls
     /// by a part in a thousand a step, by which alone the two differ.
     #[test]
     fn a_step_that_is_not_solved_is_taken_staggered() {

@@ -12,7 +12,7 @@ from pathlib import Path
 # What may stand in src/ beside the folders.
 FILES = {"lib", "error", "settings", "signals", "transport", "wear", "wheel_rail", "simulation"}
 PHYSICS = [
-    *("numerics", "body", "friction", "mechanics", "heat", "wear", "transport", "contact", "wheel_rail"),
+    *("numerics", "geometry", "body", "friction", "mechanics", "heat", "wear", "transport", "contact", "wheel_rail"),
     *("simulation", "parameters", "signals", "error", "settings"),
 ]
 # Neither of the two uses the other.
@@ -28,7 +28,7 @@ BELOW = {
     **{("fmi", version): "what the versions share knows none of them" for version in ("fmi2", "fmi3")},
 }
 # The only modules that these use.
-ONLY = {"numerics": {"numerics", "error"}}
+ONLY = {"numerics": {"numerics", "error"}, "geometry": {"geometry", "numerics", "error"}}
 
 # Exceptions that are to go: (file, the file that it uses), and files beside the folders. One without need is an error.
 KNOWN_IMPORTS: set[tuple[str, str]] = set()

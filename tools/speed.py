@@ -1,4 +1,6 @@
-"""Time the steps of two FMUs by turns in one process: python tools/speed.py BEFORE.fmu AFTER.fmu
+"""Time the steps of two FMUs by turns in one process.
+
+    .venv/bin/python tools/speed.py BEFORE.fmu AFTER.fmu
 
 The braking manoeuvre of examples/braking.csv in steps of 1 ms, for the line and the patch. The two take turns of a few
 steps, so that a change of the processor's clock meets both; processor time of the thread, without setting the inputs.

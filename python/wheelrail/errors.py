@@ -23,4 +23,4 @@ class InstanceClosedError(SimulationError):
 
 
 class SimulationWarning(UserWarning):
-    """The component did what it was asked and has something to say of it: a step whose equations were not solved together."""
+    """The component did what it was asked and says something of it: a step was not solved, but taken staggered."""

@@ -8,6 +8,7 @@ use super::interface::Interface;
 use super::problem::Problem;
 use super::profiles::{ContactNode, Profiles};
 use super::rim::HeatedNode;
+use super::work::Iterations;
 use crate::error::Result;
 use crate::mechanics::normal_tangential::TractionChange;
 use crate::parameters::Parameters;
@@ -147,6 +148,11 @@ pub trait Engine: Sized + 'static {
 
     /// Work of the mechanics since the step began, in multiplications and additions.
     fn mechanics_work(solvers: &Self::Solvers) -> u64;
+
+    /// Iterations of the mechanics since the solvers were made; a line has none of the kinds that are counted.
+    fn iterations(_solvers: &Self::Solvers) -> Iterations {
+        Iterations::default()
+    }
 
     /// Work of a sweep besides, about.
     fn sweep_work(&self) -> u64;

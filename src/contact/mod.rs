@@ -40,6 +40,7 @@ use problem::{Convergence, Coupling, Problem, Task};
 use profiles::{ContactNode, Profiles};
 use serde::{Deserialize, Serialize};
 use step::StepWorkspace;
+use work::Iterations;
 
 /// Operators of a contact, computed once.
 #[allow(clippy::large_enum_variant, reason = "there are few, and they are not moved")]
@@ -242,6 +243,14 @@ impl Operators {
 }
 
 impl ContactWorkspace {
+    /// Iterations of the mechanics since the workspace was made.
+    pub fn iterations(&self) -> Iterations {
+        match self {
+            ContactWorkspace::Line(workspace) => LineOperators::iterations(&workspace.solvers),
+            ContactWorkspace::Patch(workspace) => PatchOperators::iterations(&workspace.solvers),
+        }
+    }
+
     /// Begins a communication step, whose sub-steps share its budget of work.
     pub fn begin_step(&mut self) {
         match self {

@@ -2,6 +2,19 @@
 
 use crate::error::{Error, Result};
 
+/// Iterations of a workspace since it was made: counts are the same on every machine, times are not.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Iterations {
+    /// Newton steps of a patch's friction.
+    pub newton: u64,
+    /// Krylov iterations of their linear systems.
+    pub krylov: u64,
+    /// Factorisations of the strips' blocks.
+    pub factorisations: u64,
+    /// Conjugate gradients of a patch's pressure.
+    pub gradients: u64,
+}
+
 /// Work of a communication step, in multiplications and additions, about: counted, not timed, so that a step ends in the same way on
 /// every machine.
 #[derive(Debug, Clone, Copy)]

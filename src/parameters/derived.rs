@@ -1,7 +1,8 @@
 //! Quantities that follow from the parameters by a formula.
 
-use super::choices::Wheel;
+use super::choices::{ContactModel, Wheel};
 use super::table::Parameters;
+use crate::geometry::hertz::{self, HertzEllipse};
 
 /// Poisson's ratio ν = λ/(2(λ + γ)).
 fn poisson_ratio(lambda: f64, shear: f64) -> f64 {
@@ -26,7 +27,7 @@ impl Parameters {
 
     /// Hertz half-length a = √(4 N r₀ / (π b E*)) of a line contact, `m` (Johnson, Contact Mechanics, 4.43).
     pub fn hertz_half_length(&self, load: f64) -> f64 {
-        (4.0 * load * self.wheel_radius / (std::f64::consts::PI * self.contact_width * self.contact_modulus())).sqrt()
+        hertz::line_half_length(load, self.contact_width, self.wheel_radius, self.contact_modulus())
     }
 
     /// Hertz peak pressure p₀ = 2 N / (π a b), `Pa` (Johnson, Contact Mechanics, 4.45).
@@ -66,5 +67,37 @@ impl Parameters {
     /// thermal bulge, friction coupling and wear.
     pub fn window_half_width(&self) -> f64 {
         1.2 * self.hertz_half_length(self.largest_load)
+    }
+
+    /// Curvatures A and B of the gap A x² + B y² along and across the rail, `1/m`: 1/(2 r₀), half the sum across.
+    pub fn gap_curvatures(&self) -> (f64, f64) {
+        (
+            0.5 / self.wheel_radius,
+            0.5 * (self.rail_transverse_curvature + self.wheel_transverse_curvature),
+        )
+    }
+
+    /// Contact ellipse under a `load` `N`, of the transverse curvatures.
+    pub fn hertz_ellipse(&self, load: f64) -> HertzEllipse {
+        HertzEllipse::new(load, self.gap_curvatures(), self.contact_modulus())
+    }
+
+    /// Half-length along the rail and half-breadth across it of the contact of Hertz under a `load` `N`, `m`; a line contact has
+    /// half of its width.
+    pub fn contact_half_axes(&self, load: f64) -> (f64, f64) {
+        match self.contact_model {
+            ContactModel::Line => (self.hertz_half_length(load), 0.5 * self.contact_width),
+            ContactModel::Patch => {
+                let ellipse = self.hertz_ellipse(load);
+                (ellipse.along, ellipse.across)
+            }
+        }
+    }
+
+    /// Half-length along the rail and half-breadth across it of the window of a patch, `m`: the ellipse of the largest load
+    /// and a margin of a fifth for thermal bulge, friction coupling and wear.
+    pub fn patch_window(&self) -> (f64, f64) {
+        let ellipse = self.hertz_ellipse(self.largest_load);
+        (1.2 * ellipse.along, 1.2 * ellipse.across)
     }
 }

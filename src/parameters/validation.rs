@@ -1,9 +1,9 @@
 //! Checks of the parameters, once, before a model is built.
 
 use super::choices::{ContactModel, FrictionLaw, MeshKind, NormalSolver};
-use super::hertz::LARGEST_CURVATURE_RATIO;
 use super::table::{INTEGER_PARAMETERS, Parameters, REAL_PARAMETERS};
 use crate::error::{Error, Result};
+use crate::geometry::hertz::LARGEST_CURVATURE_RATIO;
 
 /// Two values that cannot be together.
 fn combination(first: (&'static str, f64), second: (&'static str, f64), requirement: &'static str) -> Result<()> {

@@ -6,6 +6,7 @@ use crate::body::half_plane::HalfPlanes;
 use crate::body::mesh::Mesh;
 use crate::body::pair;
 use crate::error::Result;
+use crate::geometry::gap;
 use crate::heat::Heat;
 use crate::mechanics::leading_edge::NearField;
 use crate::parameters::Parameters;
@@ -51,11 +52,7 @@ impl LineOperators {
         }
         let r0 = parameters.wheel_radius;
         let profile = (0..mesh.contact_nodes)
-            .map(|i| {
-                let x = mesh.contact_position(i);
-                // √(r₀² − x²) − r₀ without the cancellation.
-                -x * x / (r0 + (r0 * r0 - x * x).sqrt()) / scales.displacement
-            })
+            .map(|node| -gap::of_circle(r0, mesh.contact_position(node)) / scales.displacement)
             .collect();
         Ok(LineOperators {
             mesh,

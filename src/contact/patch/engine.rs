@@ -16,6 +16,7 @@ use crate::contact::integrals::Integrals;
 use crate::contact::interface::Interface;
 use crate::contact::profiles::{ContactNode, Profiles};
 use crate::contact::rim::HeatedNode;
+use crate::contact::work::Iterations;
 use crate::error::Result;
 use crate::mechanics::normal_tangential::TractionChange;
 use crate::mechanics::patch::normal;
@@ -164,6 +165,16 @@ impl Engine for PatchOperators {
 
     fn mechanics_work(solvers: &PatchSolvers) -> u64 {
         solvers.normal.work() + solvers.friction.work()
+    }
+
+    fn iterations(solvers: &PatchSolvers) -> Iterations {
+        let [newton, krylov, factorisations] = solvers.friction.iterations();
+        Iterations {
+            newton,
+            krylov,
+            factorisations,
+            gradients: solvers.normal.iterations(),
+        }
     }
 
     /// Some ten operations a mode.

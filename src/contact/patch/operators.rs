@@ -8,11 +8,13 @@ use crate::body::half_space::HalfSpaces;
 use crate::body::influence::{Tables, Transform};
 use crate::body::mesh::Mesh;
 use crate::error::Result;
+use crate::geometry::gap;
+use crate::geometry::hertz::HertzEllipse;
 use crate::heat::basis::DepthBasis;
 use crate::heat::incoming::Incoming;
 use crate::mechanics::leading_edge::LAYER_STRAIN;
 use crate::mechanics::patch::normal::NormalInfluence;
-use crate::parameters::{HertzEllipse, Parameters};
+use crate::parameters::Parameters;
 use crate::transport::strips::Strips;
 use std::f64::consts::PI;
 
@@ -185,8 +187,8 @@ fn undeformed_gap(parameters: &Parameters, grid: &Grid, scales: &Scales) -> Vec<
     let mut gap = vec![0.0; grid.len()];
     for strip in 0..grid.strips {
         for (cell, gap) in gap[grid.row(strip)].iter_mut().enumerate() {
-            let (x, y) = (grid.x(cell), grid.y(strip));
-            *gap = (0.5 * x * x / radius + 0.5 * curvature * y * y) / scales.displacement;
+            let place = [grid.x(cell), grid.y(strip)];
+            *gap = gap::of_curvatures(radius, curvature, place) / scales.displacement;
         }
     }
     gap

@@ -91,6 +91,8 @@ pub struct Friction {
     on_path: OnPath,
     /// Multiplications and additions in this step.
     work: u64,
+    /// Newton steps, Krylov iterations and factorisations since the solver was made.
+    iterations: [u64; 3],
 }
 
 /// Sum of a power of the unknowns of each run.
@@ -122,6 +124,7 @@ impl Friction {
             given: Vec::with_capacity(total),
             on_path: OnPath::new(total),
             work: 0,
+            iterations: [0; 3],
         }
     }
 
@@ -134,6 +137,11 @@ impl Friction {
     /// Multiplications and additions in this step, about: a measure of time that is the same on every machine.
     pub fn work(&self) -> u64 {
         self.work
+    }
+
+    /// Newton steps, Krylov iterations and factorisations since the solver was made.
+    pub fn iterations(&self) -> [u64; 3] {
+        self.iterations
     }
 
     /// Forgets what was computed for another contact.
@@ -241,6 +249,8 @@ impl Friction {
                 return Err((iterations, largest));
             }
             let solved = self.correct(problem, &window, (tolerance / largest) as f32);
+            self.iterations[0] += 1;
+            self.iterations[1] += solved as u64;
             // A kept factorisation that no longer serves is made anew for the next correction.
             if solved > self.settings.renewal && !fresh {
                 self.factorised = false;
@@ -358,6 +368,7 @@ impl Friction {
         };
         let n = problem.contact.cells();
         self.work += work_of_blocks(problem.contact, 3) / 3;
+        self.iterations[2] += 1;
         self.blocks
             .factorise(problem.contact, &self.rows[..n], problem.edge, &own)
     }

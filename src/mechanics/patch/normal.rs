@@ -117,6 +117,8 @@ pub struct Normal {
     pub separation: Vec<f64>,
     /// Multiplications and additions in this step.
     work_done: u64,
+    /// Conjugate gradients since the solver was made.
+    iterations: u64,
 }
 
 fn dot(a: &[f64], b: &[f64]) -> f64 {
@@ -146,6 +148,7 @@ impl Normal {
             wear_compliance: on_grid(),
             separation: on_grid(),
             work_done: 0,
+            iterations: 0,
         }
     }
 
@@ -156,9 +159,13 @@ impl Normal {
     }
 
     /// Multiplications and additions in this step, about: a measure of time that is the same on every machine.
-    #[allow(dead_code, reason = "for the budget of a step")]
     pub fn work(&self) -> u64 {
         self.work_done
+    }
+
+    /// Conjugate gradients since the solver was made.
+    pub fn iterations(&self) -> u64 {
+        self.iterations
     }
 
     /// Solves from the given pressure on the grid, whose cells become `contact`. Returns the penetration.
@@ -289,6 +296,7 @@ impl Normal {
             self.direction_grid.fill(0.0);
             contact.scatter(grid, &self.direction, &mut self.direction_grid);
             self.work_done += work;
+            self.iterations += 1;
             // Of all cells: what lies beside the contact must be known to see whether it overlaps.
             problem.transform.apply(
                 &problem.normal_influence.tables,

@@ -1,7 +1,6 @@
-//! The contact ellipse of bodies that are curved along the rail and across it (Johnson, Contact Mechanics, 4.24–4.26).
+//! Hertz's contact of elastic bodies: the line contact of a cylinder (Johnson, Contact Mechanics, 4.43, 4.45), and the ellipse of
+//! bodies that are curved along the rail and across it (4.24–4.26).
 
-use super::choices::ContactModel;
-use super::table::Parameters;
 use crate::numerics::elliptic;
 use std::f64::consts::PI;
 
@@ -61,23 +60,19 @@ fn axes_ratio(ratio: f64) -> f64 {
     logarithm.exp()
 }
 
-impl Parameters {
-    /// Curvatures A and B of the gap A x² + B y² along and across the rail, `1/m`: 1/(2 r₀), half the sum across.
-    pub fn gap_curvatures(&self) -> (f64, f64) {
-        (
-            0.5 / self.wheel_radius,
-            0.5 * (self.rail_transverse_curvature + self.wheel_transverse_curvature),
-        )
-    }
+/// Half-length a = √(4 N r/(π b E*)) of the contact of a cylinder of radius r and width b `m` under a load `N`, `m`, with the contact modulus
+/// E* `Pa`.
+pub fn line_half_length(load: f64, width: f64, radius: f64, modulus: f64) -> f64 {
+    (4.0 * load * radius / (PI * width * modulus)).sqrt()
+}
 
-    /// The contact ellipse under a `load` `N`, of the transverse curvatures.
-    pub fn hertz_ellipse(&self, load: f64) -> HertzEllipse {
-        let (along, across) = self.gap_curvatures();
+impl HertzEllipse {
+    /// Ellipse under a `load` `N` for the curvatures A and B of the gap, along and across the rail, `1/m`, with the contact modulus E* `Pa`.
+    pub fn new(load: f64, (along, across): (f64, f64), modulus: f64) -> HertzEllipse {
         let (small, large) = (along.min(across), along.max(across));
         let ratio = axes_ratio(large / small);
         let elliptic = elliptic::complete(ratio);
         // With the longer semi-axis a across the larger curvature: A = (p₀/E*) (b/a²) K S, p₀ = 3 N/(2π a b).
-        let modulus = self.contact_modulus();
         let long = (1.5 * load * elliptic.first * elliptic.share / (PI * modulus * small)).cbrt();
         let short = ratio * long;
         let peak_pressure = if load > 0.0 {
@@ -93,30 +88,12 @@ impl Parameters {
             approach: peak_pressure / modulus * short * elliptic.first,
         }
     }
-
-    /// Half-length along the rail and half-breadth across it of the contact of Hertz under a `load` `N`, `m`; a line contact has
-    /// half of its width.
-    pub fn contact_half_axes(&self, load: f64) -> (f64, f64) {
-        match self.contact_model {
-            ContactModel::Line => (self.hertz_half_length(load), 0.5 * self.contact_width),
-            ContactModel::Patch => {
-                let ellipse = self.hertz_ellipse(load);
-                (ellipse.along, ellipse.across)
-            }
-        }
-    }
-
-    /// Half-length along the rail and half-breadth across it of the window of a patch, `m`: the ellipse of the largest load
-    /// and a margin of a fifth for thermal bulge, friction coupling and wear.
-    pub fn patch_window(&self) -> (f64, f64) {
-        let ellipse = self.hertz_ellipse(self.largest_load);
-        (1.2 * ellipse.along, 1.2 * ellipse.across)
-    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::parameters::Parameters;
 
     fn curved(across: f64) -> Parameters {
         Parameters {
