@@ -25,8 +25,6 @@ LEANING = {
 LEANING_PAIRS = {"The same", "The one", "The other", "The others", "The rest", "All of", "All but"}
 # Descriptions of variables of the FMU, which are written as questions on purpose: they stand in tables.
 DESCRIPTIONS = ("What is prescribed", "Which inputs define", "How the contact is resolved")
-# Rooms of src/ that are still to be gone through. One without need is an error.
-TO_DO = []
 
 
 def openings(text):
@@ -51,28 +49,18 @@ def leans(opening):
     return " ".join(words) if " ".join(words) in LEANING_PAIRS else None
 
 
-def complaints(source, to_do):
-    """Return the doc comments that break the rule, one line each, and the entries of `to_do` that are done."""
-    lines, needed = [], set()
+def complaints(source):
+    """Return the doc comments that break the rule, one line each."""
+    lines = []
     for path in sorted(source.rglob("*.rs")):
-        name = path.relative_to(source)
         for number, opening in openings(path.read_text()):
-            word = leans(opening)
-            if word is None:
-                continue
-            room = next((room for room in to_do if name.is_relative_to(room) or name == Path(f"{room}.rs")), None)
-            if room is None:
-                lines.append(f'src/{name.as_posix()}:{number}: a doc comment begins with "{word}": {opening}')
-            else:
-                needed.add(room)
-    for room in to_do:
-        if room not in needed:
-            lines.append(f"src/{room} keeps the rule: take it off TO_DO in tools/doc_comments.py")
+            if (word := leans(opening)) is not None:
+                place = path.relative_to(source).as_posix()
+                lines.append(f'src/{place}:{number}: a doc comment begins with "{word}": {opening}')
     return lines
 
 
 if __name__ == "__main__":
-    root = Path(__file__).resolve().parent.parent / "src"
-    found = complaints(root, [] if sys.argv[1:] == ["--all"] else TO_DO)
+    found = complaints(Path(__file__).resolve().parent.parent / "src")
     print("\n".join(found), file=sys.stderr) if found else None
     sys.exit(bool(found))

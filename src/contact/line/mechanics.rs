@@ -12,6 +12,26 @@ use crate::mechanics::normal_tangential::TractionChange;
 use crate::mechanics::traction_problem::{TractionProblem, Tractions};
 use crate::mechanics::wear_compliance::WearCompliance;
 
+/// Tractions of the fields, or of a change of them. A macro, because a function would borrow the other fields as well.
+macro_rules! tractions {
+    ($fields:expr) => {
+        Tractions {
+            pressure: &mut $fields.pressure,
+            shear: &mut $fields.shear,
+            slip: &mut $fields.slip,
+            utilisation: &mut $fields.utilisation,
+            friction: &mut $fields.friction,
+            surfaces: &mut $fields.memory.now.friction,
+            flow: &mut $fields.memory.now.flow,
+            speed: &mut $fields.memory.now.speed,
+            share: &mut $fields.memory.share,
+            layer_bound: &mut $fields.memory.layer_bound,
+            penetration: &mut $fields.penetration,
+        }
+    };
+}
+pub(super) use tractions;
+
 /// Problem of a step of the line.
 pub type LineProblem<'a> = crate::contact::problem::Problem<'a, LineOperators>;
 
@@ -128,19 +148,7 @@ pub fn mechanics_problem<'s>(
         regularisation: problem.parameters.slip_regularisation,
         accepts_regularised: problem.conditions.coupling == Coupling::Staggered,
     };
-    let tractions = Tractions {
-        pressure: &mut fields.pressure,
-        shear: &mut fields.shear,
-        slip: &mut fields.slip,
-        utilisation: &mut fields.utilisation,
-        friction: &mut fields.friction,
-        surfaces: &mut fields.memory.now.friction,
-        flow: &mut fields.memory.now.flow,
-        speed: &mut fields.memory.now.speed,
-        share: &mut fields.memory.share,
-        layer_bound: &mut fields.memory.layer_bound,
-        penetration: &mut fields.penetration,
-    };
+    let tractions = tractions!(fields);
     (mechanics, tractions)
 }
 

@@ -1,7 +1,7 @@
 //! The change of tractions, wear and heat of a line with the inputs and the interface vector, at the point of a linearised step.
 
 use super::fields::LineFields;
-use super::mechanics::mechanics_problem;
+use super::mechanics::{mechanics_problem, tractions};
 use super::operators::LineOperators;
 use crate::contact::engine::{Along, Linearised};
 use crate::contact::memory;
@@ -94,19 +94,7 @@ pub fn mechanics(at: &mut Linearised<LineOperators>, step: &Along, change: &mut 
             centring: direction.speed * per_speed.centring,
         },
     };
-    let mut tractions = Tractions {
-        pressure: &mut change.pressure,
-        shear: &mut change.shear,
-        slip: &mut change.slip,
-        utilisation: &mut change.utilisation,
-        friction: &mut change.friction,
-        surfaces: &mut change.memory.now.friction,
-        flow: &mut change.memory.now.flow,
-        speed: &mut change.memory.now.speed,
-        share: &mut change.memory.share,
-        layer_bound: &mut change.memory.layer_bound,
-        penetration: &mut change.penetration,
-    };
+    let mut tractions = tractions!(change);
     let solvers = &mut *at.solvers;
     let (mechanics, _) = mechanics_problem(problem, at.interface, fields, &solvers.data, &solvers.wear_compliance);
     solvers.mechanics.tangent(&mechanics, &data, &mut tractions);
