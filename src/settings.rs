@@ -439,6 +439,8 @@ pub struct PatchSettings {
     pub least_forcing: f32,
     /// The largest of it.
     pub largest_forcing: f32,
+    /// Residual of the friction law, relative to the peak pressure, that will do in a staggered step where none smaller is reached.
+    pub staggered_residual: f64,
     /// Krylov iterations above which the blocks are factorised anew for the next Newton step.
     pub renewal: usize,
     /// Limit of the halvings of a Newton step.
@@ -477,6 +479,7 @@ impl Default for PatchSettings {
             krylov_iterations: 60,
             least_forcing: 1e-5,
             largest_forcing: 1e-2,
+            staggered_residual: 1e-2,
             renewal: 12,
             halvings: 12,
             continuation: 12,

@@ -202,8 +202,9 @@ pub fn solve_staggered<E: Engine>(
     E::read(problem, now, solvers, iterate);
     let mut tractions = TractionChange::NONE;
     for _ in 0..problem.settings.interface.mechanics_sweeps {
-        tractions = E::solve_mechanics(problem, iterate, now, solvers, settings.last_mechanics_tolerance)?;
-        if !tractions.set_changed && tractions.shear_change <= settings.shear_tolerance {
+        // As closely as in the first sweep of a step: the temperature is a guess here as well.
+        tractions = E::solve_mechanics(problem, iterate, now, solvers, settings.first_mechanics_tolerance)?;
+        if !tractions.set_changed && tractions.shear_change <= settings.first_mechanics_tolerance {
             break;
         }
     }

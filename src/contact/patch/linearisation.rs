@@ -190,6 +190,7 @@ impl Linearisation {
             noise,
             regularisation,
             tolerance: 0.0,
+            accepted: 0.0,
         }
     }
 }

@@ -9,6 +9,7 @@ use super::solvers::PatchSolvers;
 use crate::body::grid::Grid;
 use crate::body::influence::Window;
 use crate::contact::interface::Interface;
+use crate::contact::problem::Coupling;
 use crate::error::Result;
 use crate::friction::coulomb;
 use crate::friction::path::Passed;
@@ -209,6 +210,10 @@ fn solve_friction(
             noise: problem.settings.patch.noise * diagonal * peak,
             regularisation: problem.parameters.slip_regularisation,
             tolerance: peak * tolerance.max(problem.settings.patch.least_tolerance),
+            accepted: match problem.conditions.coupling {
+                Coupling::Implicit => 0.0,
+                Coupling::Staggered => peak * problem.settings.patch.staggered_residual,
+            },
         };
         solvers.friction.solve(&friction_problem, &mut fields.shear)?;
         if path.is_some() {

@@ -122,6 +122,7 @@ impl Case {
             noise: self.noise(),
             regularisation,
             tolerance: 1e-11,
+            accepted: 0.0,
         }
     }
 
