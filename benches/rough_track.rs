@@ -4,7 +4,6 @@
 //!
 //! Times are those that the thread has computed, as in `summary`.
 
-// Each benchmark uses a part of these.
 mod braking;
 mod timing;
 

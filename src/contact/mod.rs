@@ -251,11 +251,11 @@ impl ContactWorkspace {
         }
     }
 
-    /// Begins a communication step, whose sub-steps share its budget of work.
-    pub fn begin_step(&mut self) {
+    /// Renews the budget of work.
+    pub fn renew_budget(&mut self) {
         match self {
-            ContactWorkspace::Line(workspace) => workspace.begin_step(),
-            ContactWorkspace::Patch(workspace) => workspace.begin_step(),
+            ContactWorkspace::Line(workspace) => workspace.renew_budget(),
+            ContactWorkspace::Patch(workspace) => workspace.renew_budget(),
         }
     }
 

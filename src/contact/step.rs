@@ -46,8 +46,8 @@ impl<E: Engine> StepWorkspace<E> {
         }
     }
 
-    /// Begins a communication step, whose sub-steps share its budget of work.
-    pub fn begin_step(&mut self) {
+    /// Renews the budget of work.
+    pub fn renew_budget(&mut self) {
         self.work.restart();
     }
 
@@ -84,9 +84,7 @@ pub fn solve<E: Engine>(
         work,
         newton,
     } = workspace;
-    now.guess_from(before);
-    memory::begin(problem, before, now);
-    E::begin(problem, Some(before), now, solvers)?;
+    begin(problem, before, now, solvers)?;
     state.extrapolate(problem.conditions.duration.min(last_duration), now);
     E::limit_guess(before, now);
     E::read(problem, now, solvers, iterate);
@@ -123,7 +121,7 @@ pub fn solve<E: Engine>(
         let passes = test.is_passed(change.max(pending), &tractions);
         if passes || ends && change.max(pending) <= settings.stalled_tolerance {
             let iterations = iterations + newton_sweeps.unwrap_or(0);
-            return finish(problem, before, iterate, now, solvers, iterations, &test);
+            return finish(problem, before, iterate, now, solvers, iterations, test.change());
         }
         if iterations == 1 {
             test.amend(change);
@@ -196,14 +194,11 @@ pub fn solve_staggered<E: Engine>(
         image,
         ..
     } = workspace;
-    now.guess_from(before);
-    memory::begin(problem, before, now);
-    E::begin(problem, Some(before), now, solvers)?;
+    begin(problem, before, now, solvers)?;
     E::read(problem, now, solvers, iterate);
-    let mut tractions = TractionChange::NONE;
     for _ in 0..problem.settings.interface.mechanics_sweeps {
         // As closely as in the first sweep of a step: the temperature is a guess here as well.
-        tractions = E::solve_mechanics(problem, iterate, now, solvers, settings.first_mechanics_tolerance)?;
+        let tractions = E::solve_mechanics(problem, iterate, now, solvers, settings.first_mechanics_tolerance)?;
         if !tractions.set_changed && tractions.shear_change <= settings.first_mechanics_tolerance {
             break;
         }
@@ -215,16 +210,23 @@ pub fn solve_staggered<E: Engine>(
     if !image.is_finite() {
         return Err(ConvergenceTest::new(settings).error(1));
     }
-    let mut test = ConvergenceTest::new(settings);
-    test.is_passed(iterate.change_to(image, settings.least_temperature), &tractions);
-    let convergence = finish(problem, before, iterate, now, solvers, 1, &test)?;
-    Ok(Convergence {
-        staggered: true,
-        ..convergence
-    })
+    let residual = iterate.change_to(image, settings.least_temperature);
+    finish(problem, before, iterate, now, solvers, 1, residual)
 }
 
-/// Ends a step whose interface vector has converged.
+/// Begins a step from the fields before it, which are the first guess.
+fn begin<E: Engine>(
+    problem: &Problem<E>,
+    before: &E::Fields,
+    now: &mut E::Fields,
+    solvers: &mut E::Solvers,
+) -> Result<()> {
+    now.guess_from(before);
+    memory::begin(problem, before, now);
+    E::begin(problem, Some(before), now, solvers)
+}
+
+/// Ends a step with the fields of its last sweep, in which the interface vector has changed by the residual.
 fn finish<E: Engine>(
     problem: &Problem<E>,
     before: &E::Fields,
@@ -232,7 +234,7 @@ fn finish<E: Engine>(
     now: &mut E::Fields,
     solvers: &mut E::Solvers,
     iterations: usize,
-    test: &ConvergenceTest,
+    residual: f64,
 ) -> Result<Convergence> {
     let fills_window = fills_window(problem, now, solvers)?;
     E::finalise_friction(problem, now, solvers);
@@ -242,9 +244,9 @@ fn finish<E: Engine>(
     rail_and_rim::warm_wheel(problem, before, now);
     Ok(Convergence {
         iterations,
-        residual: test.change(),
+        residual,
         fills_window,
-        staggered: false,
+        staggered: problem.conditions.coupling == Coupling::Staggered,
     })
 }
 

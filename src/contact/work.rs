@@ -29,7 +29,7 @@ impl Work {
         Work { spent: 0, limit }
     }
 
-    /// Begins a communication step.
+    /// Forgets the work so far.
     pub fn restart(&mut self) {
         self.spent = 0;
     }

@@ -96,7 +96,7 @@ impl Component {
     pub fn fail(&mut self, blame: Blame) {
         match blame {
             // The step itself has set its state.
-            Blame::Unused | Blame::Value | Blame::PartOfStep => {}
+            Blame::Remark | Blame::Value | Blame::PartOfStep => {}
             Blame::Call => self.mode = Mode::Error,
             Blame::Library => {
                 self.mode = Mode::Error;

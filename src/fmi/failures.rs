@@ -6,8 +6,8 @@ use crate::error::Error;
 /// Party to blame for a call that did not do all it was asked for, and with it the state of the instance afterwards.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Blame {
-    /// An argument without effect; everything else was done.
-    Unused,
+    /// Nobody: all was done, and there is something to say of it, an argument without effect or a step taken staggered.
+    Remark,
     /// A value, or a question that has no answer: nothing was changed, the instance goes on.
     Value,
     /// A step whose solvers gave up after a part of it was committed.
@@ -33,7 +33,7 @@ impl Blame {
     pub fn status(blame: Option<Blame>) -> i32 {
         match blame {
             None => OK,
-            Some(Blame::Unused) => WARNING,
+            Some(Blame::Remark) => WARNING,
             Some(Blame::Value | Blame::PartOfStep) => DISCARD,
             Some(Blame::Call | Blame::Library) => ERROR,
         }

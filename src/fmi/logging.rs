@@ -51,7 +51,7 @@ impl Category {
     /// The category of the message on a failed call.
     fn of(blame: Blame) -> Category {
         match blame {
-            Blame::Unused | Blame::Value | Blame::PartOfStep => Category::StatusWarning,
+            Blame::Remark | Blame::Value | Blame::PartOfStep => Category::StatusWarning,
             Blame::Call | Blame::Library => Category::StatusError,
         }
     }

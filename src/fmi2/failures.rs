@@ -42,7 +42,7 @@ impl Refusal for Failure {
     fn blame(&self) -> Blame {
         match self {
             Failure::Shared(failure) => failure.blame(),
-            Failure::HigherOrder { .. } => Blame::Unused,
+            Failure::HigherOrder { .. } => Blame::Remark,
             Failure::Rate { .. } | Failure::StatusKind { .. } => Blame::Value,
             Failure::NoExperiment => Blame::Call,
         }

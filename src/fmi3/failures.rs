@@ -46,7 +46,7 @@ impl Refusal for Failure {
             // The state is not that of before the call, which fmi3Discard would mean.
             Failure::Shared(failures::Failure::Interrupted { .. }) => Blame::Call,
             Failure::Shared(failure) => failure.blame(),
-            Failure::ReturnedEarly { .. } => Blame::Unused,
+            Failure::ReturnedEarly { .. } => Blame::Remark,
             Failure::Values { .. } | Failure::Derivatives { .. } => Blame::Call,
         }
     }

@@ -157,7 +157,8 @@ impl Engine for LineOperators {
 
     /// Factorisations take the third power of the nodes.
     fn work_scale(&self) -> f64 {
-        (self.mesh.contact_nodes as f64 / 61.0).max(1.0).powi(3)
+        let default = Parameters::default().contact_nodes;
+        (self.mesh.contact_nodes as f64 / default as f64).max(1.0).powi(3)
     }
 
     fn set_surface_temperature(&self, interface: &Interface, now: &mut LineFields) {
