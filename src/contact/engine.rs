@@ -2,7 +2,7 @@
 //! two; a third one is another implementation, and the step ([`super::step`]) and its derivatives ([`super::sensitivity`]) stay as
 //! they are.
 
-use super::fields::Fields;
+use super::fields::{EngineState, Fields};
 use super::integrals::Integrals;
 use super::interface::Interface;
 use super::problem::Problem;
@@ -10,6 +10,7 @@ use super::profiles::{ContactNode, Profiles};
 use super::rim::HeatedNode;
 use super::work::Iterations;
 use crate::error::Result;
+use crate::friction::memory::Memory;
 use crate::mechanics::normal_tangential::TractionChange;
 use crate::parameters::Parameters;
 use crate::settings::{SensitivitySettings, Settings, SplitSettings};
@@ -99,14 +100,11 @@ pub trait Engine: Sized + 'static {
     /// Distance of rolling on which a contact under the load of the given fields forgets its displacement, `m`.
     fn relaxation_length(problem: &Problem<Self>, fields: &Self::Fields) -> f64;
 
-    /// Paths on which rail material crosses the window.
-    fn paths(&self) -> impl Iterator<Item = MaterialPath> + '_;
+    /// Whether anything is under pressure.
+    fn touches(fields: &Self::Fields) -> bool;
 
-    /// Pressure of the fields, scaled.
-    fn pressure(fields: &Self::Fields) -> &[f64];
-
-    /// Temperature rise of the rail's surface at the nodes, `K`.
-    fn surface_rise<'f>(&self, fields: &'f Self::Fields) -> &'f [f64];
+    /// Load that the tractions of the fields carry, `N`.
+    fn carried_load(problem: &Problem<Self>, fields: &Self::Fields) -> f64;
 
     /// Temperature of the wheel, absolute, `K`.
     fn wheel_temperature(fields: &Self::Fields) -> f64;
@@ -127,6 +125,16 @@ pub trait Engine: Sized + 'static {
         now: &mut Self::Fields,
         solvers: &mut Self::Solvers,
     ) -> Result<()>;
+
+    /// Moves the first guess of a step on by `ahead` `s`.
+    fn extrapolate(
+        state: &EngineState<Self::Fields>,
+        ahead: f64,
+        now: &mut Self::Fields,
+        _solvers: &mut Self::Solvers,
+    ) {
+        state.extrapolate(ahead, now);
+    }
 
     /// Keeps an extrapolated first guess within what is possible.
     fn limit_guess(_before: &Self::Fields, _now: &mut Self::Fields) {}
@@ -191,6 +199,9 @@ pub trait Engine: Sized + 'static {
 
     /// Computes what [`Engine::pending_displacement`] bounds, into the fields.
     fn map_displacement(_problem: &Problem<Self>, _now: &mut Self::Fields, _solvers: &mut Self::Solvers) {}
+
+    /// Ends a step with the history of friction that the rail takes along into the next one.
+    fn end_memory(problem: &Problem<Self>, now: &mut Self::Fields);
 
     /// Sets friction coefficient and shear of the fields to those at their temperature; the traction utilisation stays. The friction power
     /// of the fields is then, to round-off, the friction power that heats rail and wheel.
@@ -281,6 +292,24 @@ pub trait Engine: Sized + 'static {
     fn contact_nodes(&self, fields: &Self::Fields) -> Vec<ContactNode>;
 }
 
+/// Contact model whose nodes are all in one window.
+pub trait OneWindow: Engine {
+    /// Paths on which rail material crosses the window.
+    fn paths(&self) -> impl Iterator<Item = MaterialPath> + '_;
+
+    /// Pressure of the fields, scaled.
+    fn pressure(fields: &Self::Fields) -> &[f64];
+
+    /// Temperature rise of the rail's surface at the nodes, `K`.
+    fn surface_rise<'f>(&self, fields: &'f Self::Fields) -> &'f [f64];
+
+    /// History of friction.
+    fn memory(fields: &Self::Fields) -> &Memory;
+
+    /// History of friction, to be changed.
+    fn memory_mut(fields: &mut Self::Fields) -> &mut Memory;
+}
+
 /// Linearised step: the point at which it is linearised, with solvers that are factorised there.
 pub struct Linearised<'a, E: Engine> {
     /// Problem of the step.
@@ -312,7 +341,7 @@ impl<'a, E: Engine> Linearised<'a, E> {
         tangent: &'a mut E::Tangent,
         tolerance: f64,
     ) -> Result<Linearised<'a, E>> {
-        let touches = E::pressure(fields).iter().any(|&pressure| pressure > 0.0);
+        let touches = E::touches(fields);
         if touches {
             E::linearise(problem, interface, fields, solvers, tangent)?;
         }

@@ -49,7 +49,7 @@ impl<E: Engine> Problem<'_, E> {
 
     /// Load that the pressure of the fields carries, `N`.
     pub fn load(&self, fields: &E::Fields) -> f64 {
-        self.unit_force() * E::pressure(fields).iter().sum::<f64>()
+        E::carried_load(self, fields)
     }
 
     /// Wear depth per time at a slip of 1 m/s under a scaled pressure of 1.

@@ -86,11 +86,16 @@ pub trait Fields: Clone + PartialEq + std::fmt::Debug + Serialize + DeserializeO
     /// Table of the numbers.
     const NUMBERS: &'static [Number<Self>];
 
-    /// History of friction.
-    fn memory(&self) -> &Memory;
+    /// Histories of friction, one of each window.
+    fn memories(&self) -> impl Iterator<Item = &Memory>;
 
-    /// History of friction, to be changed.
-    fn memory_mut(&mut self) -> &mut Memory;
+    /// Histories of friction, to be changed.
+    fn memories_mut(&mut self) -> impl Iterator<Item = &mut Memory>;
+
+    /// Whether the fields stand at other places than those before a step: they have no rates of change then.
+    fn has_moved(&self, _before: &Self) -> bool {
+        false
+    }
 
     /// Overwrites these fields with others of the same sizes, without allocating.
     fn copy_from(&mut self, other: &Self) {
@@ -113,7 +118,9 @@ pub trait Fields: Clone + PartialEq + std::fmt::Debug + Serialize + DeserializeO
         for row in Self::ROWS.iter().filter(|row| included(row)) {
             (row.get_mut)(self).copy_from_slice((row.get)(other));
         }
-        self.memory_mut().copy_from(other.memory());
+        for (memory, other) in self.memories_mut().zip(other.memories()) {
+            memory.copy_from(other);
+        }
     }
 
     /// Sets everything to 0, but for the history of friction.
@@ -164,9 +171,12 @@ pub trait Fields: Clone + PartialEq + std::fmt::Debug + Serialize + DeserializeO
         };
         let mut rows = Self::ROWS.iter();
         let mut numbers = Self::NUMBERS.iter();
-        let memory = self.memory().vectors().into_iter().zip(expected.memory().vectors());
+        let mut memories = self
+            .memories()
+            .zip(expected.memories())
+            .flat_map(|(own, expected)| own.vectors().into_iter().zip(expected.vectors()));
         rows.all(|row| same((row.get)(self), (row.get)(expected)))
-            && memory.into_iter().all(|(own, expected)| same(own, expected))
+            && memories.all(|(own, expected)| same(own, expected))
             && numbers.all(|number| {
                 let value = (number.get)(self);
                 value.is_finite() && (!number.positive || value > 0.0)
@@ -195,7 +205,12 @@ impl<F: Fields> EngineState<F> {
 
     /// Makes the fields at the end of a step of `duration` `s` the state; `after` receives those before.
     pub fn commit(&mut self, after: &mut F, duration: f64) {
+        let moved = after.has_moved(&self.fields);
         for (rates, row) in self.rates.iter_mut().zip(extrapolated::<F>()) {
+            if moved {
+                rates.fill(0.0);
+                continue;
+            }
             let values = (row.get)(&self.fields).iter().zip((row.get)(after));
             for (rate, (before, after)) in rates.iter_mut().zip(values) {
                 *rate = (after - before) / duration;

@@ -1,31 +1,30 @@
 //! History of friction on the paths of the rail's particles: with what it begins a step, and with what it ends.
 
-use super::engine::Engine;
-use super::fields::Fields;
+use super::engine::OneWindow;
 use super::problem::Problem;
 use crate::friction::memory::Memory;
 use crate::friction::path::PathLaw;
 
 /// Begins a step with the history that the rail brings along from the step before.
-pub fn begin<E: Engine>(problem: &Problem<E>, before: &E::Fields, now: &mut E::Fields) {
+pub fn begin<E: OneWindow>(problem: &Problem<E>, before: &E::Fields, now: &mut E::Fields) {
     let remembers = Memory::is_kept(problem.parameters);
-    let memory = now.memory_mut();
+    let memory = E::memory_mut(now);
     memory.remembers = remembers;
     if remembers {
         let (law, rise) = (problem.friction(), problem.operators.surface_rise(before));
-        memory.start_from(before.memory(), |node| law.coefficient(rise[node]).0);
+        memory.start_from(E::memory(before), |node| law.coefficient(rise[node]).0);
     }
 }
 
 /// Ends a step with the history that the rail takes along into the next one.
-pub fn end<E: Engine>(problem: &Problem<E>, now: &mut E::Fields) {
+pub fn end<E: OneWindow>(problem: &Problem<E>, now: &mut E::Fields) {
     let remembers = Memory::is_kept(problem.parameters);
-    now.memory_mut().remembers = remembers;
+    E::memory_mut(now).remembers = remembers;
     let (Some(path_law), true) = (problem.path_law(), remembers) else {
         return;
     };
     let (operators, law) = (problem.operators, problem.friction());
-    let mut memory = std::mem::take(now.memory_mut());
+    let mut memory = std::mem::take(E::memory_mut(now));
     for (static_friction, rise) in memory.now.static_friction.iter_mut().zip(operators.surface_rise(now)) {
         *static_friction = law.coefficient(*rise).0;
     }
@@ -41,12 +40,12 @@ pub fn end<E: Engine>(problem: &Problem<E>, now: &mut E::Fields) {
             &mut after.friction[path.nodes],
         );
     }
-    *now.memory_mut() = memory;
+    *E::memory_mut(now) = memory;
 }
 
 /// Writes the change of μ at unchanged slip into `friction`, node by node: with that of |V| by `speed` `m/s`, with that of μ(θ) in
 /// `static_friction` and with that of the pressure.
-pub fn tangent<E: Engine>(
+pub fn tangent<E: OneWindow>(
     problem: &Problem<E>,
     law: &PathLaw,
     fields: &E::Fields,
@@ -55,7 +54,7 @@ pub fn tangent<E: Engine>(
     pressure_change: Option<&[f64]>,
     friction: &mut [f64],
 ) {
-    let memory = fields.memory();
+    let memory = E::memory(fields);
     for path in problem.operators.paths() {
         let (nodes, places) = (path.nodes, path.places);
         let pressure = &E::pressure(fields)[places.clone()];

@@ -7,12 +7,12 @@ use super::convergence::ConvergenceTest;
 use super::engine::Engine;
 use super::fields::{EngineState, Fields};
 use super::interface::Interface;
-use super::memory;
 use super::newton::{self, Newton, Sweeps};
 use super::problem::{Convergence, Coupling, Problem};
 use super::rail_and_rim;
 use super::work::Work;
 use crate::error::{Error, Result};
+use crate::friction::memory::Memory;
 use crate::mechanics::normal_tangential::TractionChange;
 use crate::numerics::anderson::Anderson;
 use crate::settings::Settings;
@@ -85,7 +85,7 @@ pub fn solve<E: Engine>(
         newton,
     } = workspace;
     begin(problem, before, now, solvers)?;
-    state.extrapolate(problem.conditions.duration.min(last_duration), now);
+    E::extrapolate(state, problem.conditions.duration.min(last_duration), now, solvers);
     E::limit_guess(before, now);
     E::read(problem, now, solvers, iterate);
     anderson.restart();
@@ -222,7 +222,6 @@ fn begin<E: Engine>(
     solvers: &mut E::Solvers,
 ) -> Result<()> {
     now.guess_from(before);
-    memory::begin(problem, before, now);
     E::begin(problem, Some(before), now, solvers)
 }
 
@@ -238,7 +237,7 @@ fn finish<E: Engine>(
 ) -> Result<Convergence> {
     let fills_window = fills_window(problem, now, solvers)?;
     E::finalise_friction(problem, now, solvers);
-    memory::end(problem, now);
+    E::end_memory(problem, now);
     E::finalise_displacement(problem, interface, now, solvers);
     E::finalise(problem, before, now, solvers)?;
     rail_and_rim::warm_wheel(problem, before, now);
@@ -264,7 +263,7 @@ pub fn initial_state<E: Engine>(
     let StepWorkspace { solvers, iterate, .. } = workspace;
     let mut now = problem.operators.fields();
     E::set_wheel_temperature(&mut now, problem.conditions.inputs.ambient_temperature);
-    now.memory_mut().start_steady();
+    now.memories_mut().for_each(Memory::start_steady);
     E::begin(problem, None, &mut now, solvers)?;
     let staggered = problem.conditions.coupling == Coupling::Staggered;
     let mut tractions = TractionChange::NONE;
@@ -280,7 +279,7 @@ pub fn initial_state<E: Engine>(
                 staggered: !rests,
             };
             E::finalise_displacement(problem, iterate, &mut now, solvers);
-            memory::end(problem, &mut now);
+            E::end_memory(problem, &mut now);
             return Ok((EngineState::at_rest(now), convergence));
         }
     }

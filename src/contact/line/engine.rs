@@ -8,13 +8,16 @@ use super::operators::LineOperators;
 use super::profiles;
 use super::solvers::LineSolvers;
 use super::tangent::{self, LineTangent};
-use crate::contact::engine::{Along, Direction, Engine, Linearised, MaterialPath};
+use crate::contact::engine::{Along, Direction, Engine, Linearised, MaterialPath, OneWindow};
 use crate::contact::fields::Fields;
 use crate::contact::integrals::Integrals;
 use crate::contact::interface::Interface;
+use crate::contact::memory;
+use crate::contact::problem::Problem;
 use crate::contact::profiles::{ContactNode, Profiles};
 use crate::contact::rim::HeatedNode;
 use crate::error::Result;
+use crate::friction::memory::Memory;
 use crate::mechanics::normal_tangential::TractionChange;
 use crate::parameters::Parameters;
 use crate::settings::{SensitivitySettings, Settings, SplitSettings};
@@ -87,20 +90,12 @@ impl Engine for LineOperators {
         }
     }
 
-    fn paths(&self) -> impl Iterator<Item = MaterialPath> + '_ {
-        let nodes = 0..self.mesh.contact_nodes;
-        iter::once(MaterialPath {
-            nodes: nodes.clone(),
-            places: nodes,
-        })
+    fn touches(fields: &LineFields) -> bool {
+        Self::pressure(fields).iter().any(|&pressure| pressure > 0.0)
     }
 
-    fn pressure(fields: &LineFields) -> &[f64] {
-        &fields.pressure
-    }
-
-    fn surface_rise<'f>(&self, fields: &'f LineFields) -> &'f [f64] {
-        &fields.surface_temperature[self.mesh.window()]
+    fn carried_load(problem: &Problem<Self>, fields: &LineFields) -> f64 {
+        problem.unit_force() * Self::pressure(fields).iter().sum::<f64>()
     }
 
     fn wheel_temperature(fields: &LineFields) -> f64 {
@@ -119,6 +114,7 @@ impl Engine for LineOperators {
     ) -> Result<()> {
         match before {
             Some(before) => {
+                memory::begin(problem, before, now);
                 now.relaxation_length = Self::relaxation_length(problem, before);
                 solvers.data.displacement_before.copy_from_slice(&before.displacement);
                 heat_and_wear::keep_inflow(problem, before, now);
@@ -192,6 +188,10 @@ impl Engine for LineOperators {
 
     fn map_displacement(problem: &LineProblem, now: &mut LineFields, solvers: &mut LineSolvers) {
         heat_and_wear::map_displacement(problem, now, solvers);
+    }
+
+    fn end_memory(problem: &Problem<Self>, now: &mut LineFields) {
+        memory::end(problem, now);
     }
 
     fn finalise_friction(problem: &LineProblem, now: &mut LineFields, _solvers: &LineSolvers) {
@@ -296,5 +296,31 @@ impl Engine for LineOperators {
 
     fn contact_nodes(&self, fields: &LineFields) -> Vec<ContactNode> {
         profiles::contact_nodes(self, fields)
+    }
+}
+
+impl OneWindow for LineOperators {
+    fn paths(&self) -> impl Iterator<Item = MaterialPath> + '_ {
+        let nodes = 0..self.mesh.contact_nodes;
+        iter::once(MaterialPath {
+            nodes: nodes.clone(),
+            places: nodes,
+        })
+    }
+
+    fn pressure(fields: &LineFields) -> &[f64] {
+        &fields.pressure
+    }
+
+    fn surface_rise<'f>(&self, fields: &'f LineFields) -> &'f [f64] {
+        &fields.surface_temperature[self.mesh.window()]
+    }
+
+    fn memory(fields: &LineFields) -> &Memory {
+        &fields.memory
+    }
+
+    fn memory_mut(fields: &mut LineFields) -> &mut Memory {
+        &mut fields.memory
     }
 }

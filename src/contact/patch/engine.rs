@@ -11,13 +11,16 @@ use super::problem::PatchProblem;
 use super::profiles;
 use super::solvers::PatchSolvers;
 use super::tangent::PatchTangent;
-use crate::contact::engine::{Along, Direction, Engine, Linearised, MaterialPath};
+use crate::contact::engine::{Along, Direction, Engine, Linearised, MaterialPath, OneWindow};
 use crate::contact::integrals::Integrals;
 use crate::contact::interface::Interface;
+use crate::contact::memory;
+use crate::contact::problem::Problem;
 use crate::contact::profiles::{ContactNode, Profiles};
 use crate::contact::rim::HeatedNode;
 use crate::contact::work::Iterations;
 use crate::error::Result;
+use crate::friction::memory::Memory;
 use crate::mechanics::normal_tangential::TractionChange;
 use crate::mechanics::patch::normal;
 use crate::parameters::Parameters;
@@ -87,20 +90,12 @@ impl Engine for PatchOperators {
         problem.operators.relaxation_length * if load > 0.0 { ratio } else { 1.0 }
     }
 
-    fn paths(&self) -> impl Iterator<Item = MaterialPath> + '_ {
-        let grid = &self.grid;
-        (0..grid.strips).map(|strip| MaterialPath {
-            nodes: strip * grid.cells..(strip + 1) * grid.cells,
-            places: grid.row(strip),
-        })
+    fn touches(fields: &PatchFields) -> bool {
+        Self::pressure(fields).iter().any(|&pressure| pressure > 0.0)
     }
 
-    fn pressure(fields: &PatchFields) -> &[f64] {
-        &fields.pressure
-    }
-
-    fn surface_rise<'f>(&self, fields: &'f PatchFields) -> &'f [f64] {
-        &fields.heat.surface
+    fn carried_load(problem: &Problem<Self>, fields: &PatchFields) -> f64 {
+        problem.unit_force() * Self::pressure(fields).iter().sum::<f64>()
     }
 
     fn wheel_temperature(fields: &PatchFields) -> f64 {
@@ -124,8 +119,10 @@ impl Engine for PatchOperators {
             }
         }
         if let Some(before) = before {
+            memory::begin(problem, before, now);
             now.relaxation_length = Self::relaxation_length(problem, before);
         }
+        solvers.undeformed.set_slip(problem, &problem.conditions.motion);
         solvers.normal.start_step();
         solvers.friction.start_step();
         solvers.wear_compliance.fill(0.0);
@@ -206,6 +203,10 @@ impl Engine for PatchOperators {
         heat_and_wear::update_wear_compliance(problem, now, solvers);
     }
 
+    fn end_memory(problem: &Problem<Self>, now: &mut PatchFields) {
+        memory::end(problem, now);
+    }
+
     fn finalise_friction(problem: &PatchProblem, now: &mut PatchFields, solvers: &PatchSolvers) {
         heat_and_wear::finalise_friction(problem, now, &solvers.contact);
     }
@@ -265,6 +266,7 @@ impl Engine for PatchOperators {
     }
 
     fn begin_linearisation(problem: &PatchProblem, fields: &PatchFields, solvers: &mut PatchSolvers) {
+        solvers.undeformed.set_slip(problem, &problem.conditions.motion);
         for component in 0..2 {
             let nodes = fields.displacement[component]
                 .iter()
@@ -330,5 +332,31 @@ impl Engine for PatchOperators {
 
     fn contact_nodes(&self, fields: &PatchFields) -> Vec<ContactNode> {
         profiles::contact_nodes(self, fields)
+    }
+}
+
+impl OneWindow for PatchOperators {
+    fn paths(&self) -> impl Iterator<Item = MaterialPath> + '_ {
+        let grid = &self.grid;
+        (0..grid.strips).map(|strip| MaterialPath {
+            nodes: strip * grid.cells..(strip + 1) * grid.cells,
+            places: grid.row(strip),
+        })
+    }
+
+    fn pressure(fields: &PatchFields) -> &[f64] {
+        &fields.pressure
+    }
+
+    fn surface_rise<'f>(&self, fields: &'f PatchFields) -> &'f [f64] {
+        &fields.heat.surface
+    }
+
+    fn memory(fields: &PatchFields) -> &Memory {
+        &fields.memory
+    }
+
+    fn memory_mut(fields: &mut PatchFields) -> &mut Memory {
+        &mut fields.memory
     }
 }

@@ -91,11 +91,11 @@ impl Fields for PatchFields {
         number!(true, false, wear.breadth),
     ];
 
-    fn memory(&self) -> &Memory {
-        &self.memory
+    fn memories(&self) -> impl Iterator<Item = &Memory> {
+        std::iter::once(&self.memory)
     }
 
-    fn memory_mut(&mut self) -> &mut Memory {
-        &mut self.memory
+    fn memories_mut(&mut self) -> impl Iterator<Item = &mut Memory> {
+        std::iter::once(&mut self.memory)
     }
 }

@@ -96,11 +96,11 @@ impl Linearisation {
             fields,
             solvers,
         } = solution;
-        let (operators, grid) = (problem.operators, &problem.operators.grid);
+        let grid = &problem.operators.grid;
         for strip in 0..grid.strips {
             for (cell, place) in grid.row(strip).enumerate() {
                 let index = strip * grid.cells + cell;
-                gap[place] = operators.gap[place] + interface.gap()[index] - interface.displacement()[index];
+                gap[place] = solvers.undeformed.gap[place] + interface.gap()[index] - interface.displacement()[index];
             }
         }
         let data = normal_problem(problem, gap, &solvers.wear_compliance, problem.constraint(), 0.0);
@@ -119,11 +119,10 @@ impl Linearisation {
                 for cell in problem.cells_with_next() {
                     let place = grid.place(strip, cell);
                     let next = place.wrapping_add_signed(ahead);
-                    let rigid = problem.rigid_slip(grid.x(cell) + 0.5 * ahead as f64 * grid.length, grid.y(strip));
                     let displaced = self
                         .weights
                         .displaced([now[place], now[next]], [before[place], before[next]]);
-                    slip[place] = rigid[component] + displaced;
+                    slip[place] = solvers.undeformed.rigid_slip[component][place] + displaced;
                 }
             }
         }

@@ -23,6 +23,7 @@ pub fn begin(
     tangent: &mut PatchTangent,
 ) {
     change.clear();
+    tangent.undeformed.set_slip(problem, &direction.motion);
     if problem.conditions.duration > 0.0 {
         let carriage = carriage(direction, 0.0);
         problem

@@ -95,7 +95,8 @@ fn solve_normal(
     for strip in 0..grid.strips {
         for cell in 0..grid.cells {
             let (place, index) = (grid.place(strip, cell), strip * grid.cells + cell);
-            solvers.gap[place] = operators.gap[place] + interface.gap()[index] - interface.displacement()[index];
+            solvers.gap[place] =
+                solvers.undeformed.gap[place] + interface.gap()[index] - interface.displacement()[index];
         }
     }
     std::mem::swap(&mut solvers.contact, &mut solvers.contact_before);
@@ -265,15 +266,13 @@ fn free_slip(
     let grid = &operators.grid;
     given_displacement(problem, interface, fields, solvers);
     let ahead: isize = if problem.is_forward() { 1 } else { -1 };
-    let half = 0.5 * ahead as f64 * grid.length;
     for strip in 0..grid.strips {
-        let y = grid.y(strip);
         for cell in problem.cells_with_next() {
             let place = grid.place(strip, cell);
             let next = place.wrapping_add_signed(ahead);
-            let rigid = problem.rigid_slip(grid.x(cell) + half, y);
-            for (component, rigid) in rigid.into_iter().enumerate() {
+            for component in 0..2 {
                 let (given, before) = (&solvers.given[component], &solvers.before[component]);
+                let rigid = solvers.undeformed.rigid_slip[component][place];
                 solvers.free_slip[component][place] =
                     weights.slip(rigid, [given[place], given[next]], [before[place], before[next]]);
             }

@@ -1,7 +1,7 @@
 //! The patch: half-spaces, the contact resolved along the rail and across it.
 //!
 //! [`operators`] are what is computed once, by the influence functions in [`kernels`] and the [`expansion`] by heat. [`fields`] are what a step changes, [`solvers`] its
-//! solvers and buffers, [`problem`] has the parts of its equations. The parts of a step are [`mechanics`], pressure and then friction
+//! solvers and buffers, [`problem`] has the parts of its equations, [`undeformed`] gap and rigid slip. The parts of a step are [`mechanics`], pressure and then friction
 //! with the [`response`] of the slip to it and what the cells' particles bring along ([`memory`]), and [`heat_and_wear`]; their
 //! derivatives are [`tangent`], at the point of [`linearisation`], and [`march_tangent`]. [`engine`] puts them together. [`integrals`], with the [`extent`] of the
 //! contact, and [`profiles`] are read off the fields.
@@ -23,3 +23,4 @@ mod profiles;
 mod response;
 pub mod solvers;
 pub mod tangent;
+mod undeformed;

@@ -9,7 +9,6 @@ use crate::body::influence::{Tables, Transform};
 use crate::body::mesh::Mesh;
 use crate::error::Result;
 use crate::geometry::gap;
-use crate::geometry::hertz::HertzEllipse;
 use crate::heat::basis::DepthBasis;
 use crate::heat::incoming::Incoming;
 use crate::mechanics::leading_edge::LAYER_STRAIN;
@@ -79,6 +78,14 @@ impl PatchOperators {
             half_length,
             half_breadth,
         );
+        PatchOperators::on_grid(parameters, grid)
+    }
+
+    /// Computes influence and depth modes for a grid.
+    ///
+    /// # Errors
+    /// [`crate::error::Error::DepthBasis`].
+    pub fn on_grid(parameters: &Parameters, grid: Grid) -> Result<PatchOperators> {
         let ellipse = parameters.hertz_ellipse(parameters.largest_load);
         let scales = Scales {
             pressure: ellipse.peak_pressure,
@@ -127,7 +134,7 @@ impl PatchOperators {
             incoming: Incoming::new(&mesh.depth, &basis, parameters.skin_depth),
             depth: mesh.depth,
             basis,
-            relaxation_length: relaxation_length(&pair, parameters.layer_compliance, &ellipse),
+            relaxation_length: relaxation_length(&pair, parameters.layer_compliance, (ellipse.along, ellipse.across)),
             transform,
             grid,
             scales,
@@ -209,13 +216,12 @@ fn graded_mesh(parameters: &Parameters, grid: &Grid) -> Mesh {
     )
 }
 
-/// Relaxation length of a patch, the distance of rolling on which a change of its shear force F decays, `m`. With C the displacement
+/// Relaxation length of a patch with the given semi-axes along and across, `m`: the distance of rolling on which a change of its shear force F decays. With C the displacement
 /// per force and K the force per creepage of steady rolling, a contact of one displacement C F has C dF/dt + |V| F/K = |V| ξ: a change
 /// decays within C K. The displacement is not uniform, but grows from the leading edge to the trailing one, and slip changes it: ℓ is
 /// [`RELAXATION_FACTOR`] C K. K = G a b C₁₁, C₁₁ = 3.3 (1 + a/(4b)), which is within a few per cent of Kalker's table. A layer of
 /// compliance c adds c/(π a b) to C and 3c/(8a²b), that of a brush, to 1/K.
-fn relaxation_length(pair: &HalfSpaces, layer: f64, ellipse: &HertzEllipse) -> f64 {
-    let (a, b) = (ellipse.along, ellipse.across);
+pub fn relaxation_length(pair: &HalfSpaces, layer: f64, (a, b): (f64, f64)) -> f64 {
     let stiffness = a * b * 3.3 * (1.0 + 0.25 * a / b) / (PI * pair.direct);
     let displacement = compliance(pair, (a * b).sqrt());
     if layer == 0.0 {

@@ -5,7 +5,7 @@ use super::operators::PatchOperators;
 use crate::friction::coulomb::Sliding;
 use crate::heat::strips::StripHeatMarch;
 use crate::heat::surface::{SurfaceCondition, SurfaceExchange};
-use crate::mechanics::kinematics::{self, SlipWeights};
+use crate::mechanics::kinematics::SlipWeights;
 use crate::mechanics::transient::Transient;
 use crate::wear::strips::StripWearMarch;
 use std::ops::Range;
@@ -58,11 +58,6 @@ impl<'a> PatchProblem<'a> {
     pub fn cells_with_next(&self) -> Range<usize> {
         let cells = self.operators.grid.cells;
         if self.is_forward() { 0..cells - 1 } else { 1..cells }
-    }
-
-    /// Rigid slip of the rail relative to the wheel at a point, `m/s`: w_x = V(ξ + φ y), w_y = −V(η + φ x).
-    pub fn rigid_slip(&self, x: f64, y: f64) -> [f64; 2] {
-        kinematics::rigid_slip(&self.conditions.motion, x, y)
     }
 
     /// Heat march of the step.

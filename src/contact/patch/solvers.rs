@@ -3,6 +3,7 @@
 use super::expansion;
 use super::operators::PatchOperators;
 use super::response;
+use super::undeformed::Undeformed;
 use crate::body::influence;
 use crate::friction::path::PathNode;
 use crate::heat::strips::StripHeatScratch;
@@ -30,7 +31,9 @@ pub struct PatchSolvers {
     pub(super) heat: StripHeatScratch,
     pub(super) wear_rate: Vec<f64>,
     pub(super) wear_steps: StripWearSteps,
-    /// Gap at no penetration, on the grid, scaled.
+    /// Gap and rigid slip of the undeformed bodies in this step.
+    pub(super) undeformed: Undeformed,
+    /// Gap at no penetration with heat and wear, on the grid, scaled.
     pub(super) gap: Vec<f64>,
     /// Wear depth of the step per pressure, on the grid, scaled.
     pub(super) wear_compliance: Vec<f64>,
@@ -94,6 +97,7 @@ impl PatchSolvers {
             heat: StripHeatScratch::new(&operators.basis, &operators.strips),
             wear_rate: vec![0.0; cells],
             wear_steps: StripWearSteps::new(&operators.strips),
+            undeformed: Undeformed::of_curvatures(operators),
             gap: on_grid(),
             wear_compliance: on_grid(),
             shear_displacement: vectors(),

@@ -8,13 +8,13 @@ use super::fields::PatchFields;
 use super::linearisation::{Linearisation, Solution, leading, leading_cell, normal_problem};
 use super::operators::PatchOperators;
 use super::problem::PatchProblem;
+use super::undeformed::Undeformed;
 use crate::body::influence::{self, Window};
 use crate::contact::engine::{Along, Direction};
 use crate::contact::memory as path_memory;
 use crate::error::Result;
 use crate::heat::strips::StripHeatScratch;
 use crate::heat::surface::{ExchangeTangent, SurfaceExchange};
-use crate::mechanics::kinematics::rigid_slip;
 use crate::mechanics::normal::normal_problem::Constraint;
 use crate::mechanics::patch::friction::{Friction, FrictionChange, LEAST_CHANGE};
 use crate::mechanics::patch::law::Vector;
@@ -29,7 +29,9 @@ pub struct PatchTangent {
     normal: Normal,
     friction: Friction,
     products: influence::ProductScratch<f64>,
-    /// Change of the gap, on the grid, scaled.
+    /// Change of gap and rigid slip of the undeformed bodies along the direction.
+    pub(super) undeformed: Undeformed,
+    /// Change of the gap with heat and wear, on the grid, scaled.
     gap: Vec<f64>,
     /// Change of the displacement u that does not come from shear, on the grid, scaled.
     given: [Vec<f64>; 2],
@@ -61,6 +63,7 @@ impl PatchTangent {
             normal: Normal::new(grid, transform, settings.patch),
             friction: Friction::new(grid, transform, settings.patch),
             products: transform.scratch(),
+            undeformed: Undeformed::none(grid),
             gap: on_grid(),
             given: vectors(),
             free_slip: vectors(),
@@ -110,7 +113,7 @@ impl PatchTangent {
         for strip in 0..grid.strips {
             for (cell, place) in grid.row(strip).enumerate() {
                 let index = strip * grid.cells + cell;
-                self.gap[place] = iterate.gap()[index] - iterate.displacement()[index];
+                self.gap[place] = self.undeformed.gap[place] + iterate.gap()[index] - iterate.displacement()[index];
                 let touches = fields.pressure[place] > 0.0;
                 let static_friction = if touches || self.point.path_law.is_some() {
                     let changes = [
@@ -257,8 +260,7 @@ impl PatchTangent {
                 for cell in problem.cells_with_next() {
                     let place = grid.place(strip, cell);
                     let next = place.wrapping_add_signed(ahead);
-                    let x = grid.x(cell) + 0.5 * ahead as f64 * grid.length;
-                    self.free_slip[component][place] = rigid_slip(&direction.motion, x, grid.y(strip))[component]
+                    self.free_slip[component][place] = self.undeformed.rigid_slip[component][place]
                         + self.point.weights.displaced([given[place], given[next]], [0.0; 2])
                         + weights_change.displaced([now[place], now[next]], [before[place], before[next]]);
                 }

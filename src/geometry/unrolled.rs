@@ -1,0 +1,289 @@
+//! A wheel over the unrolled surface of a rail: the undeformed distance along the rail's normal, and the velocity of the wheel's
+//! material there, with their derivatives.
+//!
+//! One side of the track is looked at: x forward, y from the track's middle to the field side, z up from the height of the rail's
+//! top. A wheel on the right is the mirror image of one on the left. The wheel is a surface of revolution about its axle. With C the
+//! axle's middle, R the turn of the wheelset by roll and then yaw, q = Rᵀ(Q − C) and η = q_y − b the distance from the running
+//! circle along the axle, a point Q lies outside of the wheel where
+//!
+//! f(Q) = √(q_x² + q_z²) − (r₀ − z_w(η)) > 0.
+//!
+//! The distance h from the rail's point P along its normal n solves f(P + h n) = 0; it is negative where the bodies overlap. A change
+//! of the wheelset's position by dC and a turn dΘ changes it by dh = g·(dC + dΘ × (Q − C))/(g·n), with the gradient g of f.
+
+use super::profile::HeightFunction;
+
+/// Point of the rail's surface and its normal, across the track.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct RailPoint {
+    /// Place y, z, `m`.
+    pub place: [f64; 2],
+    /// Unit normal y, z, out of the rail.
+    pub normal: [f64; 2],
+}
+
+impl RailPoint {
+    /// Unit tangent y, z, towards the field side.
+    pub fn tangent(&self) -> [f64; 2] {
+        [self.normal[1], -self.normal[0]]
+    }
+}
+
+/// Position of a wheelset over a rail, or a change of it. Of one side: y points to the field side.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct WheelsetPosition {
+    /// Lateral position of the axle's middle, `m`.
+    pub lateral: f64,
+    /// Height of the axle's middle over the rail's top, `m`.
+    pub height: f64,
+    /// Roll about the forward axis, rad.
+    pub roll: f64,
+    /// Yaw about the vertical axis, rad.
+    pub yaw: f64,
+}
+
+/// Motion of a wheelset over a rail, or a change of it.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct WheelsetMotion {
+    /// Forward, lateral and vertical velocity of the axle's middle, `m/s`.
+    pub velocity: [f64; 3],
+    /// Roll rate, `rad/s`.
+    pub roll_rate: f64,
+    /// Yaw rate, `rad/s`.
+    pub yaw_rate: f64,
+    /// Angular velocity about the axle, positive in forward rolling, `rad/s`.
+    pub spin: f64,
+}
+
+/// Shape of a wheel on its axle.
+#[derive(Debug, Clone)]
+pub struct Wheel {
+    /// Height of the profile over the running circle, as a function of the distance η from it to the field side, `m`.
+    pub profile: HeightFunction,
+    /// Radius r₀ of the running circle, `m`.
+    pub radius: f64,
+    /// Distance b of the running circle from the axle's middle, `m`.
+    pub offset: f64,
+}
+
+/// Wheel in its position.
+pub struct PlacedWheel<'a> {
+    wheel: &'a Wheel,
+    centre: [f64; 3],
+    /// R by rows.
+    turn: [[f64; 3]; 3],
+    /// Axis of the roll: forward, turned by the yaw.
+    roll_axis: [f64; 3],
+}
+
+/// Point of the wheel's surface over a point of the rail.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Distance {
+    /// Undeformed distance h along the rail's normal, `m`; negative where the bodies overlap.
+    pub distance: f64,
+    /// Place Q − C on the wheel relative to the axle's middle, `m`.
+    pub arm: [f64; 3],
+    /// Gradient g of f at Q over its component g·n along the normal.
+    pub gradient: [f64; 3],
+    /// Second derivative of the distance along the rail, `1/m`.
+    pub curvature_along: f64,
+}
+
+/// Steps for the distance. Newton's method is quadratic from a guess that is better than the radius of the flange's tip.
+const STEPS: usize = 12;
+/// Distance that two steps may differ by at the end, `m`: round-off of a radius.
+const TOLERANCE: f64 = 2e-16;
+/// Longest step, `m`: less than the radii of a flange.
+const LONGEST_STEP: f64 = 3e-3;
+/// Least slope of f along the normal in a step: the wheel's surface may be seen from the side.
+const LEAST_SLOPE: f64 = 0.05;
+
+impl<'a> PlacedWheel<'a> {
+    /// Wheel of a wheelset in a position.
+    pub fn new(wheel: &'a Wheel, position: &WheelsetPosition) -> PlacedWheel<'a> {
+        let ((sin_roll, cos_roll), (sin_yaw, cos_yaw)) = (position.roll.sin_cos(), position.yaw.sin_cos());
+        PlacedWheel {
+            wheel,
+            centre: [0.0, position.lateral, position.height],
+            turn: [
+                [cos_yaw, -sin_yaw * cos_roll, sin_yaw * sin_roll],
+                [sin_yaw, cos_yaw * cos_roll, -cos_yaw * sin_roll],
+                [0.0, sin_roll, cos_roll],
+            ],
+            roll_axis: [cos_yaw, sin_yaw, 0.0],
+        }
+    }
+
+    /// Distance from a rail's point at `x` `m` along its normal, from a guess of it, `m`.
+    pub fn distance(&self, x: f64, point: &RailPoint, guess: f64) -> Distance {
+        let normal = [0.0, point.normal[0], point.normal[1]];
+        let from = sub([x, point.place[0], point.place[1]], self.centre);
+        let (base, along) = (self.to_wheel(from), self.to_wheel(normal));
+        let mut distance = guess;
+        let mut found = self.at(base, along, distance);
+        for _ in 0..STEPS {
+            let slope = found.gradient[0] * along[0] + found.gradient[1] * along[1] + found.gradient[2] * along[2];
+            let slope = if slope.abs() < LEAST_SLOPE { -LEAST_SLOPE } else { slope };
+            let step = (found.outside / slope).clamp(-LONGEST_STEP, LONGEST_STEP);
+            distance -= step;
+            found = self.at(base, along, distance);
+            // The error after a step is that before, squared, over a radius of at least some millimetres.
+            if step.abs() <= 1e-8 || found.outside.abs() <= TOLERANCE {
+                break;
+            }
+        }
+        let gradient = found.gradient;
+        let slope = dot(gradient, along);
+        let slope = if slope.abs() < LEAST_SLOPE { -LEAST_SLOPE } else { slope };
+        let forward = self.to_wheel([1.0, 0.0, 0.0]);
+        let [qx, _, qz] = found.place;
+        // Second derivative of f along x.
+        let across = (qz * forward[0] - qx * forward[2]) / found.radius;
+        let second = across * across / found.radius + found.second * forward[1] * forward[1];
+        Distance {
+            distance,
+            arm: add(from, normal, distance),
+            gradient: self.to_track(gradient).map(|part| part / slope),
+            curvature_along: -second / slope,
+        }
+    }
+
+    /// Change of the distance with that of the position.
+    pub fn distance_change(&self, at: &Distance, change: &WheelsetPosition) -> f64 {
+        let moved = self.displacement(at, change);
+        dot(at.gradient, moved)
+    }
+
+    /// Displacement of the wheel's material at a point by a change of the position, `m`.
+    fn displacement(&self, at: &Distance, change: &WheelsetPosition) -> [f64; 3] {
+        let turned = cross(self.turn_vector(change), at.arm);
+        add([0.0, change.lateral, change.height], turned, 1.0)
+    }
+
+    /// Turn by a change of roll and yaw.
+    fn turn_vector(&self, change: &WheelsetPosition) -> [f64; 3] {
+        let roll = self.roll_axis.map(|part| part * change.roll);
+        [roll[0], roll[1], roll[2] + change.yaw]
+    }
+
+    /// Angular velocity.
+    fn angular_velocity(&self, motion: &WheelsetMotion) -> [f64; 3] {
+        let roll = add([0.0, 0.0, motion.yaw_rate], self.roll_axis, motion.roll_rate);
+        add(roll, self.axle(), motion.spin)
+    }
+
+    /// Direction of the axle, to the field side: the wheel of the left side rolls forward about it.
+    fn axle(&self) -> [f64; 3] {
+        [self.turn[0][1], self.turn[1][1], self.turn[2][1]]
+    }
+
+    /// Velocity of the wheel's material at a point, `m/s`.
+    pub fn velocity(&self, at: &Distance, motion: &WheelsetMotion) -> [f64; 3] {
+        add(motion.velocity, cross(self.angular_velocity(motion), at.arm), 1.0)
+    }
+
+    /// Change of that velocity over a rail's point with those of position and motion, `m/s`.
+    pub fn velocity_change(
+        &self,
+        at: &Distance,
+        point: &RailPoint,
+        motion: &WheelsetMotion,
+        change: (&WheelsetPosition, &WheelsetMotion),
+    ) -> [f64; 3] {
+        let (position, motion_change) = change;
+        // The place Q moves along the normal, the axle's middle with the wheelset.
+        let distance = self.distance_change(at, position);
+        let arm = [
+            0.0,
+            distance * point.normal[0] - position.lateral,
+            distance * point.normal[1] - position.height,
+        ];
+        let turn = self.turn_vector(position);
+        let axle = cross(turn, self.axle());
+        let roll_axis = cross([0.0, 0.0, position.yaw], self.roll_axis);
+        let mut rate = self.angular_velocity(motion_change);
+        rate = add(rate, axle, motion.spin);
+        rate = add(rate, roll_axis, motion.roll_rate);
+        let turned = add(
+            cross(rate, at.arm),
+            cross(self.angular_velocity(motion), arm),
+            1.0,
+        );
+        add(motion_change.velocity, turned, 1.0)
+    }
+
+    /// Places x along the rail, `m`, at which the distance over a rail's point is smallest, and the distance there: by Newton's method
+    /// from a guess of both.
+    pub fn closest(&self, point: &RailPoint, guess: (f64, f64)) -> (f64, Distance) {
+        let (mut x, distance) = guess;
+        let mut at = self.distance(x, point, distance);
+        for _ in 0..STEPS {
+            // dh/dx = −g_x/(g·n).
+            let slope = -at.gradient[0];
+            if at.curvature_along <= 0.0 {
+                break;
+            }
+            let step = (slope / at.curvature_along).clamp(-LONGEST_STEP * 10.0, LONGEST_STEP * 10.0);
+            x -= step;
+            at = self.distance(x, point, at.distance);
+            if step.abs() < 1e-6 {
+                break;
+            }
+        }
+        (x, at)
+    }
+
+    /// f and its gradient in the wheel's own axes, at a distance along the normal.
+    fn at(&self, base: [f64; 3], along: [f64; 3], distance: f64) -> Outside {
+        let [qx, qy, qz] = add(base, along, distance);
+        let radius = qx.hypot(qz);
+        let [height, slope, second] = self.wheel.profile.value_slope_curvature(qy - self.wheel.offset);
+        Outside {
+            outside: radius - self.wheel.radius + height,
+            gradient: [qx / radius, slope, qz / radius],
+            place: [qx, qy, qz],
+            radius,
+            second,
+        }
+    }
+
+    fn to_wheel(&self, vector: [f64; 3]) -> [f64; 3] {
+        let turn = &self.turn;
+        [0, 1, 2].map(|k| turn[0][k] * vector[0] + turn[1][k] * vector[1] + turn[2][k] * vector[2])
+    }
+
+    fn to_track(&self, vector: [f64; 3]) -> [f64; 3] {
+        [0, 1, 2].map(|k| dot(self.turn[k], vector))
+    }
+}
+
+/// f, its gradient in the wheel's axes, and where they were taken.
+struct Outside {
+    outside: f64,
+    gradient: [f64; 3],
+    place: [f64; 3],
+    radius: f64,
+    /// Second derivative of the profile's height.
+    second: f64,
+}
+
+fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+fn sub(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
+}
+
+/// a + factor b.
+fn add(a: [f64; 3], b: [f64; 3], factor: f64) -> [f64; 3] {
+    [a[0] + factor * b[0], a[1] + factor * b[1], a[2] + factor * b[2]]
+}
+
+fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    [
+        a[1] * b[2] - a[2] * b[1],
+        a[2] * b[0] - a[0] * b[2],
+        a[0] * b[1] - a[1] * b[0],
+    ]
+}
