@@ -73,6 +73,9 @@ pub enum Error {
     /// A profile of wheel or rail that does not serve.
     #[error(transparent)]
     Profile(ProfileError),
+    /// A contact has become larger than the window it was sought in; the step is tried again with a larger one.
+    #[error("the contact has become larger than the window it was sought in")]
+    ContactOutgrowsWindow,
     /// State or workspace come from a model with another `contact_model`.
     #[error("the state or the workspace is not one of this contact_model")]
     OtherContactModel,

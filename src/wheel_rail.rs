@@ -344,6 +344,7 @@ impl Model {
                 motion: inputs.motion(&self.parameters),
                 duration,
                 coupling,
+                room: 1.0,
             },
         }
     }
@@ -400,6 +401,20 @@ impl Model {
         let task = self.task(&state.inputs, state.duration, Coupling::Implicit);
         self.operators
             .sensitivities(&task, &mut workspace.contact, &state.contact, inputs)
+    }
+
+    /// TEMPORARY
+    #[cfg(test)]
+    pub fn integrals_for_tests(&self, state: &State, inputs: &Inputs) -> crate::contact::integrals::Integrals {
+        use crate::contact::engine::Engine;
+        use crate::contact::problem::Problem;
+        let task = self.task(inputs, state.duration, Coupling::Implicit);
+        match (&self.operators, &state.contact) {
+            (crate::contact::Operators::Surface(operators), crate::contact::ContactState::Surface(own)) => {
+                Engine::integrals(&Problem::new(operators, &task), &own.fields)
+            }
+            _ => panic!(),
+        }
     }
 
     /// Convergence of the last step.
@@ -514,7 +529,7 @@ mod tests {
             };
             let model = |settings| match contact_model {
                 ContactModel::Line => model(normal_solver, settings),
-                ContactModel::Patch => patch(settings),
+                ContactModel::Patch | ContactModel::Profiles => patch(settings),
             };
             let sound = model(Settings::default());
             let inputs = Inputs::default();
@@ -545,7 +560,7 @@ mod tests {
                     let share = state.outputs.traction_force / undisturbed.outputs.traction_force;
                     let tolerance = match contact_model {
                         ContactModel::Line => state.convergence.residual.max(1e-9),
-                        ContactModel::Patch => 1e-5,
+                        ContactModel::Patch | ContactModel::Profiles => 1e-5,
                     };
                     let short = (share - 1.0).abs() < tolerance;
                     assert!(state == undisturbed || short, "{words}, limit {limit}: {share}");

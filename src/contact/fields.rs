@@ -97,8 +97,17 @@ pub trait Fields: Clone + PartialEq + std::fmt::Debug + Serialize + DeserializeO
         false
     }
 
+    /// Takes the places at which the fields of others stand.
+    fn copy_places(&mut self, _other: &Self) {}
+
+    /// Whether the places, of another source, are possible.
+    fn has_valid_places(&self) -> bool {
+        true
+    }
+
     /// Overwrites these fields with others of the same sizes, without allocating.
     fn copy_from(&mut self, other: &Self) {
+        self.copy_places(other);
         self.copy(other, |_| true);
         for number in Self::NUMBERS {
             *(number.get_mut)(self) = (number.get)(other);
@@ -107,6 +116,7 @@ pub trait Fields: Clone + PartialEq + std::fmt::Debug + Serialize + DeserializeO
 
     /// Takes the first guess of a step, but for the extrapolation, from the fields at its beginning.
     fn guess_from(&mut self, before: &Self) {
+        self.copy_places(before);
         self.copy(before, |row| row.guess != Guess::Computed);
         for number in Self::NUMBERS.iter().filter(|number| number.kept) {
             *(number.get_mut)(self) = (number.get)(before);
@@ -135,6 +145,7 @@ pub trait Fields: Clone + PartialEq + std::fmt::Debug + Serialize + DeserializeO
 
     /// Takes what the outputs are made of from `fields`, moved by `step` times a change of them.
     fn move_along(&mut self, fields: &Self, change: &Self, step: f64) {
+        self.copy_places(fields);
         for row in Self::ROWS.iter().filter(|row| row.outputs != Outputs::Independent) {
             let values = (row.get)(fields).iter().zip((row.get)(change));
             for (moved, (value, change)) in (row.get_mut)(self).iter_mut().zip(values) {
@@ -175,7 +186,8 @@ pub trait Fields: Clone + PartialEq + std::fmt::Debug + Serialize + DeserializeO
             .memories()
             .zip(expected.memories())
             .flat_map(|(own, expected)| own.vectors().into_iter().zip(expected.vectors()));
-        rows.all(|row| same((row.get)(self), (row.get)(expected)))
+        self.has_valid_places()
+            && rows.all(|row| same((row.get)(self), (row.get)(expected)))
             && memories.all(|(own, expected)| same(own, expected))
             && numbers.all(|number| {
                 let value = (number.get)(self);

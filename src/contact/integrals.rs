@@ -1,6 +1,7 @@
 //! Integrals of the fields over a contact. The sums of two parts of a contact add up to those of the whole.
 
 use super::rim::ContactHeat;
+use super::surface::totals::OnWheelset;
 use crate::friction::coulomb;
 
 /// State of one surface node.
@@ -57,6 +58,8 @@ pub struct Integrals {
     pub wheel_heat: ContactHeat,
     /// Temperature of the wheel's rim, absolute, `K`.
     pub wheel_temperature: f64,
+    /// Forces on the wheelset and contacts one by one, of a contact of profiles.
+    pub on_wheelset: OnWheelset,
 }
 
 /// NodeSums and largest values over the nodes. Tractions are scaled; every node stands for the same area.
@@ -116,6 +119,41 @@ impl NodeSums {
             }
         }
         sum
+    }
+
+    /// Sums with all areas scaled.
+    pub fn scaled(&self, factor: f64) -> NodeSums {
+        NodeSums {
+            pressure: factor * self.pressure,
+            moment: factor * self.moment,
+            shear: factor * self.shear,
+            lateral_shear: factor * self.lateral_shear,
+            spin_moment: factor * self.spin_moment,
+            friction: factor * self.friction,
+            friction_power: factor * self.friction_power,
+            sliding: factor * self.sliding,
+            heat_flux: factor * self.heat_flux,
+            ..*self
+        }
+    }
+
+    /// Sums of both.
+    pub fn with(&self, other: &NodeSums) -> NodeSums {
+        NodeSums {
+            pressure: self.pressure + other.pressure,
+            moment: self.moment + other.moment,
+            shear: self.shear + other.shear,
+            lateral_shear: self.lateral_shear + other.lateral_shear,
+            spin_moment: self.spin_moment + other.spin_moment,
+            friction: self.friction + other.friction,
+            friction_power: self.friction_power + other.friction_power,
+            sliding: self.sliding + other.sliding,
+            heat_flux: self.heat_flux + other.heat_flux,
+            nodes: self.nodes + other.nodes,
+            sticking: self.sticking + other.sticking,
+            peak_pressure: self.peak_pressure.max(other.peak_pressure),
+            peak_shear: self.peak_shear.max(other.peak_shear),
+        }
     }
 
     /// A sum over the pressure's, 0 without contact: Σ p x becomes the resultant's position.

@@ -53,6 +53,27 @@ impl Interface {
         }
     }
 
+    /// Takes its values from those of one of several windows in a vector of all: this one has the nodes of a window and one component
+    /// of the displacement.
+    pub fn take_window(&mut self, whole: &Interface, window: usize) {
+        let n = self.nodes;
+        for part in 0..3 {
+            let from = part * whole.nodes + window * n;
+            self.values[part * n..][..n].copy_from_slice(&whole.values[from..][..n]);
+        }
+        self.values[3 * n] = whole.values[3 * whole.nodes];
+    }
+
+    /// Writes its values as those of one of several windows into a vector of all.
+    pub fn put_window(&self, whole: &mut Interface, window: usize) {
+        let n = self.nodes;
+        for part in 0..3 {
+            let to = part * whole.nodes + window * n;
+            whole.values[to..][..n].copy_from_slice(&self.values[part * n..][..n]);
+        }
+        whole.values[3 * whole.nodes] = self.values[3 * n];
+    }
+
     /// All values.
     pub fn values(&self) -> &[f64] {
         &self.values

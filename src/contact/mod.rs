@@ -23,6 +23,7 @@ mod rail_and_rim;
 pub mod rim;
 pub mod sensitivity;
 pub mod step;
+pub mod surface;
 pub mod work;
 
 use crate::error::{Error, Result};
@@ -40,6 +41,8 @@ use problem::{Convergence, Coupling, Problem, Task};
 use profiles::{ContactNode, Profiles};
 use serde::{Deserialize, Serialize};
 use step::StepWorkspace;
+use surface::fields::SurfaceFields;
+use surface::operators::SurfaceOperators;
 use work::Iterations;
 
 /// Operators of a contact, computed once.
@@ -49,6 +52,8 @@ pub enum Operators {
     Line(LineOperators),
     /// Patch.
     Patch(PatchOperators),
+    /// Profiles.
+    Surface(SurfaceOperators),
 }
 
 /// State of a contact: its fields, all that a step changes.
@@ -62,6 +67,8 @@ pub enum ContactState {
     Line(EngineState<LineFields>),
     /// Patch.
     Patch(EngineState<PatchFields>),
+    /// Profiles.
+    Surface(EngineState<SurfaceFields>),
 }
 
 /// Solvers and buffers of a step.
@@ -71,6 +78,8 @@ pub enum ContactWorkspace {
     Line(StepWorkspace<LineOperators>),
     /// Patch.
     Patch(StepWorkspace<PatchOperators>),
+    /// Profiles.
+    Surface(StepWorkspace<SurfaceOperators>),
 }
 
 /// Runs an expression with operators and state, and a workspace where one is given, of the same contact model. Those of different
@@ -80,6 +89,7 @@ macro_rules! with_model {
         match ($operators, $state) {
             (Operators::Line($o), ContactState::Line($s)) => Ok($body),
             (Operators::Patch($o), ContactState::Patch($s)) => Ok($body),
+            (Operators::Surface($o), ContactState::Surface($s)) => Ok($body),
             _ => Err(Error::OtherContactModel),
         }
     };
@@ -87,6 +97,7 @@ macro_rules! with_model {
         match ($operators, $workspace, $state) {
             (Operators::Line($o), ContactWorkspace::Line($w), ContactState::Line($s)) => $body,
             (Operators::Patch($o), ContactWorkspace::Patch($w), ContactState::Patch($s)) => $body,
+            (Operators::Surface($o), ContactWorkspace::Surface($w), ContactState::Surface($s)) => $body,
             _ => Err(Error::OtherContactModel),
         }
     };
@@ -101,6 +112,7 @@ impl Operators {
         Ok(match parameters.contact_model {
             ContactModel::Line => Operators::Line(LineOperators::new(parameters)?),
             ContactModel::Patch => Operators::Patch(PatchOperators::new(parameters)?),
+            ContactModel::Profiles => Operators::Surface(SurfaceOperators::new(parameters)?),
         })
     }
 
@@ -109,6 +121,7 @@ impl Operators {
         match self {
             Operators::Line(operators) => ContactWorkspace::Line(StepWorkspace::new(operators, settings)),
             Operators::Patch(operators) => ContactWorkspace::Patch(StepWorkspace::new(operators, settings)),
+            Operators::Surface(operators) => ContactWorkspace::Surface(StepWorkspace::new(operators, settings)),
         }
     }
 
@@ -139,6 +152,9 @@ impl Operators {
             }
             (Operators::Patch(operators), ContactWorkspace::Patch(workspace)) => {
                 initial(operators, task, workspace, ContactState::Patch)
+            }
+            (Operators::Surface(operators), ContactWorkspace::Surface(workspace)) => {
+                initial(operators, task, workspace, ContactState::Surface)
             }
             _ => Err(Error::OtherContactModel),
         }
@@ -215,6 +231,7 @@ impl Operators {
         match self {
             Operators::Line(operators) => operators.window_length(),
             Operators::Patch(operators) => operators.window_length(),
+            Operators::Surface(operators) => operators.window_length(),
         }
     }
 
@@ -225,7 +242,7 @@ impl Operators {
     pub fn line(&self) -> Result<&LineOperators> {
         match self {
             Operators::Line(operators) => Ok(operators),
-            Operators::Patch(_) => Err(Error::OtherContactModel),
+            _ => Err(Error::OtherContactModel),
         }
     }
 
@@ -237,7 +254,7 @@ impl Operators {
     pub fn patch(&self) -> Result<&PatchOperators> {
         match self {
             Operators::Patch(operators) => Ok(operators),
-            Operators::Line(_) => Err(Error::OtherContactModel),
+            _ => Err(Error::OtherContactModel),
         }
     }
 }
@@ -248,6 +265,7 @@ impl ContactWorkspace {
         match self {
             ContactWorkspace::Line(workspace) => LineOperators::iterations(&workspace.solvers),
             ContactWorkspace::Patch(workspace) => PatchOperators::iterations(&workspace.solvers),
+            ContactWorkspace::Surface(workspace) => SurfaceOperators::iterations(&workspace.solvers),
         }
     }
 
@@ -256,6 +274,7 @@ impl ContactWorkspace {
         match self {
             ContactWorkspace::Line(workspace) => workspace.renew_budget(),
             ContactWorkspace::Patch(workspace) => workspace.renew_budget(),
+            ContactWorkspace::Surface(workspace) => workspace.renew_budget(),
         }
     }
 
@@ -265,6 +284,7 @@ impl ContactWorkspace {
         match (self, state) {
             (ContactWorkspace::Line(workspace), ContactState::Line(state)) => workspace.commit(state, duration),
             (ContactWorkspace::Patch(workspace), ContactState::Patch(state)) => workspace.commit(state, duration),
+            (ContactWorkspace::Surface(workspace), ContactState::Surface(state)) => workspace.commit(state, duration),
             _ => {}
         }
     }
@@ -279,7 +299,7 @@ impl ContactState {
     pub fn line(&self) -> Result<&EngineState<LineFields>> {
         match self {
             ContactState::Line(state) => Ok(state),
-            ContactState::Patch(_) => Err(Error::OtherContactModel),
+            _ => Err(Error::OtherContactModel),
         }
     }
 
@@ -291,7 +311,7 @@ impl ContactState {
     pub fn patch(&self) -> Result<&EngineState<PatchFields>> {
         match self {
             ContactState::Patch(state) => Ok(state),
-            ContactState::Line(_) => Err(Error::OtherContactModel),
+            _ => Err(Error::OtherContactModel),
         }
     }
 
@@ -300,7 +320,7 @@ impl ContactState {
     pub fn line_mut(&mut self) -> &mut EngineState<LineFields> {
         match self {
             ContactState::Line(state) => state,
-            ContactState::Patch(_) => panic!("the state of a patch"),
+            _ => panic!("the state of another model"),
         }
     }
 }

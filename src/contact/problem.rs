@@ -18,6 +18,8 @@ pub struct StepConditions {
     pub duration: f64,
     /// Coupling of mechanics with heat and wear.
     pub coupling: Coupling,
+    /// Room for the windows of a contact of profiles, over what the contacts are expected to need.
+    pub room: f64,
 }
 
 /// Task of a step, whatever the contact model: the parameters, the limits of the methods, the conditions.

@@ -17,6 +17,9 @@ use crate::mechanics::normal_tangential::TractionChange;
 use crate::numerics::anderson::Anderson;
 use crate::settings::Settings;
 
+/// Factor on the room for contacts after one has outgrown its window.
+const MORE_ROOM: f64 = 1.6;
+
 /// Solvers and buffers of a step and of its derivatives. What a step leaves in them changes no result of another one.
 pub struct StepWorkspace<E: Engine> {
     pub(super) solvers: E::Solvers,
@@ -68,6 +71,27 @@ impl<E: Engine> StepWorkspace<E> {
 /// # Errors
 /// The first solver that did not converge, or [`Error::ContactLeavesWindow`].
 pub fn solve<E: Engine>(
+    problem: &Problem<E>,
+    state: &EngineState<E::Fields>,
+    last_duration: f64,
+    workspace: &mut StepWorkspace<E>,
+) -> Result<Convergence> {
+    with_room(problem, |problem| solve_in_room(problem, state, last_duration, workspace))
+}
+
+/// Tries a step with more and more room for the contacts, as long as one outgrows its window.
+fn with_room<E: Engine, T>(problem: &Problem<E>, mut attempt: impl FnMut(&Problem<E>) -> Result<T>) -> Result<T> {
+    let mut problem = *problem;
+    loop {
+        match attempt(&problem) {
+            Err(Error::ContactOutgrowsWindow) => problem.conditions.room *= MORE_ROOM,
+            other => return other,
+        }
+    }
+}
+
+/// Solves the step in windows that leave as much room as the conditions say.
+fn solve_in_room<E: Engine>(
     problem: &Problem<E>,
     state: &EngineState<E::Fields>,
     last_duration: f64,
@@ -185,6 +209,15 @@ pub fn solve_staggered<E: Engine>(
     state: &EngineState<E::Fields>,
     workspace: &mut StepWorkspace<E>,
 ) -> Result<Convergence> {
+    with_room(problem, |problem| solve_staggered_in_room(problem, state, workspace))
+}
+
+/// Takes the step staggered in windows that leave as much room as the conditions say.
+fn solve_staggered_in_room<E: Engine>(
+    problem: &Problem<E>,
+    state: &EngineState<E::Fields>,
+    workspace: &mut StepWorkspace<E>,
+) -> Result<Convergence> {
     let settings = E::split_settings(problem.settings);
     let before = &state.fields;
     let StepWorkspace {
@@ -255,6 +288,14 @@ fn finish<E: Engine>(
 /// # Errors
 /// The first solver that did not converge, or [`Error::ContactLeavesWindow`].
 pub fn initial_state<E: Engine>(
+    problem: &Problem<E>,
+    workspace: &mut StepWorkspace<E>,
+) -> Result<(EngineState<E::Fields>, Convergence)> {
+    with_room(problem, |problem| initial_state_in_room(problem, workspace))
+}
+
+/// Solves the mechanics alone in windows that leave as much room as the conditions say.
+fn initial_state_in_room<E: Engine>(
     problem: &Problem<E>,
     workspace: &mut StepWorkspace<E>,
 ) -> Result<(EngineState<E::Fields>, Convergence)> {

@@ -85,6 +85,23 @@ impl Memory {
         ]
     }
 
+    /// The vectors to change, in the same order.
+    pub fn vectors_mut(&mut self) -> [&mut Vec<f64>; 10] {
+        let (now, before) = (&mut self.now, &mut self.before);
+        [
+            &mut now.friction,
+            &mut now.speed,
+            &mut now.static_friction,
+            &mut now.flow,
+            &mut before.friction,
+            &mut before.speed,
+            &mut before.static_friction,
+            &mut before.flow,
+            &mut self.share,
+            &mut self.layer_bound,
+        ]
+    }
+
     /// Overwrites it with another of the same size, without allocating.
     pub fn copy_from(&mut self, other: &Memory) {
         self.remembers = other.remembers;

@@ -1,7 +1,9 @@
 //! Undeformed surfaces of wheel and rail: the [`gap`] between them, [`hertz`], the contact of bodies whose gap is quadratic, and the
-//! [`profile`] of a wheel or rail as it is.
+//! [`profile`] of a wheel or rail as it is. [`rail`] places a rail in the track, [`unrolled`] a wheel over its surface.
 
 pub mod gap;
 pub mod hertz;
 pub mod profile;
 mod quintics;
+pub mod rail;
+pub mod unrolled;

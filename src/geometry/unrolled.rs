@@ -77,7 +77,7 @@ pub struct PlacedWheel<'a> {
 }
 
 /// Point of the wheel's surface over a point of the rail.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Distance {
     /// Undeformed distance h along the rail's normal, `m`; negative where the bodies overlap.
     pub distance: f64,

@@ -87,7 +87,7 @@ impl Parameters {
     pub fn contact_half_axes(&self, load: f64) -> (f64, f64) {
         match self.contact_model {
             ContactModel::Line => (self.hertz_half_length(load), 0.5 * self.contact_width),
-            ContactModel::Patch => {
+            ContactModel::Patch | ContactModel::Profiles => {
                 let ellipse = self.hertz_ellipse(load);
                 (ellipse.along, ellipse.across)
             }

@@ -43,7 +43,7 @@ impl Parameters {
                     );
                 }
             }
-            ContactModel::Patch => self.validate_patch()?,
+            ContactModel::Patch | ContactModel::Profiles => self.validate_patch()?,
         }
         self.validate_sizes()
     }

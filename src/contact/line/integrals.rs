@@ -1,5 +1,6 @@
 //! Integrals over a line contact, its extent, and the profiles' values that the outputs are made of.
 
+use crate::contact::surface::totals::OnWheelset;
 use super::fields::LineFields;
 use super::mechanics::LineProblem;
 use super::operators::LineOperators;
@@ -34,6 +35,7 @@ pub fn integrals(problem: &LineProblem, fields: &LineFields) -> Integrals {
             LineOperators::heated_nodes(problem, fields, fields),
         ),
         wheel_temperature: fields.wheel_temperature,
+        on_wheelset: OnWheelset::default(),
     }
 }
 

@@ -1,5 +1,6 @@
 //! The patch as an [`Engine`].
 
+use super::begin;
 use super::fields::PatchFields;
 use super::heat_and_wear;
 use super::integrals;
@@ -112,31 +113,11 @@ impl Engine for PatchOperators {
         now: &mut PatchFields,
         solvers: &mut PatchSolvers,
     ) -> Result<()> {
-        for component in 0..2 {
-            match before {
-                Some(before) => solvers.before[component].copy_from_slice(&before.displacement[component]),
-                None => solvers.before[component].fill(0.0),
-            }
-        }
         if let Some(before) = before {
-            memory::begin(problem, before, now);
             now.relaxation_length = Self::relaxation_length(problem, before);
         }
         solvers.undeformed.set_slip(problem, &problem.conditions.motion);
-        solvers.normal.start_step();
-        solvers.friction.start_step();
-        solvers.wear_compliance.fill(0.0);
-        let grid = &problem.operators.grid;
-        solvers.contact.list(grid, |place| now.pressure[place] > 0.0);
-        let strips = solvers.contact.window(grid, 0).strips.len();
-        let weights = problem.slip_weights(problem.transient(now.relaxation_length));
-        mechanics::respond(problem, weights, strips, solvers);
-        if let Some(before) = before {
-            let rise = problem.incoming_rise();
-            let march = problem.heat_march();
-            march.start(&before.heat, rise, &mut now.heat, &mut solvers.heat)?;
-        }
-        Ok(())
+        begin::begin(problem, before, now, solvers)
     }
 
     /// Takes off the first guess the pressure of cells that were not under pressure before.

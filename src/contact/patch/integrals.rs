@@ -1,5 +1,6 @@
 //! Integrals over a patch, its extent, and the profiles' values that the outputs are made of.
 
+use crate::contact::surface::totals::OnWheelset;
 use super::extent::extent;
 use super::fields::PatchFields;
 use super::operators::PatchOperators;
@@ -37,6 +38,7 @@ pub fn integrals(problem: &PatchProblem, fields: &PatchFields) -> Integrals {
             PatchOperators::heated_nodes(problem, fields, fields),
         ),
         wheel_temperature: fields.wheel_temperature,
+        on_wheelset: OnWheelset::default(),
     }
 }
 

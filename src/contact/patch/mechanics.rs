@@ -14,6 +14,7 @@ use crate::error::Result;
 use crate::friction::coulomb;
 use crate::friction::path::Passed;
 use crate::mechanics::kinematics::SlipWeights;
+use crate::mechanics::normal::normal_problem::Constraint;
 use crate::mechanics::normal_tangential::TractionChange;
 use crate::mechanics::patch::contact::Contact;
 use crate::mechanics::patch::friction::{FrictionProblem, PathOfCells};
@@ -44,7 +45,19 @@ pub fn solve(
         lift_off(problem, interface, fields, solvers);
         return Ok(TractionChange::NONE);
     }
-    let set_changed = solve_normal(problem, interface, fields, solvers, tolerance)?;
+    let set_changed = solve_normal(problem, problem.constraint(), interface, fields, solvers, tolerance)?;
+    follow(problem, interface, fields, solvers, set_changed, tolerance)
+}
+
+/// Friction for the pressure that has been solved, with another set of cells under it than before or not.
+pub fn follow(
+    problem: &PatchProblem,
+    interface: &Interface,
+    fields: &mut PatchFields,
+    solvers: &mut PatchSolvers,
+    set_changed: bool,
+    tolerance: f64,
+) -> Result<TractionChange> {
     if set_changed {
         solvers.friction.start_contact();
     }
@@ -70,7 +83,7 @@ pub fn solve(
 
 /// Clears the tractions where there is no contact. The displacement that does not come from shear is computed all the same: the one
 /// that is left from the contact before would act on the next one.
-fn lift_off(problem: &PatchProblem, interface: &Interface, fields: &mut PatchFields, solvers: &mut PatchSolvers) {
+pub fn lift_off(problem: &PatchProblem, interface: &Interface, fields: &mut PatchFields, solvers: &mut PatchSolvers) {
     fields.pressure.fill(0.0);
     fields.friction.fill(0.0);
     for vectors in [&mut fields.shear, &mut fields.slip] {
@@ -83,8 +96,9 @@ fn lift_off(problem: &PatchProblem, interface: &Interface, fields: &mut PatchFie
 }
 
 /// (37). Returns whether other cells are under pressure than before.
-fn solve_normal(
+pub fn solve_normal(
     problem: &PatchProblem,
+    constraint: Constraint,
     interface: &Interface,
     fields: &mut PatchFields,
     solvers: &mut PatchSolvers,
@@ -107,7 +121,7 @@ fn solve_normal(
             normal_influence: &operators.normal_influence,
             gap: &solvers.gap,
             wear_compliance: &solvers.wear_compliance,
-            constraint: problem.constraint(),
+            constraint,
             tolerance: tolerance.max(problem.settings.patch.least_tolerance),
         },
         &mut solvers.contact,

@@ -3,24 +3,25 @@
 //! [`operators`] are what is computed once, by the influence functions in [`kernels`] and the [`expansion`] by heat. [`fields`] are what a step changes, [`solvers`] its
 //! solvers and buffers, [`problem`] has the parts of its equations, [`undeformed`] gap and rigid slip. The parts of a step are [`mechanics`], pressure and then friction
 //! with the [`response`] of the slip to it and what the cells' particles bring along ([`memory`]), and [`heat_and_wear`]; their
-//! derivatives are [`tangent`], at the point of [`linearisation`], and [`march_tangent`]. [`engine`] puts them together. [`integrals`], with the [`extent`] of the
+//! derivatives are [`tangent`], at the point of [`linearisation`], and [`march_tangent`]. [`begin`] begins a step, [`engine`] puts them together. [`integrals`], with the [`extent`] of the
 //! contact, and [`profiles`] are read off the fields.
 
-mod engine;
+pub(super) mod begin;
+pub(super) mod engine;
 mod expansion;
-mod extent;
+pub(super) mod extent;
 pub mod fields;
-mod heat_and_wear;
-mod integrals;
+pub(super) mod heat_and_wear;
+pub(super) mod integrals;
 mod kernels;
-mod linearisation;
-mod march_tangent;
-mod mechanics;
+pub(super) mod linearisation;
+pub(super) mod march_tangent;
+pub(super) mod mechanics;
 mod memory;
 pub mod operators;
-mod problem;
-mod profiles;
+pub(super) mod problem;
+pub(super) mod profiles;
 mod response;
 pub mod solvers;
 pub mod tangent;
-mod undeformed;
+pub(super) mod undeformed;

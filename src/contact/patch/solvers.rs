@@ -17,43 +17,43 @@ use crate::wear::strips::StripWearSteps;
 
 /// Solvers and buffers of a step.
 pub struct PatchSolvers {
-    pub(super) contact: Contact,
-    pub(super) contact_before: Contact,
-    pub(super) normal: Normal,
-    pub(super) friction: Friction,
-    pub(super) response: SlipResponse,
+    pub(in crate::contact) contact: Contact,
+    pub(in crate::contact) contact_before: Contact,
+    pub(in crate::contact) normal: Normal,
+    pub(in crate::contact) friction: Friction,
+    pub(in crate::contact) response: SlipResponse,
     /// StepConditions that the response is adapted to: the weights, whether V ≥ 0, the strips that its transform serves.
-    pub(super) weights: Option<(SlipWeights, bool, usize)>,
+    pub(in crate::contact) weights: Option<(SlipWeights, bool, usize)>,
     /// Strips that the transform of the response serves.
-    pub(super) strips: usize,
-    pub(super) products: influence::ProductScratch<f64>,
-    pub(super) exchange: Vec<SurfaceExchange>,
-    pub(super) heat: StripHeatScratch,
-    pub(super) wear_rate: Vec<f64>,
-    pub(super) wear_steps: StripWearSteps,
+    pub(in crate::contact) strips: usize,
+    pub(in crate::contact) products: influence::ProductScratch<f64>,
+    pub(in crate::contact) exchange: Vec<SurfaceExchange>,
+    pub(in crate::contact) heat: StripHeatScratch,
+    pub(in crate::contact) wear_rate: Vec<f64>,
+    pub(in crate::contact) wear_steps: StripWearSteps,
     /// Gap and rigid slip of the undeformed bodies in this step.
-    pub(super) undeformed: Undeformed,
+    pub(in crate::contact) undeformed: Undeformed,
     /// Gap at no penetration with heat and wear, on the grid, scaled.
-    pub(super) gap: Vec<f64>,
+    pub(in crate::contact) gap: Vec<f64>,
     /// Wear depth of the step per pressure, on the grid, scaled.
-    pub(super) wear_compliance: Vec<f64>,
+    pub(in crate::contact) wear_compliance: Vec<f64>,
     /// Displacement by shear, on the grid, scaled: upward in the first component, or along x and y.
-    pub(super) shear_displacement: [Vec<f64>; 2],
+    pub(in crate::contact) shear_displacement: [Vec<f64>; 2],
     /// Displacement u that does not come from shear, on the grid, scaled.
-    pub(super) given: [Vec<f64>; 2],
+    pub(in crate::contact) given: [Vec<f64>; 2],
     /// Displacement u before the step, on the grid, scaled.
-    pub(super) before: [Vec<f64>; 2],
+    pub(in crate::contact) before: [Vec<f64>; 2],
     /// Slip ahead of the cells without the response to shear, on the grid, `m/s`.
-    pub(super) free_slip: [Vec<f64>; 2],
-    pub(super) expansion: expansion::ExpansionBuffers,
-    pub(super) nothing: Vec<f64>,
-    pub(super) shear_before: [Vec<f64>; 2],
+    pub(in crate::contact) free_slip: [Vec<f64>; 2],
+    pub(in crate::contact) expansion: expansion::ExpansionBuffers,
+    pub(in crate::contact) nothing: Vec<f64>,
+    pub(in crate::contact) shear_before: [Vec<f64>; 2],
     /// Coulomb's bound μp of the cells under pressure, scaled.
-    pub(super) bound: Vec<f64>,
+    pub(in crate::contact) bound: Vec<f64>,
     /// Slip per shear that the leading edge adds to the cells under pressure, along x and y, `m/s`.
-    pub(super) edge: Vec<[f64; 2]>,
+    pub(in crate::contact) edge: Vec<[f64; 2]>,
     /// Friction law of the cells under pressure where friction depends on slip.
-    pub(super) path: PathScratch,
+    pub(in crate::contact) path: PathScratch,
 }
 
 /// Friction of the cells under pressure, where it depends on slip.

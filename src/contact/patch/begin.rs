@@ -1,0 +1,43 @@
+//! Beginning of a step of one window of cells, for the gap and the rigid slip of the undeformed bodies that its solvers hold.
+
+use super::fields::PatchFields;
+use super::mechanics;
+use super::problem::PatchProblem;
+use super::solvers::PatchSolvers;
+use crate::contact::memory;
+use crate::error::Result;
+
+/// Begins a step from the fields before it; without any the mechanics stand alone. The relaxation length is that of the fields.
+///
+/// # Errors
+/// Heat that cannot be carried along.
+pub fn begin(
+    problem: &PatchProblem,
+    before: Option<&PatchFields>,
+    now: &mut PatchFields,
+    solvers: &mut PatchSolvers,
+) -> Result<()> {
+    for component in 0..2 {
+        match before {
+            Some(before) => solvers.before[component].copy_from_slice(&before.displacement[component]),
+            None => solvers.before[component].fill(0.0),
+        }
+    }
+    if let Some(before) = before {
+        memory::begin(problem, before, now);
+    }
+    solvers.normal.start_step();
+    solvers.friction.start_step();
+    solvers.wear_compliance.fill(0.0);
+    let grid = &problem.operators.grid;
+    solvers.contact.list(grid, |place| now.pressure[place] > 0.0);
+    let strips = solvers.contact.window(grid, 0).strips.len();
+    let weights = problem.slip_weights(problem.transient(now.relaxation_length));
+    mechanics::respond(problem, weights, strips, solvers);
+    if let Some(before) = before {
+        let rise = problem.incoming_rise();
+        let march = problem.heat_march();
+        march.start(&before.heat, rise, &mut now.heat, &mut solvers.heat)?;
+    }
+    Ok(())
+}

@@ -1,0 +1,371 @@
+//! The contact of profiles as an [`Engine`]: the patch's parts of a step in each window.
+
+use super::fields::SurfaceFields;
+use super::mechanics::{self, SurfaceProblem};
+use super::operators::SurfaceOperators;
+use super::placement;
+use super::solvers::SurfaceSolvers;
+use super::tangent::SurfaceTangent;
+use super::totals;
+use super::windows::WINDOWS;
+use crate::contact::engine::{Along, Direction, Engine, Linearised};
+use crate::contact::fields::EngineState;
+use crate::contact::integrals::Integrals;
+use crate::contact::interface::Interface;
+use crate::contact::memory;
+use crate::contact::patch::extent::extent;
+use crate::contact::patch::operators::{PatchOperators, relaxation_length};
+use crate::contact::patch::{begin, heat_and_wear};
+use crate::contact::patch;
+use crate::contact::profiles::{ContactNode, Profiles};
+use crate::contact::rim::HeatedNode;
+use crate::contact::work::Iterations;
+use crate::error::Result;
+use crate::mechanics::normal_tangential::TractionChange;
+use crate::parameters::Parameters;
+use crate::settings::{SensitivitySettings, Settings, SplitSettings};
+
+/// Fields before the step at the places of its windows.
+fn at_places<'a>(moved: bool, carried: &'a SurfaceFields, before: &'a SurfaceFields) -> &'a SurfaceFields {
+    if moved { carried } else { before }
+}
+
+impl Engine for SurfaceOperators {
+    type Fields = SurfaceFields;
+    type Solvers = SurfaceSolvers;
+    type Tangent = SurfaceTangent;
+
+    fn new(parameters: &Parameters) -> Result<SurfaceOperators> {
+        SurfaceOperators::build(parameters)
+    }
+
+    fn fields(&self) -> SurfaceFields {
+        SurfaceFields::new(self)
+    }
+
+    fn solvers(&self, settings: &Settings) -> SurfaceSolvers {
+        SurfaceSolvers::new(self, settings)
+    }
+
+    fn tangent(&self, settings: &Settings) -> SurfaceTangent {
+        SurfaceTangent::new(self, settings)
+    }
+
+    fn interface(&self) -> Interface {
+        let grid = &self.sizes.largest;
+        Interface::new(WINDOWS * grid.strips * grid.cells, 1)
+    }
+
+    fn split_settings(settings: &Settings) -> SplitSettings {
+        settings.patch_split()
+    }
+
+    fn sensitivity_settings(settings: &Settings) -> SensitivitySettings {
+        settings.patch_sensitivity()
+    }
+
+    fn window_length(&self) -> f64 {
+        self.shapes[0].window_length()
+    }
+
+    fn spacing(&self) -> f64 {
+        self.shapes[0].spacing()
+    }
+
+    fn displacement_scale(&self) -> f64 {
+        self.shapes[0].displacement_scale()
+    }
+
+    fn pressure_scale(&self) -> f64 {
+        self.shapes[0].pressure_scale()
+    }
+
+    /// Force on a cell of the largest window: nodes of other windows count by their area.
+    fn unit_force(&self, parameters: &Parameters) -> f64 {
+        Engine::unit_force(&self.shapes[0], parameters)
+    }
+
+    fn diagonal_displacement(&self, parameters: &Parameters) -> f64 {
+        self.shapes[0].diagonal_displacement(parameters)
+    }
+
+    fn relaxation_length(problem: &SurfaceProblem, _fields: &SurfaceFields) -> f64 {
+        problem.operators.shapes[0].relaxation_length
+    }
+
+    fn touches(fields: &SurfaceFields) -> bool {
+        fields
+            .used()
+            .any(|(window, _)| fields.windows[window].pressure.iter().any(|&pressure| pressure > 0.0))
+    }
+
+    fn carried_load(_problem: &SurfaceProblem, fields: &SurfaceFields) -> f64 {
+        fields.load
+    }
+
+    fn wheel_temperature(fields: &SurfaceFields) -> f64 {
+        fields.wheel_temperature
+    }
+
+    fn set_wheel_temperature(fields: &mut SurfaceFields, temperature: f64) {
+        fields.wheel_temperature = temperature;
+        for window in &mut fields.windows {
+            window.wheel_temperature = temperature;
+        }
+    }
+
+    fn begin(
+        problem: &SurfaceProblem,
+        before: Option<&SurfaceFields>,
+        now: &mut SurfaceFields,
+        solvers: &mut SurfaceSolvers,
+    ) -> Result<()> {
+        placement::place(problem, before, now, solvers)?;
+        let SurfaceSolvers {
+            windows,
+            before: carried,
+            moved,
+            ..
+        } = solvers;
+        let before = before.map(|before| at_places(*moved, carried, before));
+        for (window, place) in now.used() {
+            let (patch, own) = (problem.of(&place), &mut now.windows[window]);
+            let extent = extent(patch.operators, &own.pressure);
+            own.relaxation_length = if extent.length > 0.0 && extent.breadth > 0.0 {
+                let half_axes = (0.5 * extent.length, 0.5 * extent.breadth);
+                relaxation_length(&problem.operators.pair, problem.parameters.layer_compliance, half_axes)
+            } else {
+                patch.operators.relaxation_length
+            };
+            let before = before.map(|before| &before.windows[window]);
+            begin::begin(&patch, before, own, &mut windows[window].patch)?;
+        }
+        Ok(())
+    }
+
+    fn extrapolate(
+        state: &EngineState<SurfaceFields>,
+        ahead: f64,
+        now: &mut SurfaceFields,
+        solvers: &mut SurfaceSolvers,
+    ) {
+        if !solvers.moved {
+            state.extrapolate(ahead, now);
+        }
+    }
+
+    fn limit_guess(before: &SurfaceFields, now: &mut SurfaceFields) {
+        if now.places == before.places {
+            for (window, _) in now.used() {
+                PatchOperators::limit_guess(&before.windows[window], &mut now.windows[window]);
+            }
+        }
+    }
+
+    fn read(
+        problem: &SurfaceProblem,
+        fields: &SurfaceFields,
+        solvers: &mut SurfaceSolvers,
+        interface: &mut Interface,
+    ) {
+        interface.values_mut().fill(0.0);
+        interface.parts().set_temperatures(&[], fields.wheel_temperature);
+        for (window, place) in fields.used() {
+            let own = &mut solvers.windows[window];
+            heat_and_wear::read(&problem.of(&place), &fields.windows[window], &mut own.patch, &mut own.interface);
+            own.interface.put_window(interface, window);
+        }
+    }
+
+    fn solve_mechanics(
+        problem: &SurfaceProblem,
+        interface: &Interface,
+        now: &mut SurfaceFields,
+        solvers: &mut SurfaceSolvers,
+        tolerance: f64,
+    ) -> Result<TractionChange> {
+        mechanics::solve(problem, interface, now, solvers, tolerance)
+    }
+
+    fn mechanics_work(solvers: &SurfaceSolvers) -> u64 {
+        solvers
+            .windows
+            .iter()
+            .map(|own| PatchOperators::mechanics_work(&own.patch))
+            .sum()
+    }
+
+    fn iterations(solvers: &SurfaceSolvers) -> Iterations {
+        let mut sum = Iterations::default();
+        for own in &solvers.windows {
+            let iterations = PatchOperators::iterations(&own.patch);
+            sum.newton += iterations.newton;
+            sum.krylov += iterations.krylov;
+            sum.factorisations += iterations.factorisations;
+            sum.gradients += iterations.gradients;
+        }
+        sum
+    }
+
+    fn sweep_work(&self) -> u64 {
+        self.shapes[0].sweep_work()
+    }
+
+    fn set_surface_temperature(&self, interface: &Interface, now: &mut SurfaceFields) {
+        let mut rises = interface.temperatures();
+        for window in &mut now.windows {
+            for (temperature, rise) in window.heat.surface.iter_mut().zip(&mut rises) {
+                *temperature = rise;
+            }
+        }
+    }
+
+    fn march_wear(
+        problem: &SurfaceProblem,
+        before: &SurfaceFields,
+        now: &mut SurfaceFields,
+        solvers: &mut SurfaceSolvers,
+    ) {
+        let before = at_places(solvers.moved, &solvers.before, before);
+        for (window, place) in now.used() {
+            let own = &mut solvers.windows[window].patch;
+            heat_and_wear::march_wear(&problem.of(&place), &before.windows[window], &mut now.windows[window], own);
+        }
+    }
+
+    fn march_heat(
+        problem: &SurfaceProblem,
+        _before: &SurfaceFields,
+        wheel_rise: f64,
+        now: &mut SurfaceFields,
+        solvers: &mut SurfaceSolvers,
+    ) -> Result<()> {
+        for (window, place) in now.used() {
+            let own = &mut solvers.windows[window].patch;
+            heat_and_wear::march_heat(&problem.of(&place), wheel_rise, &mut now.windows[window], own)?;
+        }
+        Ok(())
+    }
+
+    fn update_wear_compliance(problem: &SurfaceProblem, now: &SurfaceFields, solvers: &mut SurfaceSolvers) {
+        for (window, place) in now.used() {
+            let own = &mut solvers.windows[window].patch;
+            heat_and_wear::update_wear_compliance(&problem.of(&place), &now.windows[window], own);
+        }
+    }
+
+    fn end_memory(problem: &SurfaceProblem, now: &mut SurfaceFields) {
+        for (window, place) in now.used() {
+            memory::end(&problem.of(&place), &mut now.windows[window]);
+        }
+    }
+
+    fn finalise_friction(problem: &SurfaceProblem, now: &mut SurfaceFields, solvers: &SurfaceSolvers) {
+        for (window, place) in now.used() {
+            let contact = &solvers.windows[window].patch.contact;
+            heat_and_wear::finalise_friction(&problem.of(&place), &mut now.windows[window], contact);
+        }
+    }
+
+    fn finalise_displacement(
+        problem: &SurfaceProblem,
+        _interface: &Interface,
+        now: &mut SurfaceFields,
+        solvers: &mut SurfaceSolvers,
+    ) {
+        for (window, place) in now.used() {
+            let own = &mut solvers.windows[window].patch;
+            patch::mechanics::finalise_displacement(&problem.of(&place), &mut now.windows[window], own);
+        }
+    }
+
+    fn finalise(
+        problem: &SurfaceProblem,
+        before: &SurfaceFields,
+        now: &mut SurfaceFields,
+        solvers: &mut SurfaceSolvers,
+    ) -> Result<()> {
+        let before = at_places(solvers.moved, &solvers.before, before);
+        for (window, place) in now.used() {
+            let own = &mut solvers.windows[window].patch;
+            PatchOperators::finalise(&problem.of(&place), &before.windows[window], &mut now.windows[window], own)?;
+        }
+        Ok(())
+    }
+
+    fn is_cut_off(problem: &SurfaceProblem, now: &SurfaceFields, solvers: &SurfaceSolvers) -> bool {
+        now.used().any(|(window, place)| {
+            let own = &solvers.windows[window].patch;
+            PatchOperators::is_cut_off(&problem.of(&place), &now.windows[window], own)
+        })
+    }
+
+    fn heated_nodes<'f>(
+        problem: &'f SurfaceProblem,
+        fields: &'f SurfaceFields,
+        values: &'f SurfaceFields,
+    ) -> impl Iterator<Item = HeatedNode> + 'f {
+        let operators = problem.operators;
+        fields.used().flat_map(move |(window, place)| {
+            let grid = &operators.of(&place).grid;
+            // Tractions count by the area of their cells.
+            let area = grid.cell_area() / operators.sizes.largest.cell_area();
+            let (fields, values) = (&fields.windows[window], &values.windows[window]);
+            (0..grid.strips).flat_map(move |strip| {
+                let heated = grid
+                    .row(strip)
+                    .enumerate()
+                    .filter(|(_, place)| fields.pressure[*place] > 0.0);
+                heated.map(move |(cell, place)| HeatedNode {
+                    pressure: area * values.pressure[place],
+                    shear: [area * values.shear[0][place], area * values.shear[1][place]],
+                    slip: [values.slip[0][place], values.slip[1][place]],
+                    rise: values.heat.surface[strip * grid.cells + cell],
+                })
+            })
+        })
+    }
+
+    fn begin_linearisation(_problem: &SurfaceProblem, _fields: &SurfaceFields, _solvers: &mut SurfaceSolvers) {}
+
+    fn linearise(
+        _problem: &SurfaceProblem,
+        _interface: &Interface,
+        _fields: &mut SurfaceFields,
+        _solvers: &mut SurfaceSolvers,
+        _tangent: &mut SurfaceTangent,
+    ) -> Result<()> {
+        Err(crate::error::Error::OtherContactModel)
+    }
+
+    fn begin_direction(
+        _problem: &SurfaceProblem,
+        _fields: &SurfaceFields,
+        _direction: &Direction,
+        _change: &mut SurfaceFields,
+        _tangent: &mut SurfaceTangent,
+    ) {
+    }
+
+    fn mechanics_tangent(_at: &mut Linearised<Self>, _along: &Along, _change: &mut SurfaceFields) -> Result<()> {
+        Ok(())
+    }
+
+    fn march_tangent(_at: &mut Linearised<Self>, _along: &Along, _change: &mut SurfaceFields) -> Result<()> {
+        Ok(())
+    }
+
+    fn finalise_tangent(_at: &mut Linearised<Self>, _direction: &Direction, _change: &mut SurfaceFields) {}
+
+    fn integrals(problem: &SurfaceProblem, fields: &SurfaceFields) -> Integrals {
+        totals::integrals(problem, fields)
+    }
+
+    fn profiles(problem: &SurfaceProblem, _fields: &SurfaceFields) -> Profiles {
+        Profiles::untouched(problem.conditions.inputs.ambient_temperature)
+    }
+
+    fn contact_nodes(&self, fields: &SurfaceFields) -> Vec<ContactNode> {
+        totals::contact_nodes(self, fields)
+    }
+}

@@ -1,0 +1,19 @@
+//! The contact of profiles: one problem on the unrolled surface of the rail, with a window about each contact.
+//!
+//! [`operators`] are wheel and rail in their shapes and the operators of a patch for each size of a [`windows`]' cells; [`search`] finds
+//! where they overlap. In each window the fields, the mechanics, heat and wear are those of a patch.
+
+mod engine;
+pub mod fields;
+mod geometry;
+mod mechanics;
+pub mod operators;
+mod placement;
+mod search;
+pub mod tangent;
+pub mod solvers;
+#[cfg(test)]
+mod tests;
+pub mod totals;
+mod transfer;
+mod windows;

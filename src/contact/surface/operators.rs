@@ -1,0 +1,95 @@
+//! Operators of a contact of profiles: wheel and rail in their shapes, and those of a patch for each size of a window.
+
+use super::windows::{BREADTHS, LENGTHS, Place, Sizes};
+use crate::body::grid::Grid;
+use crate::body::half_space::HalfSpaces;
+use crate::contact::patch::operators::PatchOperators;
+use crate::error::{Error, ProfileError, Result};
+use crate::geometry::profile::{Body, Profile};
+use crate::geometry::rail::PlacedRail;
+use crate::geometry::unrolled::{RailPoint, Wheel};
+use crate::parameters::Parameters;
+
+/// Distance of the points of the rail's profile at which contacts are sought, `m`: less than the breadth of the smallest that carries
+/// an appreciable load.
+const SCAN_STEP: f64 = 0.5e-3;
+/// Length of the longest window over that of a patch's: contacts on the flange are several times as long as broad.
+const LONGEST: f64 = 2.0;
+/// Breadth of the broadest window over that of a patch's: contacts in the gauge corner are several times as broad as long.
+const BROADEST: f64 = 4.0;
+
+/// Wheel, rail, and the operators of a window for each of its sizes.
+pub struct SurfaceOperators {
+    /// The rail.
+    pub rail: PlacedRail,
+    /// The wheel.
+    pub wheel: Wheel,
+    /// 1 on the left side of the track, −1 on the right, whose mirror image is solved.
+    pub side: f64,
+    /// Places at which contacts are sought: arc length and surface, from the field side to the gauge side.
+    pub scan: Vec<(f64, RailPoint)>,
+    /// Sizes of the windows.
+    pub sizes: Sizes,
+    /// Operators by the number of the shape.
+    pub shapes: Vec<PatchOperators>,
+    /// The bodies as half-spaces.
+    pub pair: HalfSpaces,
+}
+
+impl SurfaceOperators {
+    /// Reads the profiles and computes the operators of all windows.
+    ///
+    /// # Errors
+    /// A profile that does not serve, [`crate::error::Error::DepthBasis`].
+    pub fn build(parameters: &Parameters) -> Result<SurfaceOperators> {
+        let (rail, wheel) = bodies(parameters).map_err(Error::Profile)?;
+        let own = &parameters.profiles;
+        let (half_length, half_breadth) = parameters.patch_window();
+        let sizes = Sizes {
+            largest: Grid::new(
+                parameters.patch_nodes,
+                parameters.patch_strips,
+                LONGEST * half_length,
+                BROADEST * half_breadth,
+            ),
+        };
+        let [first, last] = rail.range();
+        let points = ((last - first) / SCAN_STEP) as usize;
+        let scan = (0..=points).map(|point| {
+            let arc = last - point as f64 * SCAN_STEP;
+            (arc, rail.at(arc))
+        });
+        let shapes = (0..LENGTHS).flat_map(|length| (0..BREADTHS).map(move |breadth| (length, breadth)));
+        Ok(SurfaceOperators {
+            scan: scan.collect(),
+            rail,
+            wheel,
+            side: if own.right { -1.0 } else { 1.0 },
+            shapes: shapes
+                .map(|(length, breadth)| PatchOperators::on_grid(parameters, sizes.grid(length, breadth)))
+                .collect::<Result<_>>()?,
+            sizes,
+            pair: HalfSpaces::of_pair(parameters),
+        })
+    }
+
+    /// Operators of a window.
+    pub fn of(&self, place: &Place) -> &PatchOperators {
+        &self.shapes[place.shape()]
+    }
+}
+
+/// Rail and wheel in their shapes.
+fn bodies(parameters: &Parameters) -> std::result::Result<(PlacedRail, Wheel), ProfileError> {
+    let own = &parameters.profiles;
+    let rail = Profile::built_in(&own.rail_profile)?;
+    let wheel = Profile::built_in(&own.wheel_profile)?;
+    wheel.require(Body::Wheel)?;
+    let wheel = Wheel {
+        profile: wheel.height_function()?,
+        radius: parameters.wheel_radius,
+        offset: 0.5 * own.flange_back_distance + own.flange_back_position,
+    };
+    let rail = PlacedRail::new(rail.inclined(own.rail_inclination.atan())?, own.gauge, own.gauge_depth)?;
+    Ok((rail, wheel))
+}

@@ -1,0 +1,199 @@
+//! Placement of the windows at the beginning of a step: about the regions in which wheel and rail overlap.
+
+use super::fields::SurfaceFields;
+use super::geometry::Pose;
+use super::mechanics::SurfaceProblem;
+use super::search::Overlap;
+use super::solvers::SurfaceSolvers;
+use super::windows::{Region, WINDOWS};
+use crate::contact::fields::Fields;
+use crate::error::Result;
+use crate::geometry::unrolled::PlacedWheel;
+
+/// Approach for which windows are placed over that which is expected.
+const AHEAD: f64 = 1.08;
+/// Distance of two regions, in parts of their mean breadth, below which they share a window.
+const NEAR: f64 = 0.5;
+/// Strips that the smaller of two regions must have left in a window of both.
+const LEAST_STRIPS: f64 = 5.0;
+
+/// Region for a window, with the depth of the overlap.
+#[derive(Debug, Clone, Copy, Default)]
+struct Wanted {
+    region: Region,
+    depth: f64,
+}
+
+/// Places the windows for the pose of the step, carries the fields before over to them, and sets what their cells see of wheel and rail.
+///
+/// # Errors
+/// A wheel that is not over the rail.
+pub fn place(
+    problem: &SurfaceProblem,
+    before: Option<&SurfaceFields>,
+    now: &mut SurfaceFields,
+    solvers: &mut SurfaceSolvers,
+) -> Result<()> {
+    let operators = problem.operators;
+    let pose = Pose::new(operators, &problem.conditions.inputs, problem.parameters.wheel_radius);
+    let guess = if now.touch > 0.0 { now.touch } else { problem.parameters.wheel_radius };
+    now.touch = solvers.search.touch(operators, &pose.position, guess);
+    let approach = expected_approach(problem, before, now.touch - pose.position.height, solvers);
+    solvers.reference = approach;
+    now.approach[0] = approach;
+    let wanted = if approach > 0.0 {
+        wanted(operators.sizes.largest.strips, solvers.search.overlaps(approach * AHEAD * problem.conditions.room))
+    } else {
+        ([Wanted::default(); WINDOWS], 0)
+    };
+    let own = assign(problem, &wanted.0[..wanted.1], now);
+    solvers.moved = before.is_some_and(|before| before.places != now.places);
+    if let Some(before) = before
+        && solvers.moved
+    {
+        let SurfaceSolvers {
+            before: carried,
+            transfer,
+            ..
+        } = &mut *solvers;
+        carried.places = now.places;
+        for (window, place) in now.used() {
+            transfer.fill(operators, before, &place, &mut carried.windows[window], window);
+        }
+        carried.approach[0] = now.approach[0];
+        carried.touch = now.touch;
+        carried.stiffness = before.stiffness;
+        carried.load = before.load;
+        carried.wheel_temperature = before.wheel_temperature;
+        now.guess_from(carried);
+    }
+    let wheel = PlacedWheel::new(&operators.wheel, &pose.at_height(now.touch - approach));
+    for (window, place) in now.used() {
+        let own_solvers = &mut solvers.windows[window];
+        own_solvers.prepare(place.length);
+        own_solvers.geometry.set(
+            operators,
+            &place,
+            &wheel,
+            &pose.motion,
+            own[window],
+            &mut own_solvers.patch.undeformed,
+        );
+        own_solvers.gap.copy_from_slice(&own_solvers.patch.undeformed.gap);
+    }
+    Ok(())
+}
+
+/// Approach to expect, `m`: the given one, or that of the step before under the load of this one, or that of ellipses.
+fn expected_approach(
+    problem: &SurfaceProblem,
+    before: Option<&SurfaceFields>,
+    given: f64,
+    solvers: &mut SurfaceSolvers,
+) -> f64 {
+    if problem.is_height_given() {
+        return given;
+    }
+    let load = problem.vertical_load();
+    if load == 0.0 {
+        return 0.0;
+    }
+    match before.filter(|before| before.load > 0.0 && before.approach[0] > 0.0) {
+        Some(before) => before.approach[0] * (load / before.load).cbrt().powi(2),
+        None => solvers.search.approach(load, problem.parameters.contact_modulus()),
+    }
+}
+
+/// Regions for windows, from the gauge side to the field side, and their number: overlaps that are near each other share one.
+fn wanted(strips: usize, overlaps: &[Overlap]) -> ([Wanted; WINDOWS], usize) {
+    let mut regions = [Wanted::default(); super::search::REGIONS];
+    let mut count = 0;
+    // The overlaps come from the field side to the gauge side.
+    for overlap in overlaps.iter().rev() {
+        let new = Wanted {
+            region: overlap.region,
+            depth: overlap.depth,
+        };
+        if count > 0 && share_window(&regions[count - 1].region, &new.region, strips) {
+            let last = &mut regions[count - 1];
+            last.region = last.region.union(&new.region);
+            last.depth = last.depth.max(new.depth);
+            continue;
+        }
+        regions[count] = new;
+        count += 1;
+    }
+    // The shallowest are left out where there are more than windows.
+    while count > WINDOWS {
+        let shallowest = (0..count)
+            .min_by(|&a, &b| regions[a].depth.total_cmp(&regions[b].depth))
+            .unwrap_or(0);
+        regions.copy_within(shallowest + 1..count, shallowest);
+        count -= 1;
+    }
+    (std::array::from_fn(|i| regions[i]), count)
+}
+
+/// Whether two regions are so near each other that one window serves both, and well.
+fn share_window(a: &Region, b: &Region, strips: usize) -> bool {
+    let breadth = |region: &Region| region.across[1] - region.across[0];
+    let gap = b.across[0] - a.across[1];
+    let both = breadth(&a.union(b)) / (strips as f64 - 2.0);
+    gap < NEAR * 0.5 * (breadth(a) + breadth(b)) && breadth(a).min(breadth(b)) > LEAST_STRIPS * both
+}
+
+/// Gives each region a window: the one that it had, or one that is free. Returns the arc lengths between which each window has the
+/// surface to itself.
+fn assign(problem: &SurfaceProblem, wanted: &[Wanted], now: &mut SurfaceFields) -> [[f64; 2]; WINDOWS] {
+    let sizes = &problem.operators.sizes;
+    let mut window_of = [usize::MAX; WINDOWS];
+    let mut taken = [false; WINDOWS];
+    for (wanted, window_of) in wanted.iter().zip(&mut window_of) {
+        let nearest = now
+            .used()
+            .filter(|(window, _)| !taken[*window])
+            .filter(|(_, place)| place.region(&sizes.grid(place.length, place.breadth)).meets(&wanted.region))
+            .min_by(|(_, a), (_, b)| {
+                let distance = |place: &super::windows::Place| {
+                    let across = place.region(&sizes.grid(place.length, place.breadth)).across;
+                    (across[0] + across[1] - wanted.region.across[0] - wanted.region.across[1]).abs()
+                };
+                distance(a).total_cmp(&distance(b))
+            });
+        if let Some((window, _)) = nearest {
+            *window_of = window;
+            taken[window] = true;
+        }
+    }
+    let mut own = [[0.0; 2]; WINDOWS];
+    for (number, wanted_here) in wanted.iter().enumerate() {
+        if window_of[number] == usize::MAX {
+            let free = |window: &usize| !taken[*window];
+            let empty = (0..WINDOWS).filter(free).find(|&window| now.places[window].is_none());
+            let window = empty.or_else(|| (0..WINDOWS).find(free)).unwrap_or(0);
+            window_of[number] = window;
+            taken[window] = true;
+            now.places[window] = None;
+        }
+        let window = window_of[number];
+        now.places[window] = Some(sizes.place(&wanted_here.region, now.places[window]));
+        let between = |a: &Wanted, b: &Wanted| 0.5 * (a.region.across[1] + b.region.across[0]);
+        let low = number.checked_sub(1).map_or(f64::NEG_INFINITY, |last| between(&wanted[last], wanted_here));
+        let high = wanted.get(number + 1).map_or(f64::INFINITY, |next| between(wanted_here, next));
+        own[window] = [low, high];
+    }
+    // A window without a region stays while nothing else needs its place: rail that it has heated rolls out of it.
+    for window in 0..WINDOWS {
+        if !taken[window] && !is_warm(now, window) {
+            now.places[window] = None;
+        }
+    }
+    own
+}
+
+/// Whether the rail in a window is warmer or colder than the ambient.
+fn is_warm(fields: &SurfaceFields, window: usize) -> bool {
+    /// Temperature that counts, K.
+    const APPRECIABLE: f64 = 0.1;
+    fields.windows[window].heat.surface.iter().any(|rise| rise.abs() > APPRECIABLE)
+}

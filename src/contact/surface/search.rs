@@ -1,0 +1,244 @@
+//! Search of contacts: where the undeformed wheel would overlap the rail.
+//!
+//! Along the rail's profile, at points half a millimetre from each other, the place along the rail is found at which the wheel comes
+//! closest. The overlap of the bodies at a given height of the wheel is a number of regions, each of which may be a contact. The contact
+//! itself is smaller than its region: of an ellipse in the ratio of 1 to √2.
+
+use super::operators::SurfaceOperators;
+use super::windows::Region;
+use crate::geometry::hertz::HertzEllipse;
+use crate::geometry::unrolled::{PlacedWheel, WheelsetPosition};
+
+/// Regions that a search may find.
+pub const REGIONS: usize = 8;
+/// Heights that are tried for that at which the bodies touch.
+const TOUCH_STEPS: usize = 12;
+/// Way over which the distance is linear in the height of the wheel to a thousandth of a micrometre, `m`.
+const LINEAR: f64 = 1e-5;
+/// Least change of the distance with the height that counts: walls of 87° and more carry nothing.
+const LEAST_RISE: f64 = 0.05;
+/// Size of the region that a window is placed for over that of the overlap: a contact has 0.71 of it.
+const REGION_SHARE: f64 = 0.82;
+
+/// Wheel over one point of the rail's profile, where it is closest along the rail.
+#[derive(Debug, Clone, Copy, Default)]
+struct Closest {
+    arc: f64,
+    along: f64,
+    distance: f64,
+    /// Change of the distance with the height of the wheel.
+    rise: f64,
+    /// Second derivative of the distance along the rail, `1/m`.
+    curvature: f64,
+}
+
+/// Region in which the bodies overlap.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Overlap {
+    /// Its extent, shrunk to what a contact needs.
+    pub region: Region,
+    /// Largest overlap, `m`.
+    pub depth: f64,
+    /// Change of the distance with the height of the wheel where it is deepest.
+    pub rise: f64,
+    /// Second derivatives of the distance along and across where it is deepest, `1/m`.
+    pub curvatures: [f64; 2],
+}
+
+/// Buffers of a search, and what the last one has found.
+pub struct Search {
+    points: Vec<Closest>,
+    overlaps: Vec<Overlap>,
+}
+
+impl Search {
+    /// Buffers for the points of a rail.
+    pub fn new(operators: &SurfaceOperators) -> Search {
+        Search {
+            points: vec![Closest::default(); operators.scan.len()],
+            overlaps: Vec::with_capacity(REGIONS),
+        }
+    }
+
+    /// Finds the height of the axle's middle at which the bodies touch first, `m`, from a guess of it. The points are those at that height
+    /// after it.
+    pub fn touch(&mut self, operators: &SurfaceOperators, position: &WheelsetPosition, guess: f64) -> f64 {
+        let mut height = guess;
+        for _ in 0..TOUCH_STEPS {
+            self.scan(operators, &WheelsetPosition { height, ..*position });
+            let room = self.room();
+            if !room.is_finite() {
+                break;
+            }
+            height -= room;
+            if room.abs() <= LINEAR {
+                for point in &mut self.points {
+                    point.distance -= room * point.rise;
+                }
+                break;
+            }
+        }
+        height
+    }
+
+    /// Way that the wheel may be lowered until it touches, `m`: the smallest at the points, and on the parabolas through three of them.
+    fn room(&self) -> f64 {
+        let room = |point: usize| {
+            let Closest { distance, rise, .. } = self.points[point];
+            if rise > LEAST_RISE { distance / rise } else { f64::INFINITY }
+        };
+        let mut least = f64::INFINITY;
+        for point in 1..self.points.len().saturating_sub(1) {
+            let [before, here, after] = [point - 1, point, point + 1].map(room);
+            if here > least + 1e-4 || here > before || here > after || !(before + after).is_finite() {
+                continue;
+            }
+            let second = before + after - 2.0 * here;
+            let slope = 0.5 * (before - after);
+            let below = if second > 0.0 { 0.5 * slope * slope / second } else { 0.0 };
+            least = least.min(here - below);
+        }
+        least
+    }
+
+    /// Finds the closest places of all points.
+    fn scan(&mut self, operators: &SurfaceOperators, position: &WheelsetPosition) {
+        let wheel = PlacedWheel::new(&operators.wheel, position);
+        let rise = WheelsetPosition {
+            height: 1.0,
+            ..WheelsetPosition::default()
+        };
+        let mut guess = (0.0, 0.0);
+        for (found, (arc, point)) in self.points.iter_mut().zip(&operators.scan) {
+            let (along, at) = wheel.closest(point, guess);
+            guess = (along, at.distance);
+            *found = Closest {
+                arc: *arc,
+                along,
+                distance: at.distance,
+                rise: wheel.distance_change(&at, &rise),
+                curvature: at.curvature_along,
+            };
+        }
+    }
+
+    /// Finds the regions of overlap of a wheel that is lower by `approach` `m` than the height at which the points are.
+    pub fn overlaps(&mut self, approach: f64) -> &[Overlap] {
+        let Search { points, overlaps } = self;
+        overlaps.clear();
+        let at = |point: usize| points[point].distance - approach * points[point].rise;
+        let mut point = 0;
+        while point < points.len() && overlaps.len() < REGIONS {
+            let count = (point..points.len()).take_while(|&i| at(i) < 0.0).count();
+            if count == 0 {
+                if let Some(overlap) = between_points(points, point, &at) {
+                    overlaps.push(overlap);
+                }
+                point += 1;
+                continue;
+            }
+            overlaps.push(region(points, point, count, &at));
+            point += count + 1;
+        }
+        overlaps
+    }
+
+    /// Approach under a vertical load, `m`, about: that of Hertz's ellipses in place of the contacts. `modulus` is the contact modulus.
+    pub fn approach(&mut self, load: f64, modulus: f64) -> f64 {
+        let mut carried = |approach: f64| -> f64 {
+            let overlaps = self.overlaps(approach).iter();
+            overlaps.map(|overlap| overlap.rise * hertz_load(overlap, modulus)).sum()
+        };
+        let (mut low, mut high) = (0.0, 1e-5);
+        while carried(high) < load && high < 1e-2 {
+            (low, high) = (high, 2.0 * high);
+        }
+        for _ in 0..6 {
+            let middle = 0.5 * (low + high);
+            if carried(middle) < load {
+                low = middle;
+            } else {
+                high = middle;
+            }
+        }
+        0.5 * (low + high)
+    }
+}
+
+/// Load of the ellipse that has the overlap as its approach, `N`.
+fn hertz_load(overlap: &Overlap, modulus: f64) -> f64 {
+    let [along, across] = overlap.curvatures;
+    let unit = HertzEllipse::new(1.0, (0.5 * along, 0.5 * across), modulus);
+    (overlap.depth / unit.approach).powf(1.5)
+}
+
+/// Half-length of the overlap at a point where it is `depth` deep, `m`.
+fn half_length(point: &Closest, depth: f64) -> f64 {
+    (2.0 * depth.max(0.0) / point.curvature.max(0.2)).sqrt()
+}
+
+/// Region of neighbouring points with an overlap.
+fn region(points: &[Closest], first: usize, count: usize, at: &impl Fn(usize) -> f64) -> Overlap {
+    let last = first + count - 1;
+    let deepest = (first..=last).min_by(|&a, &b| at(a).total_cmp(&at(b))).unwrap_or(first);
+    let end = |inside: usize, outside: Option<usize>| {
+        let Some(outside) = outside.filter(|&outside| outside < points.len()) else {
+            return points[inside].arc;
+        };
+        let share = at(inside) / (at(inside) - at(outside));
+        points[inside].arc + share * (points[outside].arc - points[inside].arc)
+    };
+    // The points go from the field side to the gauge side.
+    let across = [end(last, Some(last + 1)), end(first, first.checked_sub(1))];
+    let mut along = [f64::INFINITY, f64::NEG_INFINITY];
+    for point in first..=last {
+        let half = REGION_SHARE * half_length(&points[point], -at(point));
+        along[0] = along[0].min(points[point].along - half);
+        along[1] = along[1].max(points[point].along + half);
+    }
+    let depth = -at(deepest);
+    let middle = points[deepest].arc;
+    let breadth = 0.5 * (across[1] - across[0]);
+    Overlap {
+        region: Region {
+            along,
+            across: across.map(|arc| middle + REGION_SHARE * (arc - middle)),
+        },
+        depth,
+        rise: points[deepest].rise,
+        curvatures: [points[deepest].curvature.max(0.2), (2.0 * depth / (breadth * breadth)).max(0.2)],
+    }
+}
+
+/// Region whose overlap lies between the points: about one that is closer than its neighbours, by the parabola through the three.
+fn between_points(points: &[Closest], point: usize, at: &impl Fn(usize) -> f64) -> Option<Overlap> {
+    let (before, after) = (point.checked_sub(1)?, point + 1);
+    if after >= points.len() || at(before) < 0.0 || at(after) < 0.0 {
+        return None;
+    }
+    let step = points[point].arc - points[after].arc;
+    let (slope, second) = (
+        0.5 * (at(before) - at(after)) / step,
+        (at(before) + at(after) - 2.0 * at(point)) / (step * step),
+    );
+    if second <= 0.0 || slope.abs() > second * step {
+        return None;
+    }
+    let depth = 0.5 * slope * slope / second - at(point);
+    if depth <= 0.0 {
+        return None;
+    }
+    let middle = points[point].arc - slope / second;
+    let half_breadth = REGION_SHARE * (2.0 * depth / second).sqrt();
+    let half = REGION_SHARE * half_length(&points[point], depth);
+    let along = points[point].along;
+    Some(Overlap {
+        region: Region {
+            along: [along - half, along + half],
+            across: [middle - half_breadth, middle + half_breadth],
+        },
+        depth,
+        rise: points[point].rise,
+        curvatures: [points[point].curvature.max(0.2), second],
+    })
+}

@@ -1,0 +1,109 @@
+//! Solvers and buffers of a step of a contact of profiles, made once, so that a step allocates nothing.
+
+use super::fields::SurfaceFields;
+use super::geometry::WindowGeometry;
+use super::operators::SurfaceOperators;
+use super::search::Search;
+use super::transfer::Transfer;
+use super::windows::{LENGTHS, WINDOWS};
+use crate::contact::interface::Interface;
+use crate::contact::patch::solvers::PatchSolvers;
+use crate::heat::strips::StripHeatScratch;
+use crate::mechanics::patch::contact::Contact;
+use crate::settings::Settings;
+use crate::wear::strips::StripWearSteps;
+
+/// Solvers and buffers of a step.
+pub struct SurfaceSolvers {
+    /// Those of the windows.
+    pub windows: Vec<WindowSolvers>,
+    /// Search of contacts.
+    pub search: Search,
+    /// Transfer of the fields between places.
+    pub transfer: Transfer,
+    /// Fields before the step at the places of this one; used where these have changed.
+    pub before: SurfaceFields,
+    /// Whether places have changed with this step.
+    pub moved: bool,
+    /// Approach for which the geometry is that of the windows, `m`.
+    pub reference: f64,
+}
+
+/// Solvers and buffers of one window.
+pub struct WindowSolvers {
+    /// Those of a patch.
+    pub patch: PatchSolvers,
+    /// What of them depends on the length of the window, by its number; the one in use is in `patch`.
+    marches: Vec<March>,
+    length: Option<usize>,
+    /// What the cells see of wheel and rail.
+    pub geometry: WindowGeometry,
+    /// Part of the interface vector of all windows.
+    pub interface: Interface,
+    /// Cells under pressure before a sweep.
+    pub contact_before: Contact,
+    /// Vertical force of the friction on the wheel over that of the pressure.
+    pub friction_share: f64,
+    /// Opening of the gap at the reference approach, on the grid, scaled.
+    pub gap: Vec<f64>,
+}
+
+/// Buffers of the marches through a window of one length.
+struct March {
+    heat: StripHeatScratch,
+    wear: StripWearSteps,
+}
+
+impl SurfaceSolvers {
+    /// Solvers for the given operators.
+    pub fn new(operators: &SurfaceOperators, settings: &Settings) -> SurfaceSolvers {
+        SurfaceSolvers {
+            windows: (0..WINDOWS).map(|_| WindowSolvers::new(operators, settings)).collect(),
+            search: Search::new(operators),
+            transfer: Transfer::new(operators),
+            before: SurfaceFields::new(operators),
+            moved: false,
+            reference: 0.0,
+        }
+    }
+}
+
+impl WindowSolvers {
+    fn new(operators: &SurfaceOperators, settings: &Settings) -> WindowSolvers {
+        let shape = |length: usize| &operators.shapes[length * super::windows::BREADTHS];
+        let first = shape(0);
+        WindowSolvers {
+            patch: PatchSolvers::new(first, settings),
+            marches: (0..LENGTHS)
+                .map(|length| March {
+                    heat: StripHeatScratch::new(&shape(length).basis, &shape(length).strips),
+                    wear: StripWearSteps::new(&shape(length).strips),
+                })
+                .collect(),
+            length: None,
+            geometry: WindowGeometry::new(operators),
+            interface: Interface::new(first.grid.strips * first.grid.cells, 1),
+            contact_before: Contact::new(&first.grid),
+            friction_share: 0.0,
+            gap: vec![0.0; first.grid.len()],
+        }
+    }
+
+    /// Prepares the solvers for a window of the given length, whose cells may be others than in the step before.
+    pub fn prepare(&mut self, length: usize) {
+        self.patch.weights = None;
+        if self.length == Some(length) {
+            return;
+        }
+        if let Some(before) = self.length {
+            self.exchange(before);
+        }
+        self.exchange(length);
+        self.length = Some(length);
+    }
+
+    fn exchange(&mut self, length: usize) {
+        std::mem::swap(&mut self.patch.heat, &mut self.marches[length].heat);
+        std::mem::swap(&mut self.patch.wear_steps, &mut self.marches[length].wear);
+    }
+}

@@ -1,0 +1,209 @@
+//! What is read off the fields of a contact of profiles: integrals over all windows, forces on the wheelset, the contacts one by one.
+
+use super::fields::SurfaceFields;
+use super::geometry::Pose;
+use super::mechanics::SurfaceProblem;
+use super::operators::SurfaceOperators;
+use crate::contact::engine::Engine;
+use crate::contact::integrals::{Integrals, NodeSums};
+use crate::contact::patch;
+use crate::contact::patch::operators::PatchOperators;
+use crate::contact::profiles::ContactNode;
+use crate::contact::rim::ContactHeat;
+
+/// Force and moment on the wheelset, and the contacts one by one, in the axes of the track.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct OnWheelset {
+    /// Force on the wheelset, `N`.
+    pub force: [f64; 3],
+    /// Moment on the wheelset about its middle, `N m`.
+    pub moment: [f64; 3],
+    /// Number of contacts.
+    pub count: usize,
+    /// The contacts, from the gauge side to the field side.
+    pub contacts: [OneContact; super::windows::WINDOWS],
+}
+
+/// One contact.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct OneContact {
+    /// Arc length of the rail's profile at the resultant of the pressure, `m`.
+    pub arc: f64,
+    /// Place ahead of the axle, lateral position in the track and height over the rail's top of the resultant of the pressure, `m`.
+    pub place: [f64; 3],
+    /// Inclination of the rail's surface there, rad; positive where it rises to the field side.
+    pub inclination: f64,
+    /// Normal force, `N`.
+    pub normal_force: f64,
+    /// Friction on the wheel along the rail, and across it in the plane of the contact to the field side, `N`.
+    pub friction: [f64; 2],
+    /// Moment of the friction on the wheel about the normal through the resultant of the pressure, `N m`.
+    pub spin_moment: f64,
+    /// Length along the rail and breadth across it, `m`.
+    pub size: [f64; 2],
+    /// Area, `m²`.
+    pub area: f64,
+    /// Peak pressure, `Pa`.
+    pub peak_pressure: f64,
+    /// Peak temperature rise, `K`.
+    pub peak_rise: f64,
+    /// Friction power, `W`.
+    pub friction_power: f64,
+}
+
+/// Integrals of the given fields under the problem's conditions.
+pub fn integrals(problem: &SurfaceProblem, fields: &SurfaceFields) -> Integrals {
+    let operators = problem.operators;
+    let area = operators.sizes.largest.cell_area();
+    let mut all = Integrals {
+        sums: NodeSums::default(),
+        node_area: area,
+        pressure_scale: operators.shapes[0].scales.pressure,
+        penetration: if fields.load > 0.0 { fields.approach[0] } else { 0.0 },
+        contact_length: 0.0,
+        contact_breadth: 0.0,
+        contact_area: 0.0,
+        peak_rise: f64::NEG_INFINITY,
+        wear_depth: 0.0,
+        leaving_rise: 0.0,
+        leaving_wear_depth: 0.0,
+        wheel_heat: ContactHeat::new(
+            problem.parameters,
+            problem.unit_force(),
+            SurfaceOperators::heated_nodes(problem, fields, fields),
+        ),
+        wheel_temperature: fields.wheel_temperature,
+        on_wheelset: on_wheelset(problem, fields),
+    };
+    for (window, place) in fields.used() {
+        let patch = problem.of(&place);
+        let own = patch::integrals::integrals(&patch, &fields.windows[window]);
+        let middle = place.middle_along(&patch.operators.grid);
+        let sums = NodeSums {
+            moment: own.sums.moment + middle * own.sums.pressure,
+            ..own.sums
+        };
+        all.sums = all.sums.with(&sums.scaled(own.node_area / area));
+        all.contact_length = all.contact_length.max(own.contact_length);
+        all.contact_breadth += own.contact_breadth;
+        all.contact_area += own.contact_area;
+        all.peak_rise = all.peak_rise.max(own.peak_rise);
+        all.wear_depth = all.wear_depth.max(own.wear_depth);
+        all.leaving_rise = all.leaving_rise.max(own.leaving_rise);
+        all.leaving_wear_depth = all.leaving_wear_depth.max(own.leaving_wear_depth);
+    }
+    if !all.peak_rise.is_finite() {
+        all.peak_rise = 0.0;
+    }
+    all
+}
+
+/// Force and moment on the wheelset and the contacts.
+fn on_wheelset(problem: &SurfaceProblem, fields: &SurfaceFields) -> OnWheelset {
+    let operators = problem.operators;
+    let pose = Pose::new(operators, &problem.conditions.inputs, problem.parameters.wheel_radius);
+    let height = if problem.is_height_given() {
+        pose.position.height
+    } else {
+        fields.touch - fields.approach[0]
+    };
+    let mut all = OnWheelset::default();
+    for (window, place) in fields.used() {
+        let patch = problem.of(&place);
+        let own = &fields.windows[window];
+        if !own.pressure.iter().any(|&pressure| pressure > 0.0) {
+            continue;
+        }
+        let (grid, unit) = (&patch.operators.grid, PatchOperators::unit_force(patch.operators));
+        let middle = place.middle_along(grid);
+        let mut contact = OneContact::default();
+        let (mut moment_x, mut moment_s, mut friction_moment) = (0.0, 0.0, 0.0);
+        for strip in 0..grid.strips {
+            let arc = place.arc(grid, strip);
+            let point = operators.rail.at(arc);
+            let tangent = point.tangent();
+            let row = grid.row(strip);
+            let [mut normal, mut ahead, mut x_moment, mut along, mut across, mut twist] = [0.0; 6];
+            for (cell, at) in row.enumerate() {
+                let x = middle + grid.x(cell);
+                let (pressure, shear) = (unit * own.pressure[at], [unit * own.shear[0][at], unit * own.shear[1][at]]);
+                normal += pressure;
+                ahead += x * pressure;
+                along -= shear[0];
+                across -= shear[1];
+                x_moment += pressure * x;
+                twist -= x * shear[1];
+            }
+            contact.normal_force += normal;
+            contact.friction[0] += along;
+            contact.friction[1] += across;
+            moment_x += x_moment;
+            moment_s += arc * normal;
+            friction_moment += twist - arc * along;
+            let lateral = point.place[0] - pose.position.lateral;
+            let vertical = point.place[1] - height;
+            let force = [
+                along,
+                normal * point.normal[0] + across * tangent[0],
+                normal * point.normal[1] + across * tangent[1],
+            ];
+            for (sum, part) in all.force.iter_mut().zip(force) {
+                *sum += part;
+            }
+            // Σ x f of the strip, whose lateral and vertical forces stand at different places along it.
+            let lateral_moment = ahead * point.normal[0] + twist * tangent[0];
+            let vertical_moment = ahead * point.normal[1] + twist * tangent[1];
+            all.moment[0] += lateral * force[2] - vertical * force[1];
+            all.moment[1] += vertical * along - vertical_moment;
+            all.moment[2] += lateral_moment - lateral * along;
+        }
+        let (x, arc) = (moment_x / contact.normal_force, moment_s / contact.normal_force);
+        let point = operators.rail.at(arc);
+        let extent = patch::extent::extent(patch.operators, &own.pressure);
+        contact.arc = arc;
+        contact.place = [x, operators.side * point.place[0], point.place[1]];
+        contact.inclination = (-point.normal[0]).atan2(point.normal[1]);
+        contact.spin_moment = friction_moment - x * contact.friction[1] + arc * contact.friction[0];
+        contact.size = [extent.length, extent.breadth];
+        contact.area = extent.area;
+        contact.peak_pressure = crate::numerics::dense::largest(&own.pressure) * patch.operators.scales.pressure;
+        contact.peak_rise = own.heat.surface.iter().fold(f64::NEG_INFINITY, |m: f64, t| t.max(m));
+        all.contacts[all.count] = contact;
+        all.count += 1;
+    }
+    let count = all.count;
+    all.contacts[..count].sort_by(|a, b| a.arc.total_cmp(&b.arc));
+    // Back from the rail's axes to those of the track, and from the mirror image.
+    let (sine, cosine) = pose.rail_roll.sin_cos();
+    for vector in [&mut all.force, &mut all.moment] {
+        let [_, y, z] = *vector;
+        (vector[1], vector[2]) = (cosine * y - sine * z, sine * y + cosine * z);
+    }
+    all.force[1] *= operators.side;
+    all.moment[0] *= operators.side;
+    all.moment[2] *= operators.side;
+    for contact in &mut all.contacts {
+        contact.friction[1] *= operators.side;
+        contact.spin_moment *= operators.side;
+    }
+    all
+}
+
+/// The fields at the cells of all windows, window by window; the lateral position is that in the track.
+pub fn contact_nodes(operators: &SurfaceOperators, fields: &SurfaceFields) -> Vec<ContactNode> {
+    let of_window = |(window, place): (usize, super::windows::Place)| {
+        let patch = operators.of(&place);
+        let grid = patch.grid;
+        let middle = place.middle_along(&grid);
+        let nodes = patch::profiles::contact_nodes(patch, &fields.windows[window]);
+        nodes.into_iter().enumerate().map(move |(node, at)| {
+            let point = operators.rail.at(place.arc(&grid, node / grid.cells));
+            ContactNode {
+                position: at.position + middle,
+                lateral_position: operators.side * point.place[0],
+                ..at
+            }
+        })
+    };
+    fields.used().flat_map(of_window).collect()
+}

@@ -1,0 +1,160 @@
+//! Windows of a contact of profiles: their sizes, their places on the rail's surface.
+//!
+//! All windows have as many cells along and strips across as a patch; what differs is the size of the cells. Lengths and breadths come
+//! in powers of two of the largest, so that what is computed once serves any window, and a cell of one window is a whole number
+//! of cells of another.
+
+use crate::body::grid::Grid;
+use serde::{Deserialize, Serialize};
+
+/// Largest number of windows: contacts that are resolved.
+pub const WINDOWS: usize = 4;
+/// Number of lengths that a window may have.
+pub const LENGTHS: usize = 4;
+/// Number of breadths that a window may have.
+pub const BREADTHS: usize = 7;
+/// Number of sizes that a window may have.
+pub const SHAPES: usize = LENGTHS * BREADTHS;
+
+/// Cells along the window, and strips across it, that stay free on either side of a region that a window is placed for.
+const MARGIN: [f64; 2] = [1.5, 1.0];
+/// Least share of a window that the region in it takes up, along and across, before the window becomes smaller.
+const LEAST_SHARE: f64 = 0.36;
+
+/// Size and place of a window.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Place {
+    /// Number of its length: it is halved so many times.
+    pub length: usize,
+    /// Number of its breadth.
+    pub breadth: usize,
+    /// First cell along the rail, counted in cells of its length from below the axle.
+    pub cell: i32,
+    /// First strip, counted in strips of its breadth from the beginning of the rail's profile.
+    pub strip: i32,
+}
+
+/// Region of the rail's surface.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Region {
+    /// From and to along the rail, `m` ahead of the axle.
+    pub along: [f64; 2],
+    /// From and to in arc length of the rail's profile, `m`.
+    pub across: [f64; 2],
+}
+
+/// Sizes of all windows.
+#[derive(Debug, Clone, Copy)]
+pub struct Sizes {
+    /// The largest window.
+    pub largest: Grid,
+}
+
+impl Place {
+    /// Number of the shape.
+    pub fn shape(&self) -> usize {
+        self.length * BREADTHS + self.breadth
+    }
+
+    /// Distance of the window's middle ahead of the axle, `m`.
+    pub fn middle_along(&self, grid: &Grid) -> f64 {
+        (f64::from(self.cell) + 0.5 * grid.cells as f64) * grid.length
+    }
+
+    /// Arc length of the rail's profile at the middle of a strip, `m`.
+    pub fn arc(&self, grid: &Grid, strip: usize) -> f64 {
+        (f64::from(self.strip) + strip as f64 + 0.5) * grid.breadth
+    }
+
+    /// Region that the window covers.
+    pub fn region(&self, grid: &Grid) -> Region {
+        let (cell, strip) = (f64::from(self.cell), f64::from(self.strip));
+        Region {
+            along: [cell, cell + grid.cells as f64].map(|count| count * grid.length),
+            across: [strip, strip + grid.strips as f64].map(|count| count * grid.breadth),
+        }
+    }
+}
+
+impl Region {
+    /// Smallest region that holds both.
+    pub fn union(&self, other: &Region) -> Region {
+        let hull = |a: [f64; 2], b: [f64; 2]| [a[0].min(b[0]), a[1].max(b[1])];
+        Region {
+            along: hull(self.along, other.along),
+            across: hull(self.across, other.across),
+        }
+    }
+
+    /// Whether the two have a point in common.
+    pub fn meets(&self, other: &Region) -> bool {
+        let overlap = |a: [f64; 2], b: [f64; 2]| a[0] < b[1] && b[0] < a[1];
+        overlap(self.along, other.along) && overlap(self.across, other.across)
+    }
+}
+
+impl Sizes {
+    /// Grid of a window of the given length and breadth.
+    pub fn grid(&self, length: usize, breadth: usize) -> Grid {
+        Grid {
+            length: self.largest.length / f64::from(1_u32 << length),
+            breadth: self.largest.breadth / f64::from(1_u32 << breadth),
+            ..self.largest
+        }
+    }
+
+    /// Window for a region: `kept` where that holds it and is not far too large, else the smallest that does, about the region's
+    /// middle.
+    pub fn place(&self, region: &Region, kept: Option<Place>) -> Place {
+        if let Some(kept) = kept
+            && self.suits(region, &kept)
+        {
+            return kept;
+        }
+        let fits = |extent: [f64; 2], cells: usize, margin: f64, largest: f64, count: usize| {
+            let size = (extent[1] - extent[0]) / (cells as f64 - 2.0 * margin);
+            (0..count)
+                .rev()
+                .find(|&level| size <= largest / f64::from(1_u32 << level))
+                .unwrap_or(0)
+        };
+        let Grid { cells, strips, .. } = self.largest;
+        let mut length = fits(region.along, cells, MARGIN[0], self.largest.length, LENGTHS);
+        let mut breadth = fits(region.across, strips, MARGIN[1], self.largest.breadth, BREADTHS);
+        // A size that still holds the region is kept for a while: windows should not change with every step.
+        if let Some(kept) = kept {
+            let share = |extent: [f64; 2], size: f64, count: usize| (extent[1] - extent[0]) / (size * count as f64);
+            let grid = self.grid(kept.length, kept.breadth);
+            if kept.length < length && share(region.along, grid.length, cells) > LEAST_SHARE {
+                length = kept.length;
+            }
+            if kept.breadth < breadth && share(region.across, grid.breadth, strips) > LEAST_SHARE {
+                breadth = kept.breadth;
+            }
+        }
+        let grid = self.grid(length, breadth);
+        let first = |extent: [f64; 2], size: f64, count: usize| {
+            (0.5 * (extent[0] + extent[1]) / size - 0.5 * count as f64).round() as i32
+        };
+        Place {
+            length,
+            breadth,
+            cell: first(region.along, grid.length, cells),
+            strip: first(region.across, grid.breadth, strips),
+        }
+    }
+
+    /// Whether a window holds a region with a margin and is not far too large for it.
+    fn suits(&self, region: &Region, place: &Place) -> bool {
+        let grid = self.grid(place.length, place.breadth);
+        let window = place.region(&grid);
+        let holds = |outer: [f64; 2], inner: [f64; 2], margin: f64| {
+            inner[0] >= outer[0] + margin && inner[1] <= outer[1] - margin
+        };
+        let fills = |outer: [f64; 2], inner: [f64; 2]| inner[1] - inner[0] > LEAST_SHARE * (outer[1] - outer[0]);
+        holds(window.along, region.along, grid.length)
+            && holds(window.across, region.across, 0.5 * grid.breadth)
+            && (place.length + 1 == LENGTHS || fills(window.along, region.along))
+            && (place.breadth + 1 == BREADTHS || fills(window.across, region.across))
+    }
+}
