@@ -270,30 +270,6 @@ inputs! {
     /// Angular velocity of the wheel relative to the rail about the upward normal, positive anticlockwise seen from
     /// above
     spin_rate "ω_z": "rad/s", by vehicle_speed, start 0.0, range [-1e3, 1e3], nominal 1.0, patch only;
-    /// lateral_displacement, temporary
-    lateral_displacement: "m", start 0.0, range [-100.0, 100.0], nominal 1e-3;
-    /// vertical_displacement, temporary
-    vertical_displacement: "m", start 0.0, range [-100.0, 100.0], nominal 1e-3;
-    /// roll_angle, temporary
-    roll_angle: "rad", start 0.0, range [-100.0, 100.0], nominal 1e-2;
-    /// yaw_angle, temporary
-    yaw_angle: "rad", start 0.0, range [-100.0, 100.0], nominal 1e-2;
-    /// vertical_speed, temporary
-    vertical_speed: "m/s", start 0.0, range [-100.0, 100.0], nominal 0.1;
-    /// roll_rate, temporary
-    roll_rate: "rad/s", start 0.0, range [-100.0, 100.0], nominal 0.1;
-    /// yaw_rate, temporary
-    yaw_rate: "rad/s", start 0.0, range [-100.0, 100.0], nominal 0.1;
-    /// rail_lateral_displacement, temporary
-    rail_lateral_displacement: "m", start 0.0, range [-100.0, 100.0], nominal 1e-3;
-    /// rail_vertical_displacement, temporary
-    rail_vertical_displacement: "m", start 0.0, range [-100.0, 100.0], nominal 1e-3;
-    /// rail_roll_angle, temporary
-    rail_roll_angle: "rad", start 0.0, range [-100.0, 100.0], nominal 1e-2;
-    /// rail_lateral_speed, temporary
-    rail_lateral_speed: "m/s", start 0.0, range [-100.0, 100.0], nominal 0.1;
-    /// rail_vertical_speed, temporary
-    rail_vertical_speed: "m/s", start 0.0, range [-100.0, 100.0], nominal 0.1;
 }
 
 outputs! {

@@ -405,6 +405,12 @@ impl Model {
 
     /// TEMPORARY
     #[cfg(test)]
+    pub fn operators_for_tests(&self) -> &crate::contact::Operators {
+        &self.operators
+    }
+
+    /// TEMPORARY
+    #[cfg(test)]
     pub fn integrals_for_tests(&self, state: &State, inputs: &Inputs) -> crate::contact::integrals::Integrals {
         use crate::contact::engine::Engine;
         use crate::contact::problem::Problem;

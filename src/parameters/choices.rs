@@ -28,8 +28,6 @@ choices! {
         Line "line",
         /// Patch along the rail and across it: lateral force and spin moment.
         Patch "patch",
-        /// Profiles of wheel and rail.
-        Profiles "profiles",
     }
 
     /// Quantity prescribed in the normal direction.

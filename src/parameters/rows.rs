@@ -168,8 +168,6 @@ macro_rules! parameters {
             /// the rail's material is not; the switch exists for the comparison of the former with Carter's theory, which
             /// has identical bodies. Not an FMI parameter.
             pub normal_tangential_coupling: bool,
-            /// TEMPORARY
-            pub profiles: super::Tmp,
         }
 
         impl Default for Parameters {
@@ -177,7 +175,6 @@ macro_rules! parameters {
                 Parameters {
                     $($field: $kind!(start $columns),)+
                     normal_tangential_coupling: true,
-                    profiles: super::Tmp::default(),
                 }
             }
         }

@@ -11,7 +11,7 @@
 use super::fields::SurfaceFields;
 use super::operators::SurfaceOperators;
 use super::solvers::{SurfaceSolvers, WindowSolvers};
-use super::windows::{Place, WINDOWS};
+use super::windows::Place;
 use crate::contact::engine::Engine;
 use crate::contact::interface::Interface;
 use crate::contact::patch::fields::PatchFields;
@@ -22,12 +22,15 @@ use crate::contact::problem::Problem;
 use crate::error::{Error, Result};
 use crate::mechanics::normal::normal_problem::Constraint;
 use crate::mechanics::normal_tangential::TractionChange;
+use crate::parameters::Control;
 
 /// Problem of a step of a contact of profiles.
 pub type SurfaceProblem<'a> = Problem<'a, SurfaceOperators>;
 
 /// Limit of the approaches that are tried for a load.
 const APPROACHES: usize = 40;
+/// Error of the load that is not worth another approach, relative: the pressure has more.
+const LOAD_TOLERANCE: f64 = 1e-9;
 /// Room for windows beyond which a contact is held within them.
 pub const LARGEST_ROOM: f64 = 4.0;
 
@@ -44,7 +47,7 @@ impl<'a> SurfaceProblem<'a> {
 
     /// Whether the height of the wheel is given, and the load follows.
     pub fn is_height_given(&self) -> bool {
-        self.parameters.profiles.height
+        self.parameters.control == Control::Height
     }
 
     /// Vertical load to carry, `N`. A negligible one counts as none.
@@ -166,7 +169,7 @@ fn press(
         if stiffness > 0.0 && stiffness.is_finite() && last.is_some() {
             fields.stiffness = stiffness;
         }
-        if left <= tolerance {
+        if left <= tolerance.max(LOAD_TOLERANCE) {
             fields.approach[0] = approach;
             return check_room(problem, fields, solvers);
         }
@@ -233,6 +236,3 @@ fn check_room(problem: &SurfaceProblem, fields: &SurfaceFields, solvers: &Surfac
     }
     Ok(())
 }
-
-/// Number of windows, for loops over all of them.
-pub const ALL: std::ops::Range<usize> = 0..WINDOWS;

@@ -8,7 +8,7 @@ use crate::error::{Error, ProfileError, Result};
 use crate::geometry::profile::{Body, Profile};
 use crate::geometry::rail::PlacedRail;
 use crate::geometry::unrolled::{RailPoint, Wheel};
-use crate::parameters::Parameters;
+use crate::parameters::{Parameters, Side};
 
 /// Distance of the points of the rail's profile at which contacts are sought, `m`: less than the breadth of the smallest that carries
 /// an appreciable load.
@@ -43,7 +43,7 @@ impl SurfaceOperators {
     /// A profile that does not serve, [`crate::error::Error::DepthBasis`].
     pub fn build(parameters: &Parameters) -> Result<SurfaceOperators> {
         let (rail, wheel) = bodies(parameters).map_err(Error::Profile)?;
-        let own = &parameters.profiles;
+        let own = parameters;
         let (half_length, half_breadth) = parameters.patch_window();
         let sizes = Sizes {
             largest: Grid::new(
@@ -64,7 +64,7 @@ impl SurfaceOperators {
             scan: scan.collect(),
             rail,
             wheel,
-            side: if own.right { -1.0 } else { 1.0 },
+            side: if own.side == Side::Right { -1.0 } else { 1.0 },
             shapes: shapes
                 .map(|(length, breadth)| PatchOperators::on_grid(parameters, sizes.grid(length, breadth)))
                 .collect::<Result<_>>()?,
@@ -81,7 +81,7 @@ impl SurfaceOperators {
 
 /// Rail and wheel in their shapes.
 fn bodies(parameters: &Parameters) -> std::result::Result<(PlacedRail, Wheel), ProfileError> {
-    let own = &parameters.profiles;
+    let own = parameters;
     let rail = Profile::built_in(&own.rail_profile)?;
     let wheel = Profile::built_in(&own.wheel_profile)?;
     wheel.require(Body::Wheel)?;

@@ -5,10 +5,13 @@ use super::geometry::Pose;
 use super::mechanics::SurfaceProblem;
 use super::search::Overlap;
 use super::solvers::SurfaceSolvers;
-use super::windows::{Region, WINDOWS};
+use super::operators::SurfaceOperators;
+use super::windows::{Place, Region, WINDOWS};
 use crate::contact::fields::Fields;
+use crate::contact::patch::fields::PatchFields;
 use crate::error::Result;
 use crate::geometry::unrolled::PlacedWheel;
+use crate::mechanics::patch::normal::is_free;
 
 /// Approach for which windows are placed over that which is expected.
 const AHEAD: f64 = 1.08;
@@ -59,6 +62,7 @@ pub fn place(
         carried.places = now.places;
         for (window, place) in now.used() {
             transfer.fill(operators, before, &place, &mut carried.windows[window], window);
+            free_ends(operators, &place, &mut carried.windows[window]);
         }
         carried.approach[0] = now.approach[0];
         carried.touch = now.touch;
@@ -154,7 +158,7 @@ fn assign(problem: &SurfaceProblem, wanted: &[Wanted], now: &mut SurfaceFields) 
             .filter(|(window, _)| !taken[*window])
             .filter(|(_, place)| place.region(&sizes.grid(place.length, place.breadth)).meets(&wanted.region))
             .min_by(|(_, a), (_, b)| {
-                let distance = |place: &super::windows::Place| {
+                let distance = |place: &Place| {
                     let across = place.region(&sizes.grid(place.length, place.breadth)).across;
                     (across[0] + across[1] - wanted.region.across[0] - wanted.region.across[1]).abs()
                 };
@@ -189,6 +193,17 @@ fn assign(problem: &SurfaceProblem, wanted: &[Wanted], now: &mut SurfaceFields) 
         }
     }
     own
+}
+
+/// Takes the pressure off the outermost cells of a window, which stay free.
+fn free_ends(operators: &SurfaceOperators, place: &Place, fields: &mut PatchFields) {
+    let grid = &operators.of(place).grid;
+    for strip in 0..grid.strips {
+        for at in grid.row(strip).filter(|&at| !is_free(grid, at)) {
+            fields.pressure[at] = 0.0;
+            fields.shear.iter_mut().for_each(|shear| shear[at] = 0.0);
+        }
+    }
 }
 
 /// Whether the rail in a window is warmer or colder than the ambient.

@@ -19,6 +19,8 @@ const LINEAR: f64 = 1e-5;
 const LEAST_RISE: f64 = 0.05;
 /// Size of the region that a window is placed for over that of the overlap: a contact has 0.71 of it.
 const REGION_SHARE: f64 = 0.82;
+/// Depth of the overlap where that region ends, over the largest depth: of a parabola, 1 less the square of the share.
+const EDGE_SHARE: f64 = 1.0 - REGION_SHARE * REGION_SHARE;
 
 /// Wheel over one point of the rail's profile, where it is closest along the rail.
 #[derive(Debug, Clone, Copy, Default)]
@@ -126,19 +128,26 @@ impl Search {
     pub fn overlaps(&mut self, approach: f64) -> &[Overlap] {
         let Search { points, overlaps } = self;
         overlaps.clear();
-        let at = |point: usize| points[point].distance - approach * points[point].rise;
-        let mut point = 0;
-        while point < points.len() && overlaps.len() < REGIONS {
-            let count = (point..points.len()).take_while(|&i| at(i) < 0.0).count();
-            if count == 0 {
-                if let Some(overlap) = between_points(points, point, &at) {
-                    overlaps.push(overlap);
-                }
+        let depth = |point: usize| approach * points[point].rise - points[point].distance;
+        let last = points.len() - 1;
+        let mut point = 1;
+        while point < last && overlaps.len() < REGIONS {
+            let is_deepest = depth(point) >= depth(point - 1) && depth(point) > depth(point + 1);
+            if !is_deepest {
                 point += 1;
                 continue;
             }
-            overlaps.push(region(points, point, count, &at));
-            point += count + 1;
+            let overlap = about(points, point, &depth);
+            if overlap.depth <= 0.0 {
+                point += 1;
+                continue;
+            }
+            // Two that grow into each other are one.
+            match overlaps.last_mut() {
+                Some(before) if before.region.across[0] <= overlap.region.across[1] => before.join(&overlap),
+                _ => overlaps.push(overlap),
+            }
+            point += 1;
         }
         overlaps
     }
@@ -177,68 +186,67 @@ fn half_length(point: &Closest, depth: f64) -> f64 {
     (2.0 * depth.max(0.0) / point.curvature.max(0.2)).sqrt()
 }
 
-/// Region of neighbouring points with an overlap.
-fn region(points: &[Closest], first: usize, count: usize, at: &impl Fn(usize) -> f64) -> Overlap {
-    let last = first + count - 1;
-    let deepest = (first..=last).min_by(|&a, &b| at(a).total_cmp(&at(b))).unwrap_or(first);
-    let end = |inside: usize, outside: Option<usize>| {
-        let Some(outside) = outside.filter(|&outside| outside < points.len()) else {
-            return points[inside].arc;
-        };
-        let share = at(inside) / (at(inside) - at(outside));
-        points[inside].arc + share * (points[outside].arc - points[inside].arc)
-    };
-    // The points go from the field side to the gauge side.
-    let across = [end(last, Some(last + 1)), end(first, first.checked_sub(1))];
-    let mut along = [f64::INFINITY, f64::NEG_INFINITY];
-    for point in first..=last {
-        let half = REGION_SHARE * half_length(&points[point], -at(point));
-        along[0] = along[0].min(points[point].along - half);
-        along[1] = along[1].max(points[point].along + half);
-    }
-    let depth = -at(deepest);
-    let middle = points[deepest].arc;
-    let breadth = 0.5 * (across[1] - across[0]);
-    Overlap {
-        region: Region {
-            along,
-            across: across.map(|arc| middle + REGION_SHARE * (arc - middle)),
-        },
-        depth,
-        rise: points[deepest].rise,
-        curvatures: [points[deepest].curvature.max(0.2), (2.0 * depth / (breadth * breadth)).max(0.2)],
+impl Overlap {
+    /// Takes another one into its region; it keeps what the deeper one is.
+    fn join(&mut self, other: &Overlap) {
+        let region = self.region.union(&other.region);
+        if other.depth > self.depth {
+            *self = *other;
+        }
+        self.region = region;
     }
 }
 
-/// Region whose overlap lies between the points: about one that is closer than its neighbours, by the parabola through the three.
-fn between_points(points: &[Closest], point: usize, at: &impl Fn(usize) -> f64) -> Option<Overlap> {
-    let (before, after) = (point.checked_sub(1)?, point + 1);
-    if after >= points.len() || at(before) < 0.0 || at(after) < 0.0 {
-        return None;
+/// Region about a point at which the overlap is deepest: as far as it is deeper than where a contact ends, and no farther than to where it is
+/// least on the way to the next one.
+fn about(points: &[Closest], deepest: usize, depth: &impl Fn(usize) -> f64) -> Overlap {
+    let step = points[deepest - 1].arc - points[deepest].arc;
+    // The parabola through the three points: a small contact may lie between them.
+    let slope = 0.5 * (depth(deepest - 1) - depth(deepest + 1)) / step;
+    let second = (2.0 * depth(deepest) - depth(deepest - 1) - depth(deepest + 1)) / (step * step);
+    let shift = if second > 0.0 { (slope / second).clamp(-step, step) } else { 0.0 };
+    let most = depth(deepest) + 0.5 * slope * shift;
+    let middle = points[deepest].arc + shift;
+    let end = EDGE_SHARE * most;
+    let mut along = [points[deepest].along; 2];
+    let mut widen = |point: usize| {
+        let half = REGION_SHARE * half_length(&points[point], depth(point));
+        along = [along[0].min(points[point].along - half), along[1].max(points[point].along + half)];
+    };
+    let half = REGION_SHARE * half_length(&points[deepest], most);
+    let mut reach = |direction: isize| {
+        let mut point = deepest;
+        loop {
+            let Some(next) = point.checked_add_signed(direction).filter(|&next| next < points.len()) else {
+                return points[point].arc;
+            };
+            // Beyond the place where the overlap is least another region begins.
+            if point != deepest && depth(next) > depth(point) {
+                return points[point].arc;
+            }
+            if depth(next) <= end {
+                let share = (depth(point) - end) / (depth(point) - depth(next));
+                return points[point].arc + share.clamp(0.0, 1.0) * (points[next].arc - points[point].arc);
+            }
+            point = next;
+            widen(point);
+        }
+    };
+    // The points go from the field side to the gauge side.
+    let mut across = [reach(1), reach(-1)];
+    if second > 0.0 && across[1] - across[0] < 2.0 * step {
+        let half_breadth = REGION_SHARE * (2.0 * most.max(0.0) / second).sqrt();
+        across = [middle - half_breadth, middle + half_breadth];
     }
-    let step = points[point].arc - points[after].arc;
-    let (slope, second) = (
-        0.5 * (at(before) - at(after)) / step,
-        (at(before) + at(after) - 2.0 * at(point)) / (step * step),
-    );
-    if second <= 0.0 || slope.abs() > second * step {
-        return None;
-    }
-    let depth = 0.5 * slope * slope / second - at(point);
-    if depth <= 0.0 {
-        return None;
-    }
-    let middle = points[point].arc - slope / second;
-    let half_breadth = REGION_SHARE * (2.0 * depth / second).sqrt();
-    let half = REGION_SHARE * half_length(&points[point], depth);
-    let along = points[point].along;
-    Some(Overlap {
+    let breadth = 0.5 * (across[1] - across[0]) / REGION_SHARE;
+    let place = points[deepest].along;
+    Overlap {
         region: Region {
-            along: [along - half, along + half],
-            across: [middle - half_breadth, middle + half_breadth],
+            along: [along[0].min(place - half), along[1].max(place + half)],
+            across,
         },
-        depth,
-        rise: points[point].rise,
-        curvatures: [points[point].curvature.max(0.2), second],
-    })
+        depth: most,
+        rise: points[deepest].rise,
+        curvatures: [points[deepest].curvature.max(0.2), (2.0 * most / (breadth * breadth)).max(0.2)],
+    }
 }

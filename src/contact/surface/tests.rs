@@ -1,6 +1,6 @@
 use super::totals::OnWheelset;
 use crate::contact::ContactState;
-use crate::parameters::{ContactModel, FrictionLaw, Parameters, SlipSource};
+use crate::parameters::{ContactModel, Control, FrictionLaw, Parameters, Side, SlipSource};
 use crate::signals::Inputs;
 use crate::wheel_rail::Model;
 use std::time::Instant;
@@ -19,9 +19,9 @@ fn parameters(right: bool, height: bool) -> Parameters {
         thermal_expansion: 0.0,
         ..Parameters::default()
     };
-    parameters.profiles.rail_profile = "UIC60".into();
-    parameters.profiles.right = right;
-    parameters.profiles.height = height;
+    parameters.rail_profile = "UIC60".into();
+    parameters.side = if right { Side::Right } else { Side::Left };
+    parameters.control = if height { Control::Height } else { Control::Load };
     parameters
 }
 
@@ -80,5 +80,93 @@ fn zz_manchester() {
             -(1e3 * (s.fields.touch - s.fields.approach[0]) - 460.0) - value("z_ws"),
             s.fields.used().map(|(_, p)| (p.length, p.breadth)).collect::<Vec<_>>(), time
         );
+    }
+}
+
+#[test]
+fn zz_overlaps() {
+    use super::geometry::Pose;
+    use super::search::Search;
+    let model = Model::new(parameters(true, false)).unwrap();
+    let crate::contact::Operators::Surface(operators) = model.operators_for_tests() else { panic!() };
+    for y in [5.0, 5.4, 5.5, 6.0, 6.5] {
+        let inputs = Inputs { normal_load: 60e3, wheel_speed: 20.0 / 0.46, vehicle_speed: 20.0, lateral_displacement: -1e-3 * y, roll_angle: -0.4e-3 * y, yaw_angle: -3e-3 * y, ..Inputs::default() };
+        let mut workspace = model.workspace();
+        let state = model.initial_state(&mut workspace, &inputs).unwrap();
+        let ContactState::Surface(s) = &state.contact else { panic!() };
+        let pose = Pose::new(operators, &inputs, 0.46);
+        let mut search = Search::new(operators);
+        let touch = search.touch(operators, &pose.position, 0.46);
+        println!("y {y} touch {:.6} {:.6} approach {:.1} {:?}", touch, s.fields.touch, 1e6 * s.fields.approach[0], s.fields.used().map(|(w, p)| (w, p.length, p.breadth, p.strip)).collect::<Vec<_>>());
+        for o in search.overlaps(s.fields.approach[0]) {
+            println!("   across {:.2?} along {:.1?} depth {:.1} rise {:.3} curv {:.1?}", o.region.across.map(|s| 1e3 * s), o.region.along.map(|s| 1e3 * s), 1e6 * o.depth, o.rise, o.curvatures);
+        }
+        let place = s.fields.used().next().unwrap();
+        let patch = operators.of(&place.1);
+        let p = &s.fields.windows[place.0].pressure;
+        println!("   {:?}", (0..21).map(|strip| (1e-6 * patch.scales.pressure * crate::numerics::dense::largest(&p[patch.grid.row(strip)])) as i64).collect::<Vec<_>>());
+    }
+}
+
+#[test]
+fn zz_sweep() {
+    for (right, load) in [(true, 60e3), (true, 10e3), (true, 95e3)] {
+        let mut parameters = parameters(right, false);
+        parameters.wear_coefficient = 0.5e-12;
+        parameters.thermal_expansion = 12e-6;
+        parameters.friction_law = FrictionLaw::PiecewiseLinear;
+        let model = Model::new(parameters).unwrap();
+        let mut workspace = model.workspace();
+        let mut inputs = Inputs {
+            normal_load: load,
+            wheel_speed: 20.0 / 0.46,
+            vehicle_speed: 20.0,
+            lateral_displacement: 0.0,
+            ..Inputs::default()
+        };
+        let mut state = model.initial_state(&mut workspace, &inputs).unwrap();
+        let mut times = Vec::new();
+        let (mut moved, mut staggered) = (0, 0);
+        let mut last: Option<[[f64; 3]; 2]> = None;
+        let mut jumps = Vec::new();
+        for step in 0..1600 {
+            let rates = Inputs {
+                lateral_displacement: -5e-3,
+                yaw_angle: -1.5e-2,
+                lateral_speed: 0.0,
+                roll_angle: -0.2e-2,
+                ..Inputs::ZERO
+            };
+            let before = state.clone();
+            let start = Instant::now();
+            let result = model.step(&mut workspace, &mut state, &inputs, &rates, 1e-3);
+            times.push(start.elapsed().as_secs_f64() * 1e6);
+            if let Err(error) = result {
+                println!("step {step} {error}");
+                break;
+            }
+            inputs = inputs.advanced(&rates, 1e-3);
+            let (ContactState::Surface(a), ContactState::Surface(b)) = (&before.contact, &state.contact) else { panic!() };
+            moved += usize::from(a.fields.places != b.fields.places);
+            staggered += usize::from(state.convergence.staggered);
+            let all = on_wheelset(&model, &state, &inputs);
+            if let Some([before, twice]) = last {
+                let jump = (0..3).map(|k| (all.force[k] - 2.0 * before[k] + twice[k]).abs()).fold(0.0, f64::max) / load;
+                jumps.push((jump, step, a.fields.places != b.fields.places));
+                last = Some([all.force, before]);
+            } else {
+                last = Some([all.force, all.force]);
+            }
+            if step % 100 == 0 || staggered > 0 && state.convergence.staggered {
+                println!("{step} y {:.2} n {} F {:.0?} T {:.0} its {} {:?} {:?}", -1e3 * inputs.lateral_displacement, all.count, all.force,
+                    state.outputs.peak_temperature, state.convergence.iterations, b.fields.used().map(|(w, p)| (w, p.length, p.breadth, p.strip)).collect::<Vec<_>>(),
+                    all.contacts[..all.count].iter().map(|c| (c.normal_force as i64, c.peak_pressure as i64 / 1000000)).collect::<Vec<_>>());
+            }
+        }
+        times.sort_by(f64::total_cmp);
+        jumps.sort_by(|a, b| b.0.total_cmp(&a.0));
+        let n = times.len();
+        println!("load {load} moved {moved} staggered {staggered} median {:.0} 99 {:.0} max {:.0} us {:?}", times[n / 2], times[n * 99 / 100], times[n - 1], workspace.iterations());
+        println!("jumps {:?}", &jumps[..12]);
     }
 }
