@@ -101,6 +101,7 @@ impl Operators {
         Ok(match parameters.contact_model {
             ContactModel::Line => Operators::Line(LineOperators::new(parameters)?),
             ContactModel::Patch => Operators::Patch(PatchOperators::new(parameters)?),
+            ContactModel::Profiles => return Err(Error::NotComputedYet),
         })
     }
 

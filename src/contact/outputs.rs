@@ -32,7 +32,7 @@ impl Integrals {
     fn width(&self, parameters: &Parameters) -> f64 {
         match parameters.contact_model {
             ContactModel::Line => parameters.contact_width,
-            ContactModel::Patch => self.contact_breadth,
+            ContactModel::Patch | ContactModel::Profiles => self.contact_breadth,
         }
     }
 

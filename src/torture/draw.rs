@@ -15,7 +15,7 @@ pub fn parameters(random: &mut Random, contact_model: ContactModel) -> Parameter
         let mut drawn = draw(random);
         match contact_model {
             ContactModel::Line => layer(random, &mut drawn),
-            ContactModel::Patch => patch(random, &mut drawn),
+            ContactModel::Patch | ContactModel::Profiles => patch(random, &mut drawn),
         }
         if drawn.validate().is_ok() && with_window(&drawn, WIDEST_WINDOW).validate().is_ok() {
             return drawn;
@@ -33,7 +33,7 @@ pub fn with_window(parameters: &Parameters, factor: f64) -> Parameters {
             contact_nodes: widened(parameters.contact_nodes - 1) + 1,
             ..parameters.clone()
         },
-        ContactModel::Patch => Parameters {
+        ContactModel::Patch | ContactModel::Profiles => Parameters {
             largest_load: factor * factor * factor * parameters.largest_load,
             patch_nodes: widened(parameters.patch_nodes),
             patch_strips: widened(parameters.patch_strips),

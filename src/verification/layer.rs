@@ -47,7 +47,7 @@ fn rolling(parameters: &Parameters, creepage: f64) -> Result<(f64, f64)> {
             parameters.hertz_half_length(inputs.normal_load),
             parameters.hertz_peak_pressure(inputs.normal_load),
         ),
-        ContactModel::Patch => {
+        ContactModel::Patch | ContactModel::Profiles => {
             let ellipse = parameters.hertz_ellipse(inputs.normal_load);
             (ellipse.along, ellipse.peak_pressure)
         }

@@ -45,7 +45,7 @@ fn hertz(parameters: &Parameters) -> (f64, f64) {
     let load = Inputs::default().normal_load;
     match parameters.contact_model {
         ContactModel::Line => (parameters.hertz_half_length(load), parameters.hertz_peak_pressure(load)),
-        ContactModel::Patch => {
+        ContactModel::Patch | ContactModel::Profiles => {
             let ellipse = parameters.hertz_ellipse(load);
             (ellipse.along, ellipse.peak_pressure)
         }
@@ -88,7 +88,7 @@ fn sliding(contact_model: ContactModel, share: f64) -> f64 {
             let c = (1.0 - r * r).sqrt();
             FRAC_2_PI * (c * r + c.acos())
         }
-        ContactModel::Patch => 1.5 * r - 0.5 * r * r * r,
+        ContactModel::Patch | ContactModel::Profiles => 1.5 * r - 0.5 * r * r * r,
     }
 }
 
@@ -111,7 +111,7 @@ fn bristles(parameters: &Parameters, creepage: f64) -> f64 {
     };
     match parameters.contact_model {
         ContactModel::Line => FRAC_2_PI * strip(0.0),
-        ContactModel::Patch => {
+        ContactModel::Patch | ContactModel::Profiles => {
             let strips = (0..POINTS).map(|i| strip((i as f64 + 0.5) / POINTS as f64));
             // The integral over half the breadth, of which there are two, over ⅔π.
             2.0 * strips.sum::<f64>() / POINTS as f64 * 1.5 / PI
