@@ -514,7 +514,7 @@ mod tests {
             };
             let model = |settings| match contact_model {
                 ContactModel::Line => model(normal_solver, settings),
-                ContactModel::Patch => patch(settings),
+                ContactModel::Patch | ContactModel::Profiles => patch(settings),
             };
             let sound = model(Settings::default());
             let inputs = Inputs::default();
@@ -545,7 +545,7 @@ mod tests {
                     let share = state.outputs.traction_force / undisturbed.outputs.traction_force;
                     let tolerance = match contact_model {
                         ContactModel::Line => state.convergence.residual.max(1e-9),
-                        ContactModel::Patch => 1e-5,
+                        ContactModel::Patch | ContactModel::Profiles => 1e-5,
                     };
                     let short = (share - 1.0).abs() < tolerance;
                     assert!(state == undisturbed || short, "{words}, limit {limit}: {share}");

@@ -201,7 +201,7 @@ mod tests {
                     let residual = component.state.as_ref().unwrap().convergence.residual;
                     let tolerance = match contact_model {
                         ContactModel::Line => residual.max(1e-9),
-                        ContactModel::Patch => 1e-5,
+                        ContactModel::Patch | ContactModel::Profiles => 1e-5,
                     };
                     let share = reached.traction_force / undisturbed.traction_force;
                     assert!((share - 1.0).abs() < tolerance, "{words}, limit {allowed}: {share}");
