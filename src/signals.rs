@@ -375,10 +375,10 @@ macro_rules! contact_outputs {
 
         /// The rows of arrays, element by element.
         const ELEMENTS: &[[OutputSignal; CONTACTS]] = &[$([
-            contact_row!(0 "1", $field, $unit, optional!($($display)?), optional!($($minimum)?), $nominal, concat!($($description),+).trim_ascii()),
-            contact_row!(1 "2", $field, $unit, optional!($($display)?), optional!($($minimum)?), $nominal, concat!($($description),+).trim_ascii()),
-            contact_row!(2 "3", $field, $unit, optional!($($display)?), optional!($($minimum)?), $nominal, concat!($($description),+).trim_ascii()),
-            contact_row!(3 "4", $field, $unit, optional!($($display)?), optional!($($minimum)?), $nominal, concat!($($description),+).trim_ascii()),
+            contact_row!(0 "1", $field, $unit, optional!($($display)?), optional!($($minimum)?), $nominal, concat!($($description,)+ "; contacts count from the gauge side").trim_ascii()),
+            contact_row!(1 "2", $field, $unit, optional!($($display)?), optional!($($minimum)?), $nominal, concat!($($description,)+ "; contacts count from the gauge side").trim_ascii()),
+            contact_row!(2 "3", $field, $unit, optional!($($display)?), optional!($($minimum)?), $nominal, concat!($($description,)+ "; contacts count from the gauge side").trim_ascii()),
+            contact_row!(3 "4", $field, $unit, optional!($($display)?), optional!($($minimum)?), $nominal, concat!($($description,)+ "; contacts count from the gauge side").trim_ascii()),
         ],)+];
     };
 }
@@ -386,7 +386,8 @@ macro_rules! contact_outputs {
 inputs! {
     /// Angular speed of the wheel, positive when it rolls in the direction of travel
     wheel_speed "ω": "rad/s" shown in "rpm", start 10.0 / 0.46, range [-1e4, 1e4], nominal 20.0;
-    /// Normal load of the wheel on the rail, at most largest_load; 0 is a lifted wheel
+    /// Normal load of the wheel on the rail, where contact_model is profiles its vertical load, at most largest_load; 0 is a lifted
+    /// wheel
     normal_load "N": "N" shown in "kN", start 60e3, range [0.0, 1e7; |parameters| (0.0, parameters.largest_load), "largest_load sets the upper limit"], nominal 6e4;
     /// Creepage (wheel_speed*wheel_radius - V)/V
     creepage "ξ": "1", by creepage, start 0.0, range [-0.99, 100.0], nominal 1e-2;
@@ -533,7 +534,7 @@ contact_outputs! {
     lateral_force: "N" shown in "kN", nominal 1e4;
     /// Moment of the shear traction of a contact on the wheel about the normal of the contact, away from the rail
     spin_moment: "N.m", nominal 10.0;
-    /// Longitudinal creepage at the centre of a contact, positive where the wheel slides backward on the rail as it drives
+    /// Longitudinal creepage at the centre of a contact, positive where the wheel turns faster than it rolls
     longitudinal_creepage: "1", nominal 1e-2;
     /// Lateral creepage at the centre of a contact in its plane: velocity of the wheel relative to the rail over the speed of
     /// the axle, positive to the left
