@@ -1,8 +1,10 @@
 //! Errors of the model, one enum, each variant carrying the values that made it.
 
 mod profile;
+mod text;
 
 pub use profile::ProfileError;
+pub use text::{LONGEST_TEXT, TextProblem};
 use thiserror::Error;
 
 /// Errors of the physical model. Nothing is changed by a call that returns one.
@@ -42,32 +44,46 @@ pub enum Error {
         /// Condition that must hold between the two.
         requirement: &'static str,
     },
-    /// Lateral or spin motion, of which a line contact knows nothing.
-    #[error(
-        "{name} = {value}: must be 0 with contact_model = 1 (line), which has no lateral force and no spin; contact_model = 2 (patch) takes it"
-    )]
-    PatchOnly {
+    /// A text that cannot be a parameter's.
+    #[error("{name} {problem}; allowed is UTF-8 of 1 to {LONGEST_TEXT} bytes, none of them zero")]
+    Text {
+        /// Parameter.
+        name: &'static str,
+        /// What is wrong with it.
+        problem: TextProblem,
+    },
+    /// An input other than 0 that the contact model knows nothing of.
+    #[error("{name} = {value}: must be 0 with contact_model = {number} ({choice}); contact_model = {takers} it")]
+    OtherModelOnly {
         /// The input.
         name: &'static str,
         /// The refused value.
         value: f64,
+        /// Number of the chosen `contact_model`.
+        number: i32,
+        /// Name of the choice.
+        choice: &'static str,
+        /// Contact models that take the input, with the verb: "2 (patch) takes".
+        takers: &'static str,
     },
-    /// An input that the motion does not follow from under this `slip_source`.
+    /// An input that has no effect under a choice.
     #[error(
-        "{name} = {value} has no effect with slip_source = {number} ({choice}); with slip_source = {other_number} ({other}) it is used"
+        "{name} = {value} has no effect with {parameter} = {number} ({choice}); with {parameter} = {other_number} ({other}) it is used"
     )]
     NotUsed {
         /// The input.
         name: &'static str,
-        /// Value of the parameter.
+        /// Value of the input.
         value: f64,
-        /// The number of the `slip_source` that is chosen.
+        /// The parameter that chooses: `slip_source` or `control`.
+        parameter: &'static str,
+        /// The number of the choice.
         number: i32,
         /// Name of the choice.
         choice: &'static str,
         /// The number of the one that uses the input.
         other_number: i32,
-        /// Name of the other parameter.
+        /// Name of that one.
         other: &'static str,
     },
     /// A profile of wheel or rail that does not serve.
@@ -79,6 +95,9 @@ pub enum Error {
     /// State or workspace come from a model with another `contact_model`.
     #[error("the state or the workspace is not one of this contact_model")]
     OtherContactModel,
+    /// A contact model that is declared, and not computed yet.
+    #[error("contact_model = 3 (profiles) is not computed yet; 1 (line) and 2 (patch) are")]
+    NotComputedYet,
     /// No parameter has this name.
     #[error("there is no parameter named {name:?}; `wheelrail describe` lists them")]
     UnknownParameter {

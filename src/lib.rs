@@ -19,8 +19,8 @@
 //! change, a [`State`], which holds all that does, and a [`Workspace`], which is scratch. One model serves any number
 //! of wheels with its parameters, on any number of threads: a wheel has its state, a thread its workspace.
 //!
-//! [`Inputs`], [`Outputs`] and [`Parameters`] are plain structs. [`INPUTS`], [`OUTPUTS`], [`REAL_PARAMETERS`] and
-//! [`INTEGER_PARAMETERS`] list their fields by name, with unit, range and description.
+//! [`Inputs`], [`Outputs`] and [`Parameters`] are plain structs. [`INPUTS`], [`OUTPUTS`], [`REAL_PARAMETERS`],
+//! [`INTEGER_PARAMETERS`] and [`TEXT_PARAMETERS`] list their fields by name, with unit, range and description.
 //!
 //! # Features
 //!
@@ -126,11 +126,11 @@ pub mod wheel_rail;
 pub use error::{Error, ProfileError};
 pub use geometry::profile::{Body, CurvePoint, HeightFunction, Profile};
 pub use parameters::{
-    ContactModel, Control, FrictionLaw, INTEGER_PARAMETERS, MeshKind, NormalSolver, Parameters, REAL_PARAMETERS,
-    SlipSource, Wheel, WheelHeating,
+    ContactModel, Control, FrictionLaw, INTEGER_PARAMETERS, MeshKind, NormalSolver, Parameters, REAL_PARAMETERS, Side,
+    SlipSource, TEXT_PARAMETERS, Wheel, WheelHeating,
 };
 pub use settings::Settings;
-pub use signals::{INPUTS, Inputs, OUTPUTS, Outputs};
+pub use signals::{ContactOutputs, INPUTS, Inputs, OUTPUTS, Outputs};
 pub use simulation::Simulation;
 pub use wheel_rail::{Interrupted, Model, Profiles, State, Workspace};
 

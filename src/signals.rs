@@ -9,15 +9,17 @@
 //!
 //! where the symbol is that of the equations, where there is one. The order is that of the table and of a saved state.
 //!
-//! An input that only one slip_source uses has the column `by creepage` or `by vehicle_speed`; the end of its description
-//! follows from it, and from the column `patch only`.
+//! An input that only one slip_source uses has the column `by creepage` or `by vehicle_speed`, one that only a given height
+//! uses `by height`; one that not every contact model takes has the column `only […]` with those that do. The end of its
+//! description follows from these columns. What each of up to [`CONTACTS`] contacts has is a table of its own: a row there is
+//! a field of [`ContactOutputs`], and as many rows of [`OUTPUTS`] as there are contacts.
 
 mod motion;
 #[cfg(test)]
 mod tests;
 
 use crate::error::{Error, Result};
-use crate::parameters::{ContactModel, Parameters, SlipSource, check_range};
+use crate::parameters::{ContactModel, Control, Parameters, SlipSource, check_range};
 use serde::{Deserialize, Serialize};
 
 use motion::LARGEST_SPEED;
@@ -41,10 +43,12 @@ pub struct InputSignal {
     limits: fn(&Parameters) -> (f64, f64),
     /// Parameters that narrow the range, and how, in words for a refusal; empty where none does.
     pub narrowed_by: &'static str,
-    /// The only `slip_source` that uses it; `None` where each does.
-    pub slip_source: Option<SlipSource>,
-    /// Whether only a patch takes another value than 0.
-    pub patch_only: bool,
+    /// The only choice under which it is used; `None` where it is under each.
+    pub used_by: Option<UsedBy>,
+    /// Contact models that take another value than 0.
+    pub models: &'static [ContactModel],
+    /// Those models, with the verb, in words for a refusal: "2 (patch) takes".
+    takers: &'static str,
     /// Typical magnitude.
     pub nominal: f64,
     /// One sentence.
@@ -54,6 +58,36 @@ pub struct InputSignal {
     /// Writes the value.
     pub set: fn(&mut Inputs, f64),
 }
+
+/// Choice under which an input is used.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum UsedBy {
+    /// This `slip_source`.
+    SlipSource(SlipSource),
+    /// This `control`.
+    Control(Control),
+}
+
+impl UsedBy {
+    /// The parameter, the number of its choice and that one's name.
+    fn described(self) -> (&'static str, i32, &'static str) {
+        match self {
+            UsedBy::SlipSource(source) => ("slip_source", source as i32 + 1, SlipSource::NAMES[source as usize]),
+            UsedBy::Control(control) => ("control", control as i32 + 1, Control::NAMES[control as usize]),
+        }
+    }
+
+    /// The choice that the parameters have made of the same.
+    fn chosen(self, parameters: &Parameters) -> UsedBy {
+        match self {
+            UsedBy::SlipSource(_) => UsedBy::SlipSource(parameters.slip_source),
+            UsedBy::Control(_) => UsedBy::Control(parameters.control),
+        }
+    }
+}
+
+/// Number of contacts that have outputs of their own.
+pub const CONTACTS: usize = 4;
 
 /// Kind of an output: the way in which it follows from the steps.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -66,10 +100,16 @@ pub enum OutputKind {
     Total,
 }
 
-/// One row of the table of outputs.
+/// One row of the table of outputs: a number, or an element of an array over the contacts. The elements of an array follow each
+/// other.
+#[derive(Clone, Copy)]
 pub struct OutputSignal {
-    /// Name.
+    /// Name, with an index where it is an element.
     pub name: &'static str,
+    /// Name of the array that it is an element of, and its place there, counted from 0.
+    pub array: Option<(&'static str, usize)>,
+    /// Whether it is always 0 but of profiles.
+    pub profiles_only: bool,
     /// Unit.
     pub unit: &'static str,
     /// Unit in which a person would read the value.
@@ -110,37 +150,91 @@ macro_rules! limits {
 }
 
 /// The choice that an input's column `by` names.
-macro_rules! slip_source {
+macro_rules! used_by {
     () => {
         None
     };
     (creepage) => {
-        Some(SlipSource::Creepage)
+        Some(UsedBy::SlipSource(SlipSource::Creepage))
     };
     (vehicle_speed) => {
-        Some(SlipSource::VehicleSpeed)
+        Some(UsedBy::SlipSource(SlipSource::VehicleSpeed))
+    };
+    (height) => {
+        Some(UsedBy::Control(Control::Height))
     };
 }
 
-/// Writes what the columns `by` and `only` say at the end of an input's description.
+/// Writes what the column `by` says at the end of an input's description.
 macro_rules! used_where {
     () => {
         ""
     };
-    (patch) => {
-        "; 0 unless contact_model is patch"
+    (height) => {
+        ", used where control is height"
     };
     ($source:ident) => {
         concat!(", used where slip_source is ", stringify!($source))
     };
 }
 
-macro_rules! is_there {
+/// The contact models of a column `only`.
+macro_rules! models {
+    () => {
+        ContactModel::ALL
+    };
+    ([patch]) => {
+        &[ContactModel::Patch]
+    };
+    ([profiles]) => {
+        &[ContactModel::Profiles]
+    };
+    ([patch, profiles]) => {
+        &[ContactModel::Patch, ContactModel::Profiles]
+    };
+}
+
+/// The same in words for a refusal.
+macro_rules! takers {
+    () => {
+        ""
+    };
+    ([patch]) => {
+        "2 (patch) takes"
+    };
+    ([profiles]) => {
+        "3 (profiles) takes"
+    };
+    ([patch, profiles]) => {
+        "2 (patch) and 3 (profiles) take"
+    };
+}
+
+/// Writes what the column `only` says at the end of a description.
+macro_rules! zero_unless {
+    () => {
+        ""
+    };
+    ([patch]) => {
+        "; 0 unless contact_model is patch"
+    };
+    ([profiles]) => {
+        "; 0 unless contact_model is profiles"
+    };
+    ([patch, profiles]) => {
+        "; 0 unless contact_model is patch or profiles"
+    };
+}
+
+macro_rules! is_profiles {
     () => {
         false
     };
-    (patch) => {
+    ([profiles]) => {
         true
+    };
+    ([patch, profiles]) => {
+        false
     };
 }
 
@@ -157,13 +251,13 @@ macro_rules! inputs {
     ($(
         $(#[doc = $description:literal])+
         $field:ident $($symbol:literal)?: $unit:literal $(shown in $display:literal)?, $(by $source:ident,)? start $default:expr,
-        range [$minimum:expr, $maximum:expr $(; $narrowed:expr, $because:expr)?], nominal $nominal:expr $(, $patch:ident only)?;
+        range [$minimum:expr, $maximum:expr $(; $narrowed:expr, $because:expr)?], nominal $nominal:expr $(, only $models:tt)?;
     )+) => {
         /// The continuous inputs at one instant.
         #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
         pub struct Inputs {
             $(
-                #[doc = concat!($($description,)+ used_where!($($source)?), used_where!($($patch)?))]
+                #[doc = concat!($($description,)+ used_where!($($source)?), zero_unless!($($models)?))]
                 $(#[doc = concat!("\n\nSymbol: ", $symbol)])?
                 #[doc = concat!("\n\nUnit: `", $unit, "`")]
                 pub $field: f64,
@@ -193,10 +287,11 @@ macro_rules! inputs {
                 maximum: $maximum,
                 limits: limits!($minimum, $maximum $(, $narrowed)?),
                 narrowed_by: narrowed_by!($($because)?),
-                slip_source: slip_source!($($source)?),
-                patch_only: is_there!($($patch)?),
+                used_by: used_by!($($source)?),
+                models: models!($($models)?),
+                takers: takers!($($models)?),
                 nominal: $nominal,
-                description: concat!($($description,)+ used_where!($($source)?), used_where!($($patch)?)).trim_ascii(),
+                description: concat!($($description,)+ used_where!($($source)?), zero_unless!($($models)?)).trim_ascii(),
                 get: |inputs| inputs.$field,
                 set: |inputs, value| inputs.$field = value,
             },
@@ -208,30 +303,34 @@ macro_rules! outputs {
     ($(
         $(#[doc = $description:literal])+
         $field:ident $($symbol:literal)?: $unit:literal $(shown in $display:literal)?, $kind:ident,
-        $(at least $minimum:literal,)? $(at most $maximum:literal,)? nominal $nominal:expr;
+        $(at least $minimum:literal,)? $(at most $maximum:literal,)? nominal $nominal:expr $(, only $models:tt)?;
     )+) => {
         /// The outputs at one instant.
         #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
         pub struct Outputs {
             $(
-                #[doc = concat!($($description),+)]
+                #[doc = concat!($($description,)+ zero_unless!($($models)?))]
                 $(#[doc = concat!("\n\nSymbol: ", $symbol)])?
                 #[doc = concat!("\n\nUnit: `", $unit, "`")]
                 pub $field: f64,
             )+
+            /// The contacts along the rail's profile, from its gauge side to its field side; 0 where there is none.
+            pub contact: [ContactOutputs; CONTACTS],
         }
 
-        /// The outputs in the order in which they are listed.
-        pub const OUTPUTS: &[OutputSignal] = &[$(
+        /// The rows of numbers.
+        const NUMBERS: &[OutputSignal] = &[$(
             OutputSignal {
                 name: stringify!($field),
+                array: None,
+                profiles_only: is_profiles!($($models)?),
                 unit: $unit,
                 display_unit: optional!($($display)?),
                 kind: OutputKind::$kind,
                 minimum: optional!($($minimum)?),
                 maximum: optional!($($maximum)?),
                 nominal: $nominal,
-                description: concat!($($description),+).trim_ascii(),
+                description: concat!($($description,)+ zero_unless!($($models)?)).trim_ascii(),
                 get: |outputs| outputs.$field,
                 set: |outputs, value| outputs.$field = value,
             },
@@ -239,10 +338,56 @@ macro_rules! outputs {
     };
 }
 
+/// The row of a contact's output.
+macro_rules! contact_row {
+    ($contact:literal $index:literal, $field:ident, $unit:literal, $display:expr, $minimum:expr, $nominal:expr, $description:expr) => {
+        OutputSignal {
+            name: concat!("contact.", stringify!($field), "[", $index, "]"),
+            array: Some((concat!("contact.", stringify!($field)), $contact)),
+            profiles_only: true,
+            unit: $unit,
+            display_unit: $display,
+            kind: OutputKind::Instantaneous,
+            minimum: $minimum,
+            maximum: None,
+            nominal: $nominal,
+            description: $description,
+            get: |outputs| outputs.contact[$contact].$field,
+            set: |outputs, value| outputs.contact[$contact].$field = value,
+        }
+    };
+}
+
+macro_rules! contact_outputs {
+    ($(
+        $(#[doc = $description:literal])+
+        $field:ident: $unit:literal $(shown in $display:literal)?, $(at least $minimum:literal,)? nominal $nominal:expr;
+    )+) => {
+        /// The outputs of a contact at one instant.
+        #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+        pub struct ContactOutputs {
+            $(
+                #[doc = concat!($($description),+)]
+                #[doc = concat!("\n\nUnit: `", $unit, "`")]
+                pub $field: f64,
+            )+
+        }
+
+        /// The rows of arrays, element by element.
+        const ELEMENTS: &[[OutputSignal; CONTACTS]] = &[$([
+            contact_row!(0 "1", $field, $unit, optional!($($display)?), optional!($($minimum)?), $nominal, concat!($($description,)+ "; contacts count from the gauge side").trim_ascii()),
+            contact_row!(1 "2", $field, $unit, optional!($($display)?), optional!($($minimum)?), $nominal, concat!($($description,)+ "; contacts count from the gauge side").trim_ascii()),
+            contact_row!(2 "3", $field, $unit, optional!($($display)?), optional!($($minimum)?), $nominal, concat!($($description,)+ "; contacts count from the gauge side").trim_ascii()),
+            contact_row!(3 "4", $field, $unit, optional!($($display)?), optional!($($minimum)?), $nominal, concat!($($description,)+ "; contacts count from the gauge side").trim_ascii()),
+        ],)+];
+    };
+}
+
 inputs! {
     /// Angular speed of the wheel, positive when it rolls in the direction of travel
     wheel_speed "ω": "rad/s" shown in "rpm", start 10.0 / 0.46, range [-1e4, 1e4], nominal 20.0;
-    /// Normal load of the wheel on the rail, at most largest_load; 0 is a lifted wheel
+    /// Normal load of the wheel on the rail, where contact_model is profiles its vertical load, at most largest_load; 0 is a lifted
+    /// wheel
     normal_load "N": "N" shown in "kN", start 60e3, range [0.0, 1e7; |parameters| (0.0, parameters.largest_load), "largest_load sets the upper limit"], nominal 6e4;
     /// Creepage (wheel_speed*wheel_radius - V)/V
     creepage "ξ": "1", by creepage, start 0.0, range [-0.99, 100.0], nominal 1e-2;
@@ -261,15 +406,40 @@ inputs! {
     incoming_wear_depth: "m" shown in "µm", start 0.0, range [0.0, 1e-2], nominal 1e-7;
     /// Lateral creepage: lateral velocity of the wheel relative to the rail over the speed of its axle, positive to the
     /// left in the direction of x with z upward
-    lateral_creepage "η": "1", by creepage, start 0.0, range [-10.0, 10.0], nominal 1e-2, patch only;
+    lateral_creepage "η": "1", by creepage, start 0.0, range [-10.0, 10.0], nominal 1e-2, only [patch];
     /// Spin creepage: angular velocity of the wheel relative to the rail about the upward normal over the speed of its
     /// axle, positive anticlockwise seen from above
-    spin_creepage "φ": "1/m", by creepage, start 0.0, range [-1e3, 1e3], nominal 1.0, patch only;
-    /// Lateral velocity of the wheel relative to the rail, positive to the left
-    lateral_speed "v_y": "m/s", by vehicle_speed, start 0.0, range [-100.0, 100.0], nominal 0.1, patch only;
+    spin_creepage "φ": "1/m", by creepage, start 0.0, range [-1e3, 1e3], nominal 1.0, only [patch];
+    /// Lateral velocity of the wheel relative to the rail, where contact_model is profiles that of the centre of the wheelset,
+    /// positive to the left
+    lateral_speed "v_y": "m/s", by vehicle_speed, start 0.0, range [-100.0, 100.0], nominal 0.1, only [patch, profiles];
     /// Angular velocity of the wheel relative to the rail about the upward normal, positive anticlockwise seen from
     /// above
-    spin_rate "ω_z": "rad/s", by vehicle_speed, start 0.0, range [-1e3, 1e3], nominal 1.0, patch only;
+    spin_rate "ω_z": "rad/s", by vehicle_speed, start 0.0, range [-1e3, 1e3], nominal 1.0, only [patch];
+    /// Lateral displacement of the centre of the wheelset from the middle of the track, positive to the left
+    lateral_displacement "y": "m" shown in "mm", start 0.0, range [-0.1, 0.1], nominal 1e-3, only [profiles];
+    /// Height of the centre of the wheelset above wheel_radius over the tops of the rails
+    vertical_displacement "z": "m" shown in "mm", by height, start 0.0, range [-0.1, 0.1], nominal 1e-4, only [profiles];
+    /// Roll of the wheelset about the axis along the track, positive where its left wheel rises
+    roll_angle "φ_x": "rad" shown in "mrad", start 0.0, range [-0.2, 0.2], nominal 1e-3, only [profiles];
+    /// Yaw of the wheelset about the upward axis, positive anticlockwise seen from above
+    yaw_angle "ψ": "rad" shown in "mrad", start 0.0, range [-0.2, 0.2], nominal 1e-3, only [profiles];
+    /// Vertical velocity of the centre of the wheelset, positive upward
+    vertical_speed "v_z": "m/s", start 0.0, range [-100.0, 100.0], nominal 0.1, only [profiles];
+    /// Angular velocity of the roll of the wheelset
+    roll_rate "ω_x": "rad/s", start 0.0, range [-1e3, 1e3], nominal 0.1, only [profiles];
+    /// Angular velocity of the yaw of the wheelset
+    yaw_rate "ω_ψ": "rad/s", start 0.0, range [-1e3, 1e3], nominal 0.1, only [profiles];
+    /// Lateral displacement of the rail from its place, positive to the left
+    rail_lateral_displacement: "m" shown in "mm", start 0.0, range [-0.1, 0.1], nominal 1e-3, only [profiles];
+    /// Vertical displacement of the rail from its place, positive upward
+    rail_vertical_displacement: "m" shown in "mm", start 0.0, range [-0.1, 0.1], nominal 1e-4, only [profiles];
+    /// Roll of the rail about the axis along the track through its origin, positive where its left side rises
+    rail_roll_angle: "rad" shown in "mrad", start 0.0, range [-0.2, 0.2], nominal 1e-3, only [profiles];
+    /// Lateral velocity of the rail, positive to the left
+    rail_lateral_speed: "m/s", start 0.0, range [-100.0, 100.0], nominal 0.1, only [profiles];
+    /// Vertical velocity of the rail, positive upward
+    rail_vertical_speed: "m/s", start 0.0, range [-100.0, 100.0], nominal 0.1, only [profiles];
 }
 
 outputs! {
@@ -321,18 +491,88 @@ outputs! {
     leaving_temperature: "K" shown in "degC", Instantaneous, nominal 300.0;
     /// Depth of wear of the rail leaving at the trailing edge of the strip
     leaving_wear_depth: "m" shown in "µm", Instantaneous, at least 0.0, nominal 1e-7;
-    /// Friction force on the wheel across the rail, positive to the left; 0 unless contact_model is patch
-    lateral_force "F_y": "N" shown in "kN", Instantaneous, nominal 1e4;
-    /// Moment of the shear traction on the wheel about the upward normal; 0 unless contact_model is patch
-    spin_moment "M_z": "N.m", Instantaneous, nominal 10.0;
-    /// Breadth of the contact across the rail; 0 unless contact_model is patch
-    contact_breadth: "m" shown in "mm", Instantaneous, at least 0.0, nominal 1e-2;
-    /// Area of the contact; 0 unless contact_model is patch
-    contact_area: "m2" shown in "mm2", Instantaneous, at least 0.0, nominal 1e-4;
-    /// Wear number: creep forces and spin moment times their creepages, work per distance rolled; 0 unless contact_model
-    /// is patch
-    wear_number "Tγ": "N", Instantaneous, nominal 100.0;
+    /// Friction force on the wheel across the rail, positive to the left
+    lateral_force "F_y": "N" shown in "kN", Instantaneous, nominal 1e4, only [patch, profiles];
+    /// Moment of the shear traction on the wheel about the upward normal
+    spin_moment "M_z": "N.m", Instantaneous, nominal 10.0, only [patch, profiles];
+    /// Breadth of the contact across the rail
+    contact_breadth: "m" shown in "mm", Instantaneous, at least 0.0, nominal 1e-2, only [patch, profiles];
+    /// Area of the contact
+    contact_area: "m2" shown in "mm2", Instantaneous, at least 0.0, nominal 1e-4, only [patch, profiles];
+    /// Wear number: creep forces and spin moment times their creepages, work per distance rolled
+    wear_number "Tγ": "N", Instantaneous, nominal 100.0, only [patch, profiles];
+    /// Force of the contacts on the wheelset along the track, positive forward
+    force_x "F_x": "N" shown in "kN", Instantaneous, nominal 1e4, only [profiles];
+    /// Force of the contacts on the wheelset across the track, positive to the left
+    force_y: "N" shown in "kN", Instantaneous, nominal 1e4, only [profiles];
+    /// Force of the contacts on the wheelset perpendicular to the track, positive upward
+    force_z "F_z": "N" shown in "kN", Instantaneous, nominal 6e4, only [profiles];
+    /// Moment of the contacts on the wheelset about the axis through its centre along the track
+    moment_x "M_x": "N.m" shown in "kN.m", Instantaneous, nominal 1e4, only [profiles];
+    /// Moment of the contacts on the wheelset about the axis through its centre across the track, to the left
+    moment_y "M_y": "N.m" shown in "kN.m", Instantaneous, nominal 1e4, only [profiles];
+    /// Moment of the contacts on the wheelset about the upward axis through its centre
+    moment_z: "N.m" shown in "kN.m", Instantaneous, nominal 1e4, only [profiles];
+    /// Number of contacts
+    contacts: "1", Counted, at least 0.0, nominal 1.0, only [profiles];
 }
+
+contact_outputs! {
+    /// Lateral position of a contact in the frame of the rail's profile, outwards from the profile's highest point
+    rail_position: "m" shown in "mm", nominal 1e-2;
+    /// Lateral position of a contact in the frame of the wheel's profile, outwards from the running circle
+    wheel_position: "m" shown in "mm", nominal 1e-2;
+    /// Position of a contact along the rail ahead of the axle
+    position: "m" shown in "mm", nominal 1e-3;
+    /// Inclination of a contact to the plane of the track, positive on the side of the gauge face
+    inclination: "rad" shown in "deg", nominal 0.1;
+    /// Normal force of a contact
+    normal_force: "N" shown in "kN", at least 0.0, nominal 6e4;
+    /// Friction force of a contact on the wheel along the rail, positive when it drives the vehicle forward
+    longitudinal_force: "N" shown in "kN", nominal 1e4;
+    /// Friction force of a contact on the wheel across the rail in the plane of the contact, positive to the left
+    lateral_force: "N" shown in "kN", nominal 1e4;
+    /// Moment of the shear traction of a contact on the wheel about the normal of the contact, away from the rail
+    spin_moment: "N.m", nominal 10.0;
+    /// Longitudinal creepage at the centre of a contact, positive where the wheel turns faster than it rolls
+    longitudinal_creepage: "1", nominal 1e-2;
+    /// Lateral creepage at the centre of a contact in its plane: velocity of the wheel relative to the rail over the speed of
+    /// the axle, positive to the left
+    lateral_creepage: "1", nominal 1e-2;
+    /// Spin creepage of a contact: angular velocity of the wheel relative to the rail about the normal of the contact over the
+    /// speed of the axle
+    spin_creepage: "1/m", nominal 1.0;
+    /// Length of a contact along the rail
+    length: "m" shown in "mm", at least 0.0, nominal 1e-2;
+    /// Breadth of a contact along the rail's profile
+    breadth: "m" shown in "mm", at least 0.0, nominal 1e-2;
+    /// Area of a contact
+    area: "m2" shown in "mm2", at least 0.0, nominal 1e-4;
+    /// Largest pressure of a contact
+    peak_pressure: "Pa" shown in "MPa", at least 0.0, nominal 1e9;
+    /// Largest absolute temperature of the rail surface in a contact
+    peak_temperature: "K" shown in "degC", at least 0.0, nominal 300.0;
+    /// Power dissipated by friction in a contact
+    friction_power: "W" shown in "kW", at least 0.0, nominal 1e4;
+    /// Wear number of a contact: creep forces and spin moment times their creepages, work per distance rolled
+    wear_number: "N", nominal 100.0;
+}
+
+/// The outputs in the order in which they are listed: numbers, then what the contacts have.
+pub const OUTPUTS: &[OutputSignal] = &{
+    let mut rows = [NUMBERS[0]; NUMBERS.len() + CONTACTS * ELEMENTS.len()];
+    let mut row = 0;
+    while row < rows.len() {
+        rows[row] = if row < NUMBERS.len() {
+            NUMBERS[row]
+        } else {
+            let element = row - NUMBERS.len();
+            ELEMENTS[element / CONTACTS][element % CONTACTS]
+        };
+        row += 1;
+    }
+    rows
+};
 
 /// Rounding of a value at the end of a ramp, relative to the range.
 const ROUNDING: f64 = 1e-12;
@@ -353,13 +593,25 @@ impl InputSignal {
     /// Refuses a value that is not finite or outside [`InputSignal::range`], and one that the contact model does not take.
     ///
     /// # Errors
-    /// [`Error::OutOfRange`], [`Error::PatchOnly`].
+    /// [`Error::OutOfRange`], [`Error::OtherModelOnly`].
     pub fn check(&self, value: f64, parameters: &Parameters) -> Result<()> {
         self.check_range(value, parameters)?;
-        if self.patch_only && value != 0.0 && parameters.contact_model == ContactModel::Line {
-            return Err(Error::PatchOnly { name: self.name, value });
+        let model = parameters.contact_model;
+        if value != 0.0 && !self.is_taken_by(model) {
+            return Err(Error::OtherModelOnly {
+                name: self.name,
+                value,
+                number: model as i32 + 1,
+                choice: ContactModel::NAMES[model as usize],
+                takers: self.takers,
+            });
         }
         Ok(())
+    }
+
+    /// Whether a contact model takes another value than 0.
+    pub fn is_taken_by(&self, model: ContactModel) -> bool {
+        self.models.contains(&model)
     }
 
     /// Refuses a value that is not finite or outside [`InputSignal::range`].
@@ -371,24 +623,29 @@ impl InputSignal {
         check_range(self.name, value, minimum, maximum, self.unit, self.narrowed_by)
     }
 
-    /// Refuses a value other than the start value where the motion does not follow from this input. The model itself takes
+    /// Refuses a value other than the start value where the choices leave this input without effect. The model itself takes
     /// any: only who asked the user for the inputs knows that one was meant.
     ///
     /// # Errors
     /// [`Error::NotUsed`].
     pub fn check_used(&self, value: f64, parameters: &Parameters) -> Result<()> {
-        let chosen = parameters.slip_source;
-        match self.slip_source {
-            Some(source) if source != chosen && value != self.default => Err(Error::NotUsed {
-                name: self.name,
-                value,
-                number: chosen as i32 + 1,
-                choice: SlipSource::NAMES[chosen as usize],
-                other_number: source as i32 + 1,
-                other: SlipSource::NAMES[source as usize],
-            }),
-            _ => Ok(()),
+        let Some(used_by) = self.used_by.filter(|used_by| used_by.chosen(parameters) != *used_by) else {
+            return Ok(());
+        };
+        if value == self.default {
+            return Ok(());
         }
+        let (parameter, other_number, other) = used_by.described();
+        let (_, number, choice) = used_by.chosen(parameters).described();
+        Err(Error::NotUsed {
+            name: self.name,
+            value,
+            parameter,
+            number,
+            choice,
+            other_number,
+            other,
+        })
     }
 }
 
@@ -396,8 +653,8 @@ impl Inputs {
     /// Checks every input, and the rolling speed that they make.
     ///
     /// # Errors
-    /// [`Error::OutOfRange`] names the first input that is not finite or out of its range, [`Error::PatchOnly`] one that the
-    /// contact model does not take.
+    /// [`Error::OutOfRange`] names the first input that is not finite or out of its range, [`Error::OtherModelOnly`] one
+    /// that the contact model does not take.
     pub fn check(&self, parameters: &Parameters) -> Result<()> {
         for signal in INPUTS {
             signal.check((signal.get)(self), parameters)?;

@@ -34,6 +34,8 @@ impl<E: Engine> Problem<'_, E> {
             Control::Penetration => {
                 Constraint::Penetration(self.parameters.prescribed_penetration / self.operators.displacement_scale())
             }
+            // The height is in the gap.
+            Control::Height => Constraint::Penetration(0.0),
         }
     }
 

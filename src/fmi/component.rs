@@ -9,10 +9,11 @@ use super::modes::Mode;
 use super::saved_states::SavedStates;
 use super::snapshot::Experiment;
 use crate::error;
-use crate::parameters::Parameters;
+use crate::parameters::{Parameters, TEXT_PARAMETERS};
 use crate::settings::Settings;
 use crate::signals::Inputs;
 use crate::wheel_rail::{ContactNode, Model, Profiles, State, Workspace};
+use std::ffi::CString;
 
 /// Model that follows from the parameters, and the scratch that goes with it.
 pub(super) struct Built {
@@ -56,6 +57,8 @@ pub struct Component {
     /// Computed from `state` when they are asked for.
     pub(super) plots: Plots,
     pub(super) saved: SavedStates,
+    /// Texts as the importer has read them, by the rows of [`TEXT_PARAMETERS`].
+    pub(super) texts: Vec<CString>,
     /// The inputs without effect that were told of, a bit for each.
     pub(super) told: u32,
     /// Messages that wait for the end of a call.
@@ -77,6 +80,7 @@ impl Component {
             state: None,
             plots: Plots::default(),
             saved: SavedStates::default(),
+            texts: vec![CString::default(); TEXT_PARAMETERS.len()],
             told: 0,
             journal,
         }

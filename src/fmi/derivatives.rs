@@ -6,6 +6,7 @@ use super::variables::ValueReference;
 use crate::signals::{INPUTS, Inputs, OUTPUTS, Outputs};
 use std::collections::{BTreeMap, BTreeSet};
 use std::mem::MaybeUninit;
+use std::ops::Range;
 
 impl Component {
     /// The rates at which the inputs change in the next step, per second.
@@ -27,27 +28,31 @@ impl Component {
         Ok(built.model.output_rates(state))
     }
 
-    /// The rates of change of outputs at the communication point, per second; 0 for orders above 1, as the standards have it.
+    /// The rates of change of outputs at the communication point, per second, of an array those of its elements; 0 for orders
+    /// above 1, as the standards have it.
     ///
     /// # Errors
-    /// What `output` refuses, [`Failure::Order`], [`Failure::NothingComputed`].
+    /// What `outputs` refuses, [`Failure::Order`], [`Failure::NothingComputed`].
     pub fn output_derivatives(
         &mut self,
-        output: fn(ValueReference) -> Result<usize, Failure>,
+        outputs: OutputRows,
         references: &[ValueReference],
         orders: &[i32],
         values: &mut [MaybeUninit<f64>],
     ) -> Result<(), Failure> {
         for (reference, order) in references.iter().zip(orders) {
-            let name = OUTPUTS[output(*reference)?].name;
+            let name = OUTPUTS[outputs(*reference)?.start].name;
             if *order < 1 {
                 return Err(Failure::Order { name, order: *order });
             }
         }
         let rates = self.output_rates()?;
-        for ((reference, order), place) in references.iter().zip(orders).zip(values) {
-            let rate = (OUTPUTS[output(*reference)?].get)(&rates);
-            place.write(if *order == 1 { rate } else { 0.0 });
+        let mut places = values.iter_mut();
+        for (reference, order) in references.iter().zip(orders) {
+            for (row, place) in outputs(*reference)?.zip(&mut places) {
+                let rate = (OUTPUTS[row].get)(&rates);
+                place.write(if *order == 1 { rate } else { 0.0 });
+            }
         }
         Ok(())
     }
@@ -73,7 +78,7 @@ impl Component {
     ) -> Result<(), Failure> {
         let Jacobian { unknowns, knowns, rows } = jacobian;
         for unknown in *unknowns {
-            (rows.output)(*unknown)?;
+            (rows.outputs)(*unknown)?;
         }
         // Each input once, however often it is named.
         let mut direction = BTreeMap::new();
@@ -83,8 +88,8 @@ impl Component {
             *direction.entry(row).or_insert(0.0) += value;
         }
         let sensitivities = self.sensitivities(direction.keys().copied())?;
-        for (unknown, place) in unknowns.iter().zip(derivatives) {
-            let output = &OUTPUTS[(rows.output)(*unknown)?];
+        for (row, place) in rows.of(unknowns).zip(derivatives) {
+            let output = &OUTPUTS[row?];
             let terms = sensitivities.iter().zip(direction.values());
             place.write(
                 terms
@@ -108,8 +113,8 @@ impl Component {
         derivatives: &mut [MaybeUninit<f64>],
     ) -> Result<(), Failure> {
         let Jacobian { unknowns, knowns, rows } = jacobian;
-        for (unknown, value) in unknowns.iter().zip(seed) {
-            finite(rows.seed, OUTPUTS[(rows.output)(*unknown)?].name, *value)?;
+        for (row, value) in rows.of(unknowns).zip(seed) {
+            finite(rows.seed, OUTPUTS[row?].name, *value)?;
         }
         // Each input once, however often it is named.
         let inputs = knowns.iter().map(|known| (rows.input)(*known));
@@ -119,8 +124,8 @@ impl Component {
         for (known, place) in knowns.iter().zip(derivatives) {
             let mut sum = 0.0;
             if let Some(sensitivity) = sensitivities.get(&(rows.input)(*known)?) {
-                for (unknown, weight) in unknowns.iter().zip(seed) {
-                    sum += (OUTPUTS[(rows.output)(*unknown)?].get)(sensitivity) * weight;
+                for (row, weight) in rows.of(unknowns).zip(seed) {
+                    sum += (OUTPUTS[row?].get)(sensitivity) * weight;
                 }
             }
             place.write(sum);
@@ -139,14 +144,30 @@ pub struct Jacobian<'a> {
     pub rows: Rows,
 }
 
+/// Rows of [`OUTPUTS`] that a value reference stands for: several where it is an array.
+pub type OutputRows = fn(ValueReference) -> Result<Range<usize>, Failure>;
+
 /// Numbering of outputs and inputs in a version of FMI.
 pub struct Rows {
-    /// The row of [`OUTPUTS`].
-    pub output: fn(ValueReference) -> Result<usize, Failure>,
+    /// The rows of [`OUTPUTS`].
+    pub outputs: OutputRows,
     /// The row of [`INPUTS`].
     pub input: fn(ValueReference) -> Result<usize, Failure>,
     /// The argument that holds the direction or the weights.
     pub seed: &'static str,
+}
+
+impl Rows {
+    /// The rows of outputs one after another; one that is none ends them.
+    fn of(&self, unknowns: &[ValueReference]) -> impl Iterator<Item = Result<usize, Failure>> {
+        unknowns.iter().flat_map(|unknown| {
+            let (rows, refused) = match (self.outputs)(*unknown) {
+                Ok(rows) => (rows, None),
+                Err(refused) => (0..0, Some(Err(refused))),
+            };
+            rows.map(Ok).chain(refused)
+        })
+    }
 }
 
 fn finite(argument: &'static str, name: &'static str, value: f64) -> Result<(), Failure> {

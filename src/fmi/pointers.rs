@@ -71,6 +71,24 @@ pub unsafe fn variable<'a, T>(pointer: *mut T, argument: &'static str) -> Result
     Ok(unsafe { &mut *pointer })
 }
 
+/// The bytes of a string before the zero that ends it, at most one more than `longest`; `None` for a null pointer.
+///
+/// # Safety
+/// A pointer that is not null must point to a string ended by zero, or to more than `longest` bytes, that nobody writes while
+/// the bytes are used.
+pub unsafe fn bytes<'a>(pointer: *const c_char, longest: usize) -> Option<&'a [u8]> {
+    if pointer.is_null() {
+        return None;
+    }
+    let pointer = pointer.cast::<u8>();
+    // SAFETY: the bytes up to the first zero, or to the one behind `longest` (the caller's promise); not null (checked).
+    unsafe {
+        let is_end = |place: &usize| *pointer.add(*place) == 0;
+        let length = (0..=longest).find(is_end).unwrap_or(longest + 1);
+        Some(std::slice::from_raw_parts(pointer, length))
+    }
+}
+
 /// A string; `None` for a null pointer.
 ///
 /// # Safety

@@ -6,7 +6,7 @@ use super::logging::Category;
 use super::saved_states::Handle;
 use super::serialized::{self, Corruption};
 use super::snapshot::Snapshot;
-use crate::parameters::REAL_PARAMETERS;
+use crate::parameters::{REAL_PARAMETERS, TEXT_PARAMETERS};
 use crate::signals::INPUTS;
 
 impl Component {
@@ -81,6 +81,10 @@ impl Component {
             for (element, value) in (row.get)(&snapshot.parameters).iter().enumerate() {
                 row.check(element, *value).map_err(|_| Corruption::Content)?;
             }
+        }
+        for row in TEXT_PARAMETERS {
+            let text = (row.get)(&snapshot.parameters);
+            row.check(text).map_err(|_| Corruption::Content)?;
         }
         for row in INPUTS {
             let finite = (row.get)(&snapshot.inputs).is_finite() && (row.get)(&snapshot.rates).is_finite();

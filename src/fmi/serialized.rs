@@ -12,11 +12,11 @@
 //! Meshes and tables are not part of it: they follow from the parameters.
 
 use super::snapshot::Snapshot;
-use crate::parameters::{INTEGER_PARAMETERS, Parameters, REAL_PARAMETERS};
+use crate::parameters::{INTEGER_PARAMETERS, Parameters, REAL_PARAMETERS, TEXT_PARAMETERS};
 use crate::signals::{INPUTS, OUTPUTS};
 
 const MAGIC: [u8; 8] = *b"WHLRAIL\0";
-const VERSION: u32 = 8;
+const VERSION: u32 = 9;
 const HEADER: usize = 8 + 4 + 8 + 8;
 const CHECKSUM: usize = 4;
 
@@ -58,7 +58,9 @@ fn agreement_hash(parameters: &Parameters) -> u64 {
     let outputs = OUTPUTS.iter().map(|signal| signal.name);
     let reals = REAL_PARAMETERS.iter().map(|row| row.name);
     let integers = INTEGER_PARAMETERS.iter().map(|row| row.name);
-    let names = version.chain(inputs).chain(outputs).chain(reals).chain(integers);
+    let texts = TEXT_PARAMETERS.iter().map(|row| row.name);
+    let names = version.chain(inputs).chain(outputs);
+    let names = names.chain(reals).chain(integers).chain(texts);
     let fixed = postcard::to_allocvec(&parameters.fixed_part()).unwrap_or_default();
     fnv(names.flat_map(|name| name.bytes().chain([0])).chain(fixed))
 }

@@ -139,6 +139,7 @@ units! {
     "m2" [m 2] "mm2" = 1e6, "cm2" = 1e4;
     "m/s" [m 1 s -1] "mm/s" = 1e3, "km/h" = 3.6;
     "s/m" [s 1 m -1] "s/mm" = 1e-3, "s/km" = 1e3;
+    "rad" [rad 1] "deg" = 180.0 / std::f64::consts::PI, "mrad" = 1e3;
     "rad/s" [rad 1 s -1] "rpm" = RPM, "1/min" = RPM, "deg/s" = 180.0 / std::f64::consts::PI, "mrad/s" = 1e3;
     "N" [kg 1 m 1 s -2] "kN" = 1e-3, "MN" = 1e-6;
     "N.m" [kg 1 m 2 s -2] "kN.m" = 1e-3, "MN.m" = 1e-6, "N.mm" = 1e3;

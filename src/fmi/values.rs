@@ -3,10 +3,13 @@
 use super::component::Component;
 use super::failures::Failure;
 use super::modes::Mode;
-use super::variables::{FIELDS, Integer, IntegerVariable, Lengths, PROFILES, Real, RealVariable};
-use crate::parameters::{ContactModel, INTEGER_PARAMETERS, REAL_PARAMETERS};
+use super::variables::{FIELDS, Integer, IntegerVariable, Lengths, PROFILES, Real, RealVariable, Text};
+use crate::error::{Error, LONGEST_TEXT, TextProblem};
+use crate::parameters::{ContactModel, INTEGER_PARAMETERS, REAL_PARAMETERS, TEXT_PARAMETERS, TextParameter};
 use crate::signals::{INPUTS, InputSignal, OUTPUTS};
 use crate::wheel_rail::ContactNode;
+use std::borrow::Cow;
+use std::ffi::{CStr, CString};
 
 impl Component {
     /// The value of a real variable. In *initializationMode* the contact is solved where an output asks for it.
@@ -18,6 +21,10 @@ impl Component {
             RealVariable::Input(row) => (INPUTS[row].get)(&self.inputs),
             RealVariable::Parameter(row) => (REAL_PARAMETERS[row].get)(&self.parameters)[variable.element],
             RealVariable::Output(row) => (OUTPUTS[row].get)(&self.solution()?.outputs),
+            RealVariable::Contacts(row) => {
+                let element = OUTPUTS.get(row + variable.element).ok_or(Failure::NothingComputed)?;
+                (element.get)(&self.solution()?.outputs)
+            }
             RealVariable::Profile(row) => {
                 let values = (PROFILES[row].values)(self.profiles()?);
                 *values.get(variable.element).ok_or(Failure::NothingComputed)?
@@ -60,6 +67,17 @@ impl Component {
         })
     }
 
+    /// The value of a text variable. It stays where it is until the variable is read with another value, or the instance is freed.
+    pub fn text(&mut self, variable: Text) -> &CStr {
+        let text = (TEXT_PARAMETERS[variable.row].get)(&self.parameters);
+        let shown = &mut self.texts[variable.row];
+        if shown.to_bytes() != text.as_bytes() {
+            // Texts with a zero byte are refused where they are set.
+            *shown = CString::new(text).unwrap_or_default();
+        }
+        shown
+    }
+
     /// Sets real variables, all or none. Inputs are checked after all parameters are known: these narrow their ranges.
     ///
     /// # Errors
@@ -68,7 +86,8 @@ impl Component {
         &mut self,
         entries: impl Iterator<Item = Result<(Real, f64), Failure>> + Clone,
     ) -> Result<(), Failure> {
-        let mut parameters = self.parameters.clone();
+        // Inputs alone, which are set before each step, need no copy of the parameters.
+        let mut parameters = Cow::Borrowed(&self.parameters);
         let mut inputs = self.inputs;
         for entry in entries.clone() {
             let (variable, value) = entry?;
@@ -79,7 +98,7 @@ impl Component {
                         return Err(self.not_settable(variable.name(), variable.reference));
                     }
                     row.check(variable.element, value).map_err(Failure::Value)?;
-                    (row.get_mut)(&mut parameters)[variable.element] = value;
+                    (row.get_mut)(parameters.to_mut())[variable.element] = value;
                 }
                 RealVariable::Input(row) => (INPUTS[row].set)(&mut inputs, value),
                 _ => return Err(self.not_settable(variable.name(), variable.reference)),
@@ -100,14 +119,18 @@ impl Component {
         if inputs != self.inputs {
             inputs.check_motion(&parameters).map_err(Failure::Value)?;
         }
-        if self.mode == Mode::StepComplete {
-            if parameters != self.parameters {
-                self.prepare(&parameters).map_err(Failure::Value)?;
-            }
-        } else {
+        let changed = match parameters {
+            Cow::Owned(parameters) => Some(parameters),
+            Cow::Borrowed(_) => None,
+        };
+        if self.mode != Mode::StepComplete {
             self.forget_solution();
+        } else if let Some(parameters) = changed.as_ref().filter(|changed| **changed != self.parameters) {
+            self.prepare(parameters).map_err(Failure::Value)?;
         }
-        self.parameters = parameters;
+        if let Some(parameters) = changed {
+            self.parameters = parameters;
+        }
         self.inputs = inputs;
         Ok(())
     }
@@ -141,6 +164,34 @@ impl Component {
         Ok(())
     }
 
+    /// Sets text variables, all or none. A text is given by its bytes, or as `None` for a null pointer in the argument of the
+    /// given name.
+    ///
+    /// # Errors
+    /// What the entries hold; [`Failure::NullPointer`], [`Failure::NotSettable`], or [`Failure::Value`] for a text that cannot be.
+    pub fn set_texts<'a>(
+        &mut self,
+        argument: &'static str,
+        entries: impl Iterator<Item = Result<(Text, Option<&'a [u8]>), Failure>>,
+    ) -> Result<(), Failure> {
+        let mut parameters = Cow::Borrowed(&self.parameters);
+        for entry in entries {
+            let (variable, bytes) = entry?;
+            if self.mode == Mode::StepComplete {
+                return Err(self.not_settable(variable.name().to_owned(), variable.reference));
+            }
+            let row = &TEXT_PARAMETERS[variable.row];
+            let bytes = bytes.ok_or(Failure::NullPointer { argument })?;
+            let text = decoded(row, bytes).map_err(Failure::Value)?;
+            (row.set)(parameters.to_mut(), text);
+        }
+        if let Cow::Owned(parameters) = parameters {
+            self.parameters = parameters;
+            self.forget_solution();
+        }
+        Ok(())
+    }
+
     fn not_settable(&self, name: String, reference: u32) -> Failure {
         let (when, settable) = match self.mode {
             Mode::StepComplete => ("after the initialization", "inputs and tunable parameters can be"),
@@ -153,4 +204,19 @@ impl Component {
             settable,
         }
     }
+}
+
+/// The text that bytes are, checked.
+fn decoded(row: &TextParameter, bytes: &[u8]) -> Result<String, Error> {
+    let text = std::str::from_utf8(bytes).map_err(|error| Error::Text {
+        name: row.name,
+        problem: match bytes.len() > LONGEST_TEXT {
+            true => TextProblem::TooLong,
+            false => TextProblem::NotUtf8 {
+                valid: error.valid_up_to(),
+            },
+        },
+    })?;
+    row.check(text)?;
+    Ok(text.to_owned())
 }

@@ -3,9 +3,10 @@
 
 mod list;
 
-use crate::parameters::{INTEGER_PARAMETERS, IntegerKind, Parameters, REAL_PARAMETERS};
-use crate::signals::{INPUTS, OUTPUTS};
+use crate::parameters::{INTEGER_PARAMETERS, IntegerKind, Parameters, REAL_PARAMETERS, TEXT_PARAMETERS};
+use crate::signals::{CONTACTS, INPUTS, OUTPUTS};
 use crate::wheel_rail::{ContactNode, DEPTH_POINTS, PROFILE_POINTS, Profiles, STRIP_POINTS};
+use std::ops::Range;
 
 pub use list::{fields, time, variables};
 
@@ -123,6 +124,7 @@ impl Lengths {
     pub fn elements(self, variable: RealVariable) -> usize {
         match variable {
             RealVariable::Parameter(row) => REAL_PARAMETERS[row].elements.len(),
+            RealVariable::Contacts(_) => CONTACTS,
             RealVariable::Profile(row) => PROFILES[row].points,
             RealVariable::Field(row) => {
                 let [strips, cells] = FIELDS[row].over;
@@ -252,6 +254,13 @@ pub enum Kind {
         /// Start value of what is set from outside.
         start: Option<i32>,
     },
+    /// A text, which is set from outside.
+    Text {
+        /// Row of [`TEXT_PARAMETERS`].
+        row: usize,
+        /// Start value.
+        start: &'static str,
+    },
 }
 
 /// One row of the table.
@@ -276,6 +285,8 @@ pub enum RealVariable {
     Input(usize),
     /// Row of [`OUTPUTS`].
     Output(usize),
+    /// Array of outputs over the contacts, by the row of [`OUTPUTS`] that its first element is.
+    Contacts(usize),
     /// Row of [`REAL_PARAMETERS`].
     Parameter(usize),
     /// Row of [`PROFILES`].
@@ -286,6 +297,17 @@ pub enum RealVariable {
     Residual,
     /// The communication point.
     Time,
+}
+
+impl RealVariable {
+    /// The rows of [`OUTPUTS`] that the variable is, where it is an output.
+    pub fn outputs(self) -> Option<Range<usize>> {
+        match self {
+            RealVariable::Output(row) => Some(row..row + 1),
+            RealVariable::Contacts(row) => Some(row..row + CONTACTS),
+            _ => None,
+        }
+    }
 }
 
 /// Quantity that an integer variable stands for.
@@ -317,12 +339,22 @@ pub struct Integer {
     pub variable: IntegerVariable,
 }
 
+/// A text variable, as a call names it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Text {
+    /// Value reference of the variable, for messages.
+    pub reference: ValueReference,
+    /// Row of [`TEXT_PARAMETERS`].
+    pub row: usize,
+}
+
 impl Real {
     /// Name of the variable, with the index of an element counted from 1.
     pub fn name(&self) -> String {
         match self.variable {
             RealVariable::Input(row) => INPUTS[row].name.to_owned(),
             RealVariable::Output(row) => OUTPUTS[row].name.to_owned(),
+            RealVariable::Contacts(row) => OUTPUTS[row + self.element].name.to_owned(),
             RealVariable::Parameter(row) => REAL_PARAMETERS[row].elements[self.element].to_owned(),
             RealVariable::Profile(row) => format!("{}[{}]", PROFILES[row].name, self.element + 1),
             RealVariable::Field(row) => FIELDS[row].name.to_owned(),
@@ -339,6 +371,13 @@ impl Integer {
             IntegerVariable::Parameter(row) => INTEGER_PARAMETERS[row].name,
             IntegerVariable::Iterations => ITERATIONS,
         }
+    }
+}
+
+impl Text {
+    /// Name of the variable.
+    pub fn name(&self) -> &'static str {
+        TEXT_PARAMETERS[self.row].name
     }
 }
 

@@ -3,7 +3,8 @@
 //! [`model_description`] is checked in as `modelDescription/modelDescription.xml`; the library reads its GUID from there.
 
 use super::schema::{
-    CoSimulation, Integer, ModelDescription, ModelStructure, ModelVariables, Real, ScalarVariable, Unknown, Unknowns,
+    CoSimulation, Integer, ModelDescription, ModelStructure, ModelVariables, Real, ScalarVariable, Text, Unknown,
+    Unknowns,
 };
 use super::variables::{Causality, Kind, Variable, variables};
 use crate::fmi::schema::{self, document, number};
@@ -25,7 +26,7 @@ fn anonymous() -> ModelDescription {
     let table = variables();
     let units = table.iter().filter_map(|variable| match variable.kind {
         Kind::Real { unit, .. } => Some(unit),
-        Kind::Integer { .. } => None,
+        Kind::Integer { .. } | Kind::Text { .. } => None,
     });
     ModelDescription {
         fmi_version: "2.0",
@@ -64,7 +65,8 @@ fn anonymous() -> ModelDescription {
 
 /// A variable as an element.
 fn scalar_variable(variable: Variable) -> ScalarVariable {
-    let (real, integer) = match variable.kind {
+    let (mut real, mut integer, mut text) = (None, None, None);
+    match variable.kind {
         Kind::Real {
             unit,
             display_unit,
@@ -73,29 +75,28 @@ fn scalar_variable(variable: Variable) -> ScalarVariable {
             nominal,
             start,
         } => {
-            let real = Real {
+            real = Some(Real {
                 unit,
                 display_unit,
                 minimum: minimum.map(number),
                 maximum: maximum.map(number),
                 nominal: nominal.map(number),
                 start: start.map(number),
-            };
-            (Some(real), None)
+            });
         }
         Kind::Integer {
             minimum,
             maximum,
             start,
-        } => (
-            None,
-            Some(Integer {
+        } => {
+            integer = Some(Integer {
                 minimum,
                 maximum,
                 start,
-            }),
-        ),
-    };
+            });
+        }
+        Kind::Text { start } => text = Some(Text { start }),
+    }
     ScalarVariable {
         name: variable.name,
         value_reference: variable.reference,
@@ -110,6 +111,7 @@ fn scalar_variable(variable: Variable) -> ScalarVariable {
         },
         real,
         integer,
+        text,
     }
 }
 

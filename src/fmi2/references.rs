@@ -2,29 +2,35 @@
 //! elements. Blocks and places keep their numbers once released: new ones go to the end.
 
 use crate::fmi::failures::Failure;
-use crate::fmi::variables::{Integer, IntegerVariable, PROFILES, Real, RealVariable, ValueReference};
-use crate::parameters::{INTEGER_PARAMETERS, REAL_PARAMETERS};
+use crate::fmi::variables::{Integer, IntegerVariable, PROFILES, Real, RealVariable, Text, ValueReference};
+use crate::parameters::{INTEGER_PARAMETERS, REAL_PARAMETERS, TEXT_PARAMETERS};
 use crate::signals::{INPUTS, OUTPUTS};
+use std::ops::Range;
 
 const BLOCK: u32 = 1000;
 const INPUT_BLOCK: u32 = 0;
 const OUTPUT_BLOCK: u32 = 1;
 const REAL_PARAMETER_BLOCK: u32 = 2;
 const INTEGER_PARAMETER_BLOCK: u32 = 3;
-/// One block for each profile, the solver's passed over.
+/// One block for each profile, those between them that are not passed over.
 const FIRST_PROFILE_BLOCK: u32 = 4;
 const SOLVER_BLOCK: u32 = 12;
+const TEXT_PARAMETER_BLOCK: u32 = 18;
+/// The blocks that are passed over, in their order.
+const BETWEEN_PROFILES: [u32; 2] = [SOLVER_BLOCK, TEXT_PARAMETER_BLOCK];
 
 /// The block of a row of [`PROFILES`].
 fn profile_block(row: usize) -> u32 {
     let block = FIRST_PROFILE_BLOCK + row as u32;
-    if block < SOLVER_BLOCK { block } else { block + 1 }
+    BETWEEN_PROFILES
+        .iter()
+        .fold(block, |block, between| block + u32::from(block >= *between))
 }
 
-/// The row of [`PROFILES`] of a block that is neither below theirs nor the solver's.
+/// The row of [`PROFILES`] of a block that is neither below theirs nor passed over.
 fn profile_row(block: u32) -> usize {
-    let row = (block - FIRST_PROFILE_BLOCK) as usize;
-    if block < SOLVER_BLOCK { row } else { row - 1 }
+    let passed = BETWEEN_PROFILES.iter().filter(|between| **between < block).count();
+    (block - FIRST_PROFILE_BLOCK) as usize - passed
 }
 
 /// Value reference of variables that this version does not have.
@@ -63,6 +69,7 @@ pub fn of_real(variable: RealVariable, element: usize) -> ValueReference {
     match variable {
         RealVariable::Input(row) => INPUT_BLOCK * BLOCK + row as u32,
         RealVariable::Output(row) => OUTPUT_BLOCK * BLOCK + row as u32,
+        RealVariable::Contacts(row) => OUTPUT_BLOCK * BLOCK + (row + element) as u32,
         RealVariable::Parameter(row) => {
             let before: usize = REAL_PARAMETERS[..row].iter().map(|entry| entry.start.len()).sum();
             REAL_PARAMETER_BLOCK * BLOCK + (before + element) as u32
@@ -81,6 +88,11 @@ pub fn of_integer(variable: IntegerVariable) -> ValueReference {
     }
 }
 
+/// The value reference of a row of [`TEXT_PARAMETERS`].
+pub fn of_text(row: usize) -> ValueReference {
+    TEXT_PARAMETER_BLOCK * BLOCK + row as u32
+}
+
 /// Returns the variable that a value reference of type Real stands for.
 ///
 /// # Errors
@@ -94,6 +106,7 @@ pub fn real(reference: ValueReference) -> Result<Real, Failure> {
             .get(place)
             .map(|(row, element)| (RealVariable::Parameter(*row), *element)),
         SOLVER_BLOCK => (reference == RESIDUAL).then_some((RealVariable::Residual, 0)),
+        TEXT_PARAMETER_BLOCK => None,
         FIRST_PROFILE_BLOCK.. => {
             let row = profile_row(block);
             let points = PROFILES.get(row).map_or(0, |column| column.points);
@@ -130,6 +143,21 @@ pub fn integer(reference: ValueReference) -> Result<Integer, Failure> {
     found.ok_or(unknown).map(|variable| Integer { reference, variable })
 }
 
+/// Returns the variable that a value reference of type String stands for.
+///
+/// # Errors
+/// [`Failure::UnknownReference`].
+pub fn text(reference: ValueReference) -> Result<Text, Failure> {
+    let (block, row) = (reference / BLOCK, (reference % BLOCK) as usize);
+    if block == TEXT_PARAMETER_BLOCK && row < TEXT_PARAMETERS.len() {
+        return Ok(Text { reference, row });
+    }
+    Err(Failure::UnknownReference {
+        reference,
+        expected: "a String variable",
+    })
+}
+
 /// The row of the input that a value reference stands for.
 ///
 /// # Errors
@@ -148,12 +176,10 @@ pub fn input(reference: ValueReference) -> Result<usize, Failure> {
 ///
 /// # Errors
 /// [`Failure::UnknownReference`].
-pub fn output(reference: ValueReference) -> Result<usize, Failure> {
-    match real(reference)?.variable {
-        RealVariable::Output(row) => Ok(row),
-        _ => Err(Failure::UnknownReference {
-            reference,
-            expected: "an output",
-        }),
-    }
+pub fn outputs(reference: ValueReference) -> Result<Range<usize>, Failure> {
+    let rows = real(reference)?.variable.outputs();
+    rows.ok_or(Failure::UnknownReference {
+        reference,
+        expected: "an output",
+    })
 }

@@ -94,6 +94,8 @@ pub struct ScalarVariable {
     pub real: Option<Real>,
     #[serde(rename = "Integer", skip_serializing_if = "Option::is_none")]
     pub integer: Option<Integer>,
+    #[serde(rename = "String", skip_serializing_if = "Option::is_none")]
+    pub text: Option<Text>,
 }
 
 #[derive(Serialize)]
@@ -120,6 +122,12 @@ pub struct Integer {
     pub maximum: Option<i32>,
     #[serde(rename = "@start", skip_serializing_if = "Option::is_none")]
     pub start: Option<i32>,
+}
+
+#[derive(Serialize)]
+pub struct Text {
+    #[serde(rename = "@start")]
+    pub start: &'static str,
 }
 
 #[derive(Serialize)]

@@ -3,7 +3,7 @@
 use super::failures::Failure;
 use super::instance::Instance;
 use super::references;
-use super::types::{Integer, Real, ValueReference};
+use super::types::{FmiString, Integer, Real, ValueReference};
 use crate::fmi::derivatives::{Jacobian, Rows};
 use crate::fmi::failures;
 use crate::signals::INPUTS;
@@ -34,6 +34,32 @@ impl Instance {
             place.write(self.component.integer(references::integer(*reference)?)?);
         }
         Ok(())
+    }
+
+    /// fmi2GetString: all values or none.
+    pub fn get_string(
+        &mut self,
+        references: &[ValueReference],
+        values: &mut [MaybeUninit<FmiString>],
+    ) -> Result<(), Failure> {
+        for reference in references {
+            references::text(*reference)?;
+        }
+        for (reference, place) in references.iter().zip(values) {
+            place.write(self.component.text(references::text(*reference)?).as_ptr());
+        }
+        Ok(())
+    }
+
+    /// fmi2SetString: all values or none. A value is `None` where the pointer is null.
+    pub fn set_string<'a>(
+        &mut self,
+        references: &[ValueReference],
+        values: impl Iterator<Item = Option<&'a [u8]>>,
+    ) -> Result<(), Failure> {
+        let entries = references.iter().zip(values);
+        let entries = entries.map(|(reference, value)| Ok((references::text(*reference)?, value)));
+        Ok(self.component.set_texts("value[i]", entries)?)
     }
 
     /// fmi2SetReal: all values or none.
@@ -81,7 +107,7 @@ impl Instance {
         values: &mut [MaybeUninit<Real>],
     ) -> Result<(), Failure> {
         let component = &mut self.component;
-        Ok(component.output_derivatives(references::output, references, orders, values)?)
+        Ok(component.output_derivatives(references::outputs, references, orders, values)?)
     }
 
     /// fmi2GetDirectionalDerivative: of outputs, in a direction of the inputs.
@@ -93,7 +119,7 @@ impl Instance {
         derivatives: &mut [MaybeUninit<Real>],
     ) -> Result<(), Failure> {
         let rows = Rows {
-            output: references::output,
+            outputs: references::outputs,
             input: references::input,
             seed: "dvKnown",
         };

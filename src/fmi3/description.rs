@@ -6,7 +6,7 @@
 use super::references::{Type, of_integer, table};
 use super::schema::{
     Attributes, CoSimulation, Dimension, EnumerationType, Item, ModelDescription, ModelStructure, ModelVariables,
-    TypeDefinitions, Unknown, Variable,
+    Start, TypeDefinitions, Unknown, Variable,
 };
 use crate::fmi::schema::{self, document, number};
 use crate::fmi::token::hashed;
@@ -29,7 +29,7 @@ pub fn model_description() -> Result<String, SeError> {
 fn anonymous() -> ModelDescription {
     let units = table().filter_map(|(_, variable)| match variable.kind {
         Kind::Real(kind) => Some(kind.unit),
-        Kind::Integer { .. } => None,
+        Kind::Integer { .. } | Kind::Text { .. } => None,
     });
     ModelDescription {
         fmi_version: "3.0",
@@ -122,6 +122,7 @@ fn element(value_reference: ValueReference, variable: &shared::Variable) -> Vari
         nominal: None,
         start: None,
         dimensions: Vec::new(),
+        texts: Vec::new(),
     };
     match variable.kind {
         Kind::Real(kind) => {
@@ -158,8 +159,12 @@ fn element(value_reference: ValueReference, variable: &shared::Variable) -> Vari
                     attributes.declared_type = Some(type_name(variable.name));
                     Variable::Enumeration(attributes)
                 }
-                Type::Int32 | Type::Float64 => Variable::Int32(attributes),
+                Type::Int32 | Type::Float64 | Type::String => Variable::Int32(attributes),
             }
+        }
+        Kind::Text { start, .. } => {
+            attributes.texts = vec![Start { value: start }];
+            Variable::String(attributes)
         }
     }
 }

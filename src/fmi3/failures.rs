@@ -26,8 +26,8 @@ pub enum Failure {
         /// Elements.
         needed: usize,
     },
-    /// Another number of seeds or sensitivities than variables.
-    #[error("{argument} = {given}: there are {needed} variables, none of them an array")]
+    /// Another number of seeds or sensitivities than the variables have elements.
+    #[error("{argument} = {given}: the variables have {needed} elements")]
     Derivatives {
         /// The argument.
         argument: &'static str,

@@ -2,10 +2,13 @@
 //! and rows keep their numbers once released: new ones go to the end.
 
 use crate::fmi::failures::Failure;
-use crate::fmi::variables::{FIELDS, Integer, IntegerVariable, Kind, PROFILES, RealVariable, ValueReference, Variable};
+use crate::fmi::variables::{
+    FIELDS, Integer, IntegerVariable, Kind, PROFILES, RealVariable, Text, ValueReference, Variable,
+};
 use crate::fmi::variables::{fields, time, variables};
-use crate::parameters::{INTEGER_PARAMETERS, IntegerKind, REAL_PARAMETERS};
+use crate::parameters::{INTEGER_PARAMETERS, IntegerKind, REAL_PARAMETERS, TEXT_PARAMETERS};
 use crate::signals::{INPUTS, OUTPUTS};
+use std::ops::Range;
 
 const BLOCK: u32 = 1000;
 const TIME: ValueReference = 0;
@@ -16,6 +19,7 @@ const INTEGER_PARAMETER_BLOCK: u32 = 4;
 const PROFILE_BLOCK: u32 = 5;
 const FIELD_BLOCK: u32 = 6;
 const SOLVER_BLOCK: u32 = 7;
+const TEXT_PARAMETER_BLOCK: u32 = 8;
 const RESIDUAL: ValueReference = SOLVER_BLOCK * BLOCK;
 const ITERATIONS: ValueReference = SOLVER_BLOCK * BLOCK + 1;
 
@@ -32,6 +36,8 @@ pub enum Type {
     UInt64,
     /// Choices between off and on.
     Boolean,
+    /// Texts.
+    String,
 }
 
 impl Type {
@@ -53,6 +59,7 @@ impl Type {
             Type::Int64 => "an Enumeration variable",
             Type::UInt64 => "a UInt64 variable",
             Type::Boolean => "a Boolean variable",
+            Type::String => "a String variable",
         }
     }
 }
@@ -67,6 +74,7 @@ fn reference(variable: &Variable) -> ValueReference {
     match variable.kind {
         Kind::Real(kind) => of_real(kind.variable),
         Kind::Integer { variable, .. } => of_integer(variable),
+        Kind::Text { row, .. } => TEXT_PARAMETER_BLOCK * BLOCK + row as u32,
     }
 }
 
@@ -74,7 +82,8 @@ fn of_real(variable: RealVariable) -> ValueReference {
     match variable {
         RealVariable::Time => TIME,
         RealVariable::Input(row) => INPUT_BLOCK * BLOCK + row as u32,
-        RealVariable::Output(row) => OUTPUT_BLOCK * BLOCK + row as u32,
+        // An array has that of its first element.
+        RealVariable::Output(row) | RealVariable::Contacts(row) => OUTPUT_BLOCK * BLOCK + row as u32,
         RealVariable::Parameter(row) => REAL_PARAMETER_BLOCK * BLOCK + row as u32,
         RealVariable::Profile(row) => PROFILE_BLOCK * BLOCK + row as u32,
         RealVariable::Field(row) => FIELD_BLOCK * BLOCK + row as u32,
@@ -99,7 +108,11 @@ pub fn real(reference: ValueReference) -> Result<RealVariable, Failure> {
     let in_block = |rows: usize, variable: RealVariable| (row < rows).then_some(variable);
     let found = match reference / BLOCK {
         INPUT_BLOCK => in_block(INPUTS.len(), RealVariable::Input(row)),
-        OUTPUT_BLOCK => in_block(OUTPUTS.len(), RealVariable::Output(row)),
+        OUTPUT_BLOCK => match OUTPUTS.get(row).map(|signal| signal.array) {
+            Some(None) => Some(RealVariable::Output(row)),
+            Some(Some((_, 0))) => Some(RealVariable::Contacts(row)),
+            _ => None,
+        },
         REAL_PARAMETER_BLOCK => in_block(REAL_PARAMETERS.len(), RealVariable::Parameter(row)),
         PROFILE_BLOCK => in_block(PROFILES.len(), RealVariable::Profile(row)),
         FIELD_BLOCK => in_block(FIELDS.len(), RealVariable::Field(row)),
@@ -128,6 +141,19 @@ pub fn integer(reference: ValueReference, expected: Type) -> Result<Integer, Fai
     }
 }
 
+/// Returns the variable that a value reference of type String stands for.
+///
+/// # Errors
+/// [`Failure::UnknownReference`].
+pub fn text(reference: ValueReference) -> Result<Text, Failure> {
+    let row = (reference % BLOCK) as usize;
+    if reference / BLOCK == TEXT_PARAMETER_BLOCK && row < TEXT_PARAMETERS.len() {
+        Ok(Text { reference, row })
+    } else {
+        Err(unknown(reference, Type::String.words()))
+    }
+}
+
 /// The row of the input that a value reference stands for.
 ///
 /// # Errors
@@ -139,15 +165,13 @@ pub fn input(reference: ValueReference) -> Result<usize, Failure> {
     }
 }
 
-/// The row of the output that a value reference stands for.
+/// The rows of the output that a value reference stands for: of an array those of its elements.
 ///
 /// # Errors
 /// [`Failure::UnknownReference`].
-pub fn output(reference: ValueReference) -> Result<usize, Failure> {
-    match real(reference)? {
-        RealVariable::Output(row) => Ok(row),
-        _ => Err(unknown(reference, "an output")),
-    }
+pub fn outputs(reference: ValueReference) -> Result<Range<usize>, Failure> {
+    let rows = real(reference)?.outputs();
+    rows.ok_or(unknown(reference, "an output"))
 }
 
 fn unknown(reference: ValueReference, expected: &'static str) -> Failure {
@@ -174,9 +198,11 @@ mod tests {
         let integers = INTEGER_TYPES
             .iter()
             .filter_map(|expected| integer(reference, *expected).ok());
+        let texts = text(reference).ok().map(|text| text.name().to_owned());
         let names: Vec<String> = real
             .into_iter()
             .chain(integers.map(|integer| integer.name().to_owned()))
+            .chain(texts)
             .collect();
         (names.first().cloned(), names.len())
     }
@@ -186,7 +212,7 @@ mod tests {
         let mut references = HashSet::new();
         for (reference, variable) in table() {
             let (name, types) = resolved(reference);
-            // The first element of a parameter's array, or of a profile, has an index.
+            // The first element of an array has an index.
             let name = name.expect(variable.name);
             assert_eq!((name.trim_end_matches("[1]"), types), (variable.name, 1));
             assert!(references.insert(reference), "{}", variable.name);
@@ -198,6 +224,6 @@ mod tests {
                 "{reference}"
             );
         }
-        assert!(references.len() < 150, "{}", references.len());
+        assert!(references.len() < 200, "{}", references.len());
     }
 }

@@ -114,6 +114,7 @@ pub enum Variable {
     UInt64(Attributes),
     Boolean(Attributes),
     Enumeration(Attributes),
+    String(Attributes),
 }
 
 #[derive(Serialize)]
@@ -146,6 +147,15 @@ pub struct Attributes {
     pub start: Option<String>,
     #[serde(rename = "Dimension")]
     pub dimensions: Vec<Dimension>,
+    #[serde(rename = "Start")]
+    pub texts: Vec<Start>,
+}
+
+/// The start value of a text.
+#[derive(Serialize)]
+pub struct Start {
+    #[serde(rename = "@value")]
+    pub value: &'static str,
 }
 
 /// The length of an array in one of its indices: a number, or the variable that gives it.

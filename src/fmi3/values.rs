@@ -4,7 +4,7 @@
 use super::failures::Failure;
 use super::instance::Instance;
 use super::references::{self, Type};
-use super::types::{Boolean, FALSE, Float64, Int32, Int64, TRUE, UInt64, ValueReference};
+use super::types::{Boolean, FALSE, Float64, FmiString, Int32, Int64, TRUE, UInt64, ValueReference};
 use crate::fmi::derivatives::{Jacobian, Rows};
 use crate::fmi::failures;
 use crate::fmi::variables::{Integer, IntegerVariable, Lengths, Real};
@@ -134,6 +134,34 @@ impl Instance {
         Ok(self.component.set_integers(entries)?)
     }
 
+    /// fmi3GetString: all values or none.
+    pub fn get_string(
+        &mut self,
+        references: &[ValueReference],
+        values: &mut [MaybeUninit<FmiString>],
+    ) -> Result<(), Failure> {
+        check_number(values.len(), references.len())?;
+        for reference in references {
+            references::text(*reference)?;
+        }
+        for (reference, place) in references.iter().zip(values) {
+            place.write(self.component.text(references::text(*reference)?).as_ptr());
+        }
+        Ok(())
+    }
+
+    /// fmi3SetString: all values or none. A value is `None` where the pointer is null.
+    pub fn set_string<'a>(
+        &mut self,
+        references: &[ValueReference],
+        values: impl ExactSizeIterator<Item = Option<&'a [u8]>>,
+    ) -> Result<(), Failure> {
+        check_number(values.len(), references.len())?;
+        let entries = references.iter().zip(values);
+        let entries = entries.map(|(reference, value)| Ok((references::text(*reference)?, value)));
+        Ok(self.component.set_texts("values[i]", entries)?)
+    }
+
     /// fmi3GetOutputDerivatives.
     pub fn get_output_derivatives(
         &mut self,
@@ -141,9 +169,9 @@ impl Instance {
         orders: &[Int32],
         values: &mut [MaybeUninit<Float64>],
     ) -> Result<(), Failure> {
-        check_number(values.len(), references.len())?;
+        check_number(values.len(), outputs_in(references))?;
         let component = &mut self.component;
-        Ok(component.output_derivatives(references::output, references, orders, values)?)
+        Ok(component.output_derivatives(references::outputs, references, orders, values)?)
     }
 
     /// fmi3GetDirectionalDerivative: of outputs, in a direction of the inputs.
@@ -155,7 +183,7 @@ impl Instance {
         sensitivity: &mut [MaybeUninit<Float64>],
     ) -> Result<(), Failure> {
         let jacobian = jacobian(unknowns, knowns);
-        check_lengths(seed.len(), knowns.len(), sensitivity.len(), unknowns.len())?;
+        check_lengths(seed.len(), knowns.len(), sensitivity.len(), outputs_in(unknowns))?;
         Ok(self.component.directional_derivative(&jacobian, seed, sensitivity)?)
     }
 
@@ -168,9 +196,15 @@ impl Instance {
         sensitivity: &mut [MaybeUninit<Float64>],
     ) -> Result<(), Failure> {
         let jacobian = jacobian(unknowns, knowns);
-        check_lengths(seed.len(), unknowns.len(), sensitivity.len(), knowns.len())?;
+        check_lengths(seed.len(), outputs_in(unknowns), sensitivity.len(), knowns.len())?;
         Ok(self.component.adjoint_derivative(&jacobian, seed, sensitivity)?)
     }
+}
+
+/// Number of outputs, each element of an array counted; what is none is one, and refused later.
+fn outputs_in(references: &[ValueReference]) -> usize {
+    let rows = references.iter().map(|reference| references::outputs(*reference));
+    rows.map(|rows| rows.map_or(1, |rows| rows.len())).sum()
 }
 
 fn check_lengths(seeds: usize, seeded: usize, sensitivities: usize, wanted: usize) -> Result<(), Failure> {
@@ -188,7 +222,7 @@ fn check_lengths(seeds: usize, seeded: usize, sensitivities: usize, wanted: usiz
 
 fn jacobian<'a>(unknowns: &'a [ValueReference], knowns: &'a [ValueReference]) -> Jacobian<'a> {
     let rows = Rows {
-        output: references::output,
+        outputs: references::outputs,
         input: references::input,
         seed: "seed",
     };

@@ -28,6 +28,8 @@ choices! {
         Line "line",
         /// Patch along the rail and across it: lateral force and spin moment.
         Patch "patch",
+        /// Profiles of wheel and rail: contacts wherever they touch, from the wheelset's position and motion.
+        Profiles "profiles",
     }
 
     /// Quantity prescribed in the normal direction.
@@ -36,6 +38,8 @@ choices! {
         Load "load",
         /// The penetration is given, the load follows (the paper's case).
         Penetration "penetration",
+        /// The height of the wheelset is given, the load follows: how a multibody code couples. Of profiles alone.
+        Height "height",
     }
 
     /// Pair of inputs that defines the motion.
@@ -81,6 +85,14 @@ choices! {
         /// Elastic, the default: its compliance adds to the rail's (`body::pair`). Of the rail's material it rolls freely at
         /// creepage 0.
         Elastic "elastic",
+    }
+
+    /// Side of the track.
+    Side {
+        /// The left one in the direction of x.
+        Left "left",
+        /// The right one.
+        Right "right",
     }
 
     /// Whether the contact warms the wheel.

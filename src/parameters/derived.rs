@@ -4,6 +4,9 @@ use super::choices::{ContactModel, Wheel};
 use super::table::Parameters;
 use crate::geometry::hertz::{self, HertzEllipse};
 
+/// Curvature of the crown of common rails, of 300 mm radius, `1/m`.
+const CROWN_CURVATURE: f64 = 1.0 / 0.3;
+
 /// Poisson's ratio ν = λ/(2(λ + γ)).
 fn poisson_ratio(lambda: f64, shear: f64) -> f64 {
     lambda / (2.0 * (lambda + shear))
@@ -69,12 +72,16 @@ impl Parameters {
         1.2 * self.hertz_half_length(self.largest_load)
     }
 
-    /// Curvatures A and B of the gap A x² + B y² along and across the rail, `1/m`: 1/(2 r₀), half the sum across.
+    /// Curvatures A and B of the gap A x² + B y² along and across the rail, `1/m`: 1/(2 r₀), half the sum across. Profiles have
+    /// other ones at every place; these measure their contacts, as a cone's on a rail's crown.
     pub fn gap_curvatures(&self) -> (f64, f64) {
-        (
-            0.5 / self.wheel_radius,
-            0.5 * (self.rail_transverse_curvature + self.wheel_transverse_curvature),
-        )
+        let across = match self.contact_model {
+            ContactModel::Line | ContactModel::Patch => {
+                self.rail_transverse_curvature + self.wheel_transverse_curvature
+            }
+            ContactModel::Profiles => CROWN_CURVATURE,
+        };
+        (0.5 / self.wheel_radius, 0.5 * across)
     }
 
     /// Contact ellipse under a `load` `N`, of the transverse curvatures.
@@ -94,7 +101,7 @@ impl Parameters {
         }
     }
 
-    /// Half-length along the rail and half-breadth across it of the window of a patch, `m`: the ellipse of the largest load
+    /// Half-length along the rail and half-breadth across it of the window of a patch, or of a contact of profiles, `m`: the ellipse of the largest load
     /// and a margin of a fifth for thermal bulge, friction coupling and wear.
     pub fn patch_window(&self) -> (f64, f64) {
         let ellipse = self.hertz_ellipse(self.largest_load);

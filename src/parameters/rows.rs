@@ -104,6 +104,25 @@ macro_rules! choice {
     };
 }
 
+/// A text: start value.
+macro_rules! text {
+    (start { $start:literal }) => {
+        $start.to_owned()
+    };
+    (unit { $($columns:tt)* }) => {
+        ""
+    };
+    (row $field:ident, $description:expr, { $start:literal }) => {
+        ParameterRow::Text(TextParameter {
+            name: stringify!($field),
+            start: $start,
+            description: $description,
+            get: |parameters| &parameters.$field,
+            set: |parameters, text| parameters.$field = text,
+        })
+    };
+}
+
 /// A number of things that is also the length of arrays: start value, range.
 macro_rules! length {
     (row $($rest:tt)*) => {

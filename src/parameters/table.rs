@@ -9,8 +9,11 @@
 //!
 //! where the symbol is that of the equations, where there is one. The order is that of the table and of a saved state.
 
-use super::choices::{ContactModel, Control, FrictionLaw, MeshKind, NormalSolver, SlipSource, Wheel, WheelHeating};
+use super::choices::{
+    ContactModel, Control, FrictionLaw, MeshKind, NormalSolver, Side, SlipSource, Wheel, WheelHeating,
+};
 use super::range::check_range;
+use super::text::check_text;
 use crate::error::{Error, Result};
 use serde::{Deserialize, Serialize};
 
@@ -81,6 +84,21 @@ pub struct IntegerParameter {
     pub set: fn(&mut Parameters, i32),
 }
 
+/// One row of the table of texts: names and files.
+#[derive(Clone, Copy)]
+pub struct TextParameter {
+    /// Name, the same in FMI, on the command line and in messages.
+    pub name: &'static str,
+    /// Start value.
+    pub start: &'static str,
+    /// One sentence.
+    pub description: &'static str,
+    /// Reads the text.
+    pub get: fn(&Parameters) -> &str,
+    /// Writes a text that [`TextParameter::check`] has accepted.
+    pub set: fn(&mut Parameters, String),
+}
+
 impl RealParameter {
     /// Refuses a value of an element that is not finite or outside the range.
     ///
@@ -113,16 +131,28 @@ impl IntegerParameter {
     }
 }
 
-/// A row of either kind, as the list below has them.
+impl TextParameter {
+    /// Refuses a text that is blank, too long or has a zero byte in it.
+    ///
+    /// # Errors
+    /// [`Error::Text`].
+    pub fn check(&self, text: &str) -> Result<()> {
+        check_text(self.name, text)
+    }
+}
+
+/// A row of any kind, as the list below has them.
 #[derive(Clone, Copy)]
 enum ParameterRow {
     Real(RealParameter),
     Integer(IntegerParameter),
+    Text(TextParameter),
 }
 
 parameters! {
     /// What is prescribed in the normal direction: 1 load (input normal_load), 2 penetration (parameter
-    /// prescribed_penetration)
+    /// prescribed_penetration; not where contact_model is profiles), 3 height (input vertical_displacement; only where
+    /// contact_model is profiles)
     control: Control = choice { Control::Load }
     /// Which inputs define the motion: 1 creepage (wheel_speed and creepage), 2 vehicle_speed (wheel_speed and
     /// vehicle_speed)
@@ -213,7 +243,8 @@ parameters! {
     /// sqrt(pi*thermal_diffusivity*t) for rail that was heated the time t before it enters
     skin_depth: f64 = real { "m" shown in "mm", 5e-3, 1e-4, 0.1 }
     /// How the contact is resolved: 1 line (along the rail, uniform over contact_width: the paper's), 2 patch (along and
-    /// across the rail, with lateral force and spin moment)
+    /// across the rail, with lateral force and spin moment), 3 profiles (wherever rail_profile and wheel_profile touch, from
+    /// the position and motion of the wheelset)
     contact_model: ContactModel = choice { ContactModel::Line }
     /// Curvature of the rail's head across the rail, used where contact_model is patch; negative is hollow
     rail_transverse_curvature: f64 = real { "1/m", 1.0 / 0.3, -1e3, 1e3 }
@@ -240,6 +271,36 @@ parameters! {
     /// Rise of the shear traction at which the layer flows with the way that it has flowed, used where layer_yield_stress is
     /// not 0
     layer_hardening "k_τ": f64 = real { "Pa/m", 0.0, 0.0, 1e15, tunable }
+    /// Profile of the rail, used where contact_model is profiles: the name of one that is built in, the path or URI of a
+    /// file, or the name of a file in the archive's resources
+    rail_profile: String = text { "60E1" }
+    /// Profile of the wheel, used where contact_model is profiles: the name of one that is built in, the path or URI of a
+    /// file, or the name of a file in the archive's resources
+    wheel_profile: String = text { "S1002" }
+    /// Side of the track that the wheel runs on, used where contact_model is profiles: 1 left, 2 right
+    side: Side = choice { Side::Left }
+    /// Distance between the running faces of the rails, used where contact_model is profiles
+    gauge: f64 = real { "m" shown in "mm", 1.435, 0.3, 3.0 }
+    /// Depth below the top of the rail at which the gauge is measured, used where contact_model is profiles
+    gauge_depth: f64 = real { "m" shown in "mm", 14e-3, 1e-3, 50e-3 }
+    /// Distance between the backs of the wheels' flanges, used where contact_model is profiles
+    flange_back_distance: f64 = real { "m" shown in "mm", 1.360, 0.3, 3.0 }
+    /// Distance of the running circle from the back of the wheel's flange, used where contact_model is profiles
+    flange_back_position: f64 = real { "m" shown in "mm", 70e-3, 10e-3, 200e-3 }
+    /// Slope by which the rail leans towards the middle of the track, used where contact_model is profiles; 0 for a profile
+    /// that is inclined already
+    rail_inclination: f64 = real { "1", 1.0 / 40.0, -0.2, 0.2 }
+    /// Wavelength of the waves that smoothing damps to a half in profiles of measured points, used where contact_model is
+    /// profiles; 0 goes through the points
+    profile_smoothing: f64 = real { "m" shown in "mm", 0.0, 0.0, 0.1 }
+    /// Factor on the friction coefficient at the rail's gauge face for its lubrication, used where contact_model is profiles
+    gauge_face_friction_scale: f64 = real { "1", 1.0, 0.0, 2.0, tunable }
+    /// Inclination of the rail's surface towards the middle of the track from which on gauge_face_friction_scale acts, used
+    /// where contact_model is profiles
+    gauge_face_angle: f64 = real { "rad" shown in "deg", std::f64::consts::FRAC_PI_4, 0.0, std::f64::consts::FRAC_PI_2 }
+    /// Rise of the inclination beyond gauge_face_angle over which gauge_face_friction_scale comes to act in full, used where
+    /// contact_model is profiles
+    gauge_face_blend: f64 = real { "rad" shown in "deg", std::f64::consts::PI / 18.0, 1e-3, std::f64::consts::FRAC_PI_2 }
 }
 
 /// The start values of the friction table: the default piecewise linear law, its hot end repeated.
@@ -289,6 +350,9 @@ pub const REAL_PARAMETERS: &[RealParameter] = rows_of!(Real: RealParameter);
 /// The integer parameters in the order in which they are listed.
 pub const INTEGER_PARAMETERS: &[IntegerParameter] = rows_of!(Integer: IntegerParameter);
 
+/// The texts in the order in which they are listed.
+pub const TEXT_PARAMETERS: &[TextParameter] = rows_of!(Text: TextParameter);
+
 impl Parameters {
     /// Takes the tunable parameters from `source`; the others stay.
     ///
@@ -318,7 +382,7 @@ impl Parameters {
     /// number or by its name.
     ///
     /// # Errors
-    /// [`Error::UnknownParameter`], [`Error::NotANumber`] or [`Error::OutOfRange`].
+    /// [`Error::UnknownParameter`], [`Error::NotANumber`], [`Error::OutOfRange`] or [`Error::Text`].
     pub fn set_by_name(&mut self, name: &str, text: &str) -> Result<()> {
         for entry in REAL_PARAMETERS {
             let Some(element) = entry.elements.iter().position(|element| *element == name) else {
@@ -343,6 +407,12 @@ impl Parameters {
             (entry.set)(self, value);
             return Ok(());
         }
+        if let Some(entry) = TEXT_PARAMETERS.iter().find(|entry| entry.name == name) {
+            let text = text.trim();
+            entry.check(text)?;
+            (entry.set)(self, text.to_owned());
+            return Ok(());
+        }
         Err(Error::UnknownParameter { name: name.to_owned() })
     }
 }
@@ -359,6 +429,7 @@ fn parse<T: std::str::FromStr>(name: &'static str, text: &str, expected: &'stati
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::error::LONGEST_TEXT;
 
     #[test]
     fn every_row_has_its_start_values_its_names_and_its_field() {
@@ -380,6 +451,51 @@ mod tests {
                 assert_eq!((entry.get)(&parameters), value, "{}", entry.name);
             }
         }
+        for entry in TEXT_PARAMETERS {
+            let mut parameters = Parameters::default();
+            assert_eq!((entry.get)(&parameters), entry.start, "{}", entry.name);
+            assert_eq!(entry.check(entry.start), Ok(()));
+            (entry.set)(&mut parameters, "other".to_owned());
+            assert_eq!((entry.get)(&parameters), "other", "{}", entry.name);
+        }
+    }
+
+    #[test]
+    fn texts_are_set_by_name_and_refused_with_what_is_allowed() {
+        let mut parameters = Parameters::default();
+        parameters.set_by_name("rail_profile", " worn/räil.prr ").unwrap();
+        assert_eq!(parameters.rail_profile, "worn/räil.prr");
+        let longest = "a".repeat(LONGEST_TEXT);
+        parameters.set_by_name("rail_profile", &longest).unwrap();
+        assert_eq!(parameters.validate(), Ok(()));
+        for (text, words) in [
+            ("", "is blank"),
+            (" ", "is blank"),
+            ("a\0b", "zero byte behind 1"),
+            (&format!("{longest}a"), "too long"),
+        ] {
+            let refused = parameters.set_by_name("rail_profile", text).unwrap_err().to_string();
+            assert!(
+                refused.starts_with("rail_profile ") && refused.contains(words),
+                "{refused}"
+            );
+            assert!(
+                refused.ends_with("allowed is UTF-8 of 1 to 4096 bytes, none of them zero"),
+                "{refused}"
+            );
+            assert_eq!(parameters.rail_profile, longest);
+        }
+        let other = Parameters {
+            wheel_profile: String::new(),
+            ..parameters
+        };
+        assert!(matches!(
+            other.validate(),
+            Err(Error::Text {
+                name: "wheel_profile",
+                ..
+            })
+        ));
     }
 
     /// The names of a choice in the way of Rust, `PiecewiseLinear`, in that of FMI: `piecewise_linear`.
@@ -423,6 +539,7 @@ mod tests {
         assert_eq!(lower(FrictionLaw::ALL), FrictionLaw::NAMES);
         assert_eq!(lower(Wheel::ALL), Wheel::NAMES);
         assert_eq!(lower(WheelHeating::ALL), WheelHeating::NAMES);
+        assert_eq!(lower(Side::ALL), Side::NAMES);
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! Checks of the parameters, once, before a model is built.
 
-use super::choices::{ContactModel, FrictionLaw, MeshKind, NormalSolver};
-use super::table::{INTEGER_PARAMETERS, Parameters, REAL_PARAMETERS};
+use super::choices::{ContactModel, Control, FrictionLaw, MeshKind, NormalSolver, SlipSource};
+use super::table::{INTEGER_PARAMETERS, Parameters, REAL_PARAMETERS, TEXT_PARAMETERS};
 use crate::error::{Error, Result};
 use crate::geometry::hertz::LARGEST_CURVATURE_RATIO;
 
@@ -20,7 +20,7 @@ impl Parameters {
     /// Checks every value against its range, then the values against each other.
     ///
     /// # Errors
-    /// [`Error::OutOfRange`] or [`Error::Combination`].
+    /// [`Error::OutOfRange`], [`Error::Text`] or [`Error::Combination`].
     pub fn validate(&self) -> Result<()> {
         for entry in REAL_PARAMETERS {
             for (element, value) in (entry.get)(self).iter().enumerate() {
@@ -30,7 +30,11 @@ impl Parameters {
         for entry in INTEGER_PARAMETERS {
             entry.check((entry.get)(self))?;
         }
+        for entry in TEXT_PARAMETERS {
+            entry.check((entry.get)(self))?;
+        }
         self.validate_friction()?;
+        self.validate_control()?;
         match self.contact_model {
             ContactModel::Line => {
                 let window = self.window_half_width();
@@ -43,7 +47,8 @@ impl Parameters {
                     );
                 }
             }
-            ContactModel::Patch | ContactModel::Profiles => self.validate_patch()?,
+            ContactModel::Patch => self.validate_patch()?,
+            ContactModel::Profiles => self.validate_profiles()?,
         }
         self.validate_sizes()
     }
@@ -87,22 +92,63 @@ impl Parameters {
         if !(1.0 / LARGEST_CURVATURE_RATIO..=LARGEST_CURVATURE_RATIO).contains(&ratio) {
             return curvatures("their sum must be 1e-4 to 1e4 times 1/wheel_radius with contact_model = 2 (patch)");
         }
-        let model = ("contact_model", f64::from(self.contact_model as i32 + 1));
+        self.validate_grid()?;
+        self.validate_window(self.patch_window().0)
+    }
+
+    /// Checks how the motion is given to profiles, and refuses what they do without.
+    fn validate_profiles(&self) -> Result<()> {
+        if self.slip_source != SlipSource::VehicleSpeed {
+            return combination(
+                self.model(),
+                ("slip_source", f64::from(self.slip_source as i32 + 1)),
+                "profiles take the motion of the wheelset; slip_source must be 2 (vehicle_speed) with contact_model = 3 (profiles)",
+            );
+        }
+        self.validate_grid()?;
+        self.validate_window(self.patch_window().0)
+    }
+
+    /// The contact model as the first of two values that cannot be together.
+    fn model(&self) -> (&'static str, f64) {
+        ("contact_model", f64::from(self.contact_model as i32 + 1))
+    }
+
+    /// Refuses what only a line contact has: another mesh than its own, another solver than an active set.
+    fn validate_grid(&self) -> Result<()> {
         if self.mesh != MeshKind::Graded {
             return combination(
-                model,
+                self.model(),
                 ("mesh", f64::from(self.mesh as i32 + 1)),
-                "the patch has its own grid; mesh must be 1 (graded)",
+                "patch and profiles have their own grid; mesh must be 1 (graded)",
             );
         }
         if self.normal_solver != NormalSolver::ActiveSet {
             return combination(
-                model,
+                self.model(),
                 ("normal_solver", f64::from(self.normal_solver as i32 + 1)),
-                "the patch is solved by an active set; normal_solver must be 1 (active_set)",
+                "patch and profiles are solved by an active set; normal_solver must be 1 (active_set)",
             );
         }
-        self.validate_window(self.patch_window().0)
+        Ok(())
+    }
+
+    /// Refuses a height where there are no profiles, and a penetration where there are.
+    fn validate_control(&self) -> Result<()> {
+        let control = ("control", f64::from(self.control as i32 + 1));
+        match (self.control, self.contact_model) {
+            (Control::Height, ContactModel::Line | ContactModel::Patch) => combination(
+                control,
+                self.model(),
+                "only contact_model = 3 (profiles) has a height; control must be 1 (load) or 2 (penetration) without it",
+            ),
+            (Control::Penetration, ContactModel::Profiles) => combination(
+                control,
+                self.model(),
+                "profiles have no penetration of one contact; control must be 1 (load) or 3 (height) with them",
+            ),
+            _ => Ok(()),
+        }
     }
 
     /// Lengths that must fit into others.

@@ -1,6 +1,6 @@
-use super::{INPUTS, Inputs};
+use super::{CONTACTS, INPUTS, Inputs, OUTPUTS, Outputs, UsedBy};
 use crate::error::Error;
-use crate::parameters::{Parameters, REAL_PARAMETERS, SlipSource};
+use crate::parameters::{ContactModel, Control, Parameters, REAL_PARAMETERS, SlipSource};
 
 /// A parameter is named in the refusal of an input exactly where it narrows the input's range.
 #[test]
@@ -66,11 +66,21 @@ fn the_motion_follows_from_the_inputs_that_its_source_uses() {
             (signal.set)(&mut other, value);
             let moves = other.motion(&parameters) != start.motion(&parameters);
             let refused = signal.check_used(value, &parameters);
-            match signal.slip_source {
-                Some(user) => {
+            match signal.used_by {
+                Some(UsedBy::SlipSource(user)) => {
                     assert_eq!(moves, user == *source, "{}", signal.name);
                     assert_eq!(refused.is_ok(), moves, "{}", signal.name);
                     let words = format!("used where slip_source is {}", SlipSource::NAMES[user as usize]);
+                    assert!(signal.description.contains(&words), "{}", signal.description);
+                }
+                Some(UsedBy::Control(user)) => {
+                    assert_eq!(
+                        (user, moves, refused.is_ok()),
+                        (Control::Height, false, false),
+                        "{}",
+                        signal.name
+                    );
+                    let words = format!("used where control is {}", Control::NAMES[user as usize]);
                     assert!(signal.description.contains(&words), "{}", signal.description);
                 }
                 None => {
@@ -94,5 +104,93 @@ fn the_motion_follows_from_the_inputs_that_its_source_uses() {
     assert_eq!(
         error.to_string(),
         "vehicle_speed = 30 has no effect with slip_source = 1 (creepage); with slip_source = 2 (vehicle_speed) it is used"
+    );
+    let height = INPUTS.iter().find(|signal| signal.name == "vertical_displacement");
+    let refused = height.and_then(|signal| signal.check_used(1e-3, &by_creepage).err());
+    assert_eq!(
+        refused.expect("an error").to_string(),
+        "vertical_displacement = 0.001 has no effect with control = 1 (load); with control = 3 (height) it is used"
+    );
+    let by_height = Parameters {
+        control: Control::Height,
+        ..by_creepage
+    };
+    assert!(height.is_some_and(|signal| signal.check_used(1e-3, &by_height).is_ok()));
+}
+
+/// What an input, or an output, says of the contact models that it is 0 without.
+#[test]
+fn the_end_of_a_description_names_the_contact_models() {
+    for signal in INPUTS {
+        let names: Vec<_> = signal
+            .models
+            .iter()
+            .map(|model| ContactModel::NAMES[*model as usize])
+            .collect();
+        let ending = format!("; 0 unless contact_model is {}", names.join(" or "));
+        let is_for_all = signal.models == ContactModel::ALL;
+        assert_eq!(
+            signal.description.ends_with(&ending),
+            !is_for_all,
+            "{}",
+            signal.description
+        );
+        assert_eq!(signal.takers.is_empty(), is_for_all, "{}", signal.name);
+        // What is 0 by itself passes under every contact model.
+        assert!(is_for_all || signal.default == 0.0, "{}", signal.name);
+        let models = signal.models.iter().map(|model| {
+            let number = *model as usize;
+            format!("{} ({})", number + 1, ContactModel::NAMES[number])
+        });
+        let takers = models.collect::<Vec<_>>().join(" and ");
+        assert!(is_for_all || signal.takers.starts_with(&takers), "{}", signal.takers);
+    }
+    for output in OUTPUTS.iter().filter(|output| output.array.is_none()) {
+        let ending = "; 0 unless contact_model is profiles";
+        assert_eq!(
+            output.description.ends_with(ending),
+            output.profiles_only,
+            "{}",
+            output.name
+        );
+    }
+}
+
+/// The elements of an array follow each other, alike but for name and place.
+#[test]
+fn the_contacts_have_arrays_of_outputs() {
+    let mut outputs = Outputs::default();
+    let firsts = OUTPUTS
+        .iter()
+        .enumerate()
+        .filter(|(_, row)| matches!(row.array, Some((_, 0))));
+    let mut arrays = 0;
+    for (row, first) in firsts {
+        let (name, _) = first.array.expect("an array");
+        for (element, signal) in OUTPUTS[row..row + CONTACTS].iter().enumerate() {
+            assert_eq!(signal.array, Some((name, element)));
+            assert_eq!(signal.name, format!("{name}[{}]", element + 1));
+            assert_eq!((signal.unit, signal.description), (first.unit, first.description));
+            assert!(signal.profiles_only);
+            let value = (CONTACTS * row + element) as f64;
+            (signal.set)(&mut outputs, value);
+            assert_eq!((signal.get)(&outputs), value);
+        }
+        arrays += 1;
+    }
+    assert_eq!(
+        OUTPUTS.iter().filter(|row| row.array.is_some()).count(),
+        CONTACTS * arrays
+    );
+    let values: Vec<_> = OUTPUTS
+        .iter()
+        .filter(|row| row.array.is_some())
+        .map(|row| (row.get)(&outputs))
+        .collect();
+    assert!(values.windows(2).all(|pair| pair[0] < pair[1]));
+    let position = OUTPUTS.iter().position(|row| row.name == "contact.normal_force[3]");
+    assert_eq!(
+        outputs.contact[2].normal_force,
+        (CONTACTS * (position.expect("a row") - 2) + 2) as f64
     );
 }

@@ -308,7 +308,9 @@ fn reach(model: &Model, parameters: &Parameters, state: &State) -> Reach {
     let (half_length, _) = parameters.contact_half_axes(parameters.largest_load);
     let breadth = match parameters.contact_model {
         ContactModel::Line => parameters.contact_width,
-        ContactModel::Patch | ContactModel::Profiles => nodes[model.parameters().patch_nodes].lateral_position - nodes[0].lateral_position,
+        ContactModel::Patch | ContactModel::Profiles => {
+            nodes[model.parameters().patch_nodes].lateral_position - nodes[0].lateral_position
+        }
     };
     Reach {
         outermost: outermost / half_length,

@@ -9,27 +9,12 @@ fn inputs(api: &Api) -> Vec<u32> {
     INPUTS.iter().map(|row| api.reference(row.name)).collect()
 }
 
-fn outputs(api: &Api) -> Vec<u32> {
-    OUTPUTS.iter().map(|row| api.reference(row.name)).collect()
-}
-
 /// J, a column for each input.
 fn jacobian(client: &Client) -> Vec<Vec<f64>> {
-    let (api, unknowns) = (client.api, outputs(client.api));
+    let (api, unknowns) = (client.api, client.api.standard.outputs());
     let column = |known: u32| {
-        let mut values = vec![f64::NAN; unknowns.len()];
-        // SAFETY: as many elements as references.
-        client.expect(OK, unsafe {
-            api.directional_derivative(
-                client.component,
-                unknowns.as_ptr(),
-                unknowns.len(),
-                &known,
-                1,
-                &1.0,
-                values.as_mut_ptr(),
-            )
-        });
+        let mut values = vec![f64::NAN; OUTPUTS.len()];
+        client.expect(OK, client.directional(&unknowns, &[known], &[1.0], &mut values));
         values
     };
     inputs(api).into_iter().map(column).collect()
@@ -85,15 +70,18 @@ fn adjoint_derivatives_are_the_transposed_directional_ones() {
     let api = &Api::load(Fmi3);
     with_each_contact_model(api, |api, contact| {
         let mut random = Random::new(14, 0);
-        let (unknowns, knowns) = (outputs(api), inputs(api));
+        let (unknowns, knowns) = (api.standard.outputs(), inputs(api));
         let mut entries = 0;
         // Stick, partial slip, sliding; a braked and a driven wheel, by creepage and by speeds.
         for (slip_source, creepage) in [(1, 1e-4), (1, 3e-3), (2, -0.05), (2, 1e-3)] {
             let client = driven(api, contact, slip_source, creepage);
             let columns = jacobian(&client);
             // One output at a time: the row of J itself, to the bit.
-            for (row, unknown) in unknowns.iter().enumerate() {
-                let gradient = adjoint(&client, &[*unknown], &knowns, &[1.0]);
+            for (row, output) in OUTPUTS.iter().enumerate() {
+                let (entry, element) = api.standard.find(output.name);
+                let mut seed = vec![0.0; entry.elements];
+                seed[element.unwrap_or(0)] = 1.0;
+                let gradient = adjoint(&client, &[entry.reference], &knowns, &seed);
                 for (column, derivative) in columns.iter().zip(&gradient) {
                     assert_eq!(
                         derivative.to_bits(),
@@ -130,19 +118,8 @@ fn adjoint_derivatives_are_the_transposed_directional_ones() {
                 .iter()
                 .map(|row| row.nominal * random.between(-1.0, 1.0))
                 .collect();
-            let mut forward = vec![f64::NAN; unknowns.len()];
-            // SAFETY: as many elements as are counted.
-            client.expect(OK, unsafe {
-                api.directional_derivative(
-                    client.component,
-                    unknowns.as_ptr(),
-                    unknowns.len(),
-                    knowns.as_ptr(),
-                    knowns.len(),
-                    direction.as_ptr(),
-                    forward.as_mut_ptr(),
-                )
-            });
+            let mut forward = vec![f64::NAN; OUTPUTS.len()];
+            client.expect(OK, client.directional(&unknowns, &knowns, &direction, &mut forward));
             let products = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).collect::<Vec<_>>();
             let (one, other) = (products(&forward, &weights), products(&gradient, &direction));
             let size: f64 = columns

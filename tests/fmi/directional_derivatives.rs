@@ -1,7 +1,7 @@
 //! The directional derivative of every output with respect to every input against differences of a step that is rolled
 //! back with a saved state, over random operating points in stick, partial slip and sliding of both contact models.
 
-use super::importer::{Client, ContactModel, Handle, Line, OK, Patch, with_each};
+use super::importer::{Client, ContactModel, Handle, Line, OK, Patch, Profiles, with_each};
 use wheelrail::parameters::Parameters;
 use wheelrail::signals::{INPUTS, OUTPUTS};
 use wheelrail::torture::random::Random;
@@ -51,7 +51,7 @@ const OF_A_PATCH: Accuracy = Accuracy {
 fn accuracy(contact: ContactModel) -> &'static Accuracy {
     match contact {
         Line => &OF_A_LINE,
-        Patch => &OF_A_PATCH,
+        Patch | Profiles => &OF_A_PATCH,
     }
 }
 
@@ -108,21 +108,9 @@ impl Point<'_> {
 
     /// The column of the interface.
     fn derivatives(&self, input: usize) -> Vec<f64> {
-        let (client, unknowns) = (self.client, &self.references[..OUTPUTS.len()]);
+        let (client, unknowns) = (self.client, self.client.api.standard.outputs());
         let (known, mut values) = (client.api.reference(INPUTS[input].name), vec![f64::NAN; OUTPUTS.len()]);
-        // SAFETY: as many elements as references.
-        let status = unsafe {
-            client.api.directional_derivative(
-                client.component,
-                unknowns.as_ptr(),
-                unknowns.len(),
-                &known,
-                1,
-                &1.0,
-                values.as_mut_ptr(),
-            )
-        };
-        client.expect(OK, status);
+        client.expect(OK, client.directional(&unknowns, &[known], &[1.0], &mut values));
         values
     }
 }
@@ -137,7 +125,7 @@ fn directional_derivatives_are_the_differences_of_a_rolled_back_step() {
             let vehicle = point % 2 == 1;
             let client = match contact {
                 Line => Client::new(api),
-                Patch => Client::coarse(api, contact),
+                Patch | Profiles => Client::coarse(api, contact),
             };
             let law = 1 + (point / 2 % 3) as i32;
             // Rigid or of the rail's material.
@@ -172,7 +160,7 @@ fn directional_derivatives_are_the_differences_of_a_rolled_back_step() {
             ];
             let sideways = match contact {
                 Line => Vec::new(),
-                Patch => {
+                Patch | Profiles => {
                     let lateral = 0.3 * creepage.abs() * random.between(-1.0, 1.0);
                     let spin = random.between(-0.2, 0.2);
                     vec![
@@ -201,7 +189,7 @@ fn directional_derivatives_are_the_differences_of_a_rolled_back_step() {
                 client.expect(OK, client.step(time, STEP));
                 time += STEP;
             }
-            let outputs = OUTPUTS.iter().map(|row| api.reference(row.name));
+            let outputs = api.standard.outputs().into_iter();
             let pressure = api.array("profile.pressure", PROFILE_POINTS);
             let point = Point {
                 client: &client,
@@ -216,8 +204,8 @@ fn directional_derivatives_are_the_differences_of_a_rolled_back_step() {
             let columns: Vec<_> = (0..INPUTS.len()).map(|input| point.derivatives(input)).collect();
             for (input, column) in columns.iter().enumerate() {
                 let signal = &INPUTS[input];
-                // No difference can be taken of what a line contact refuses.
-                if signal.patch_only && contact == Line {
+                // No difference can be taken of what a contact model refuses.
+                if !signal.is_taken_by(contact) {
                     assert!(
                         column.iter().all(|derivative| *derivative == 0.0),
                         "{}: {column:?}",

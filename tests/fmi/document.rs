@@ -94,6 +94,11 @@ pub fn variables(standard: Standard) -> Vec<Attributes> {
                 variable.insert("type".to_owned(), kind.to_owned());
                 variable.extend(element.attributes);
             }
+            (Fmi3, Some((_, "Start"))) => {
+                let variable = variables.last_mut().expect("a variable");
+                let start = element.attributes["value"].clone();
+                assert!(variable.insert("start".to_owned(), start).is_none());
+            }
             // The dimensions of an array, one after another.
             (Fmi3, Some((_, "Dimension"))) => {
                 let (name, value) = element.attributes.into_iter().next().expect("a length");

@@ -191,17 +191,16 @@ fn drive(api: &Api, contact: ContactModel, (plan, end): &(Vec<Manoeuvre>, f64), 
 /// All outputs × inputs; where the equations have no derivative the call is an error, and a saved state leads on.
 fn derivatives(client: &Client) -> Vec<u64> {
     let (api, c) = (client.api, client.component);
-    let unknowns: Vec<u32> = OUTPUTS.iter().map(|row| api.reference(row.name)).collect();
+    let unknowns = api.standard.outputs();
     let mut handle: Handle = std::ptr::null_mut();
     let mut bits = Vec::new();
-    let mut values = vec![0.0; unknowns.len()];
+    let mut values = vec![0.0; OUTPUTS.len()];
     // SAFETY: as many elements as are counted, and a variable.
     unsafe {
         client.expect(OK, api.get_state(c, &mut handle));
         for row in INPUTS {
             let known = api.reference(row.name);
-            let (u, n) = (unknowns.as_ptr(), unknowns.len());
-            let status = api.directional_derivative(c, u, n, &known, 1, &1.0, values.as_mut_ptr());
+            let status = client.directional(&unknowns, &[known], &[1.0], &mut values);
             assert!([OK, ERROR].contains(&status));
             if status == ERROR {
                 client.expect(OK, client.restore(handle));
@@ -209,13 +208,7 @@ fn derivatives(client: &Client) -> Vec<u64> {
                 bits.extend(values.iter().map(|value| value.to_bits()));
             }
         }
-        let rates = vec![1; unknowns.len()];
-        let n = unknowns.len();
-        client.expect(
-            OK,
-            api.get_output_derivatives(c, unknowns.as_ptr(), n, rates.as_ptr(), values.as_mut_ptr()),
-        );
-        bits.extend(values.iter().map(|value| value.to_bits()));
+        bits.extend(client.output_rates().into_iter().map(f64::to_bits));
         client.expect(OK, api.free_state(c, &mut handle));
     }
     bits

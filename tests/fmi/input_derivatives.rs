@@ -2,7 +2,8 @@
 //! without it holds them and lags behind to order 1. And fmi2GetRealOutputDerivatives against the outputs themselves.
 
 use super::importer::{
-    Api, Client, ContactModel, DISCARD, ERROR, Fmi2, Line, OK, Patch, WARNING, with_each, with_each_contact_model,
+    Api, Client, ContactModel, DISCARD, ERROR, Fmi2, Line, OK, Patch, Profiles, WARNING, with_each,
+    with_each_contact_model,
 };
 use std::f64::consts::TAU;
 use std::ffi::c_int;
@@ -65,7 +66,7 @@ fn moving(time: f64, contact: ContactModel) -> (Inputs, Inputs) {
 fn parameters(contact: ContactModel) -> Parameters {
     match contact {
         Line => Parameters::default(),
-        Patch => Parameters {
+        Patch | Profiles => Parameters {
             contact_model: contact,
             patch_nodes: 14,
             patch_strips: 7,
@@ -100,7 +101,7 @@ fn through_the_interface(api: &Api, contact: ContactModel, interpolated: bool) -
     let moving = |time: f64| moving(time, contact);
     let client = match contact {
         Line => Client::new(api),
-        Patch => Client::coarse(api, contact),
+        Patch | Profiles => Client::coarse(api, contact),
     };
     let moved = INPUTS.iter().filter(|signal| (signal.get)(&moving(0.0).1) != 0.0);
     let moved: Vec<_> = moved.collect();
@@ -164,7 +165,7 @@ fn input_derivatives_act_on_one_step() {
         // Hertz, of a line and of an ellipse.
         let expected = match contact {
             Line => (6.0_f64 / 5.0).sqrt(),
-            Patch => (6.0_f64 / 5.0).cbrt(),
+            Patch | Profiles => (6.0_f64 / 5.0).cbrt(),
         };
         assert!((rising.0 / held.0 - expected).abs() < 0.02, "{rising:?} {held:?}");
         // The derivative is used up, the input is what was set.
@@ -233,7 +234,7 @@ fn input_derivatives_bring_a_long_step_closer_to_the_converged_solution() {
         // Some cells of a coarse patch join the contact, or begin to slip, within a step.
         let (shrinks, of_order) = match contact {
             Line => (0.5, 0.15),
-            Patch => (0.75, 0.3),
+            Patch | Profiles => (0.75, 0.3),
         };
 
         let [held, interpolated] =
@@ -276,7 +277,7 @@ fn output_derivatives_extrapolate_the_outputs() {
         // The peak of a coarse patch jumps from cell to cell.
         let share = match contact {
             Line => 0.4,
-            Patch => 0.5,
+            Patch | Profiles => 0.5,
         };
         println!("| output | held over 10 ms | extrapolated over 10 ms |\n|---|---|---|");
         for name in COMPARED {
@@ -302,8 +303,6 @@ fn output_derivatives_extrapolate_the_outputs() {
 fn output_derivatives_are_differences_of_the_outputs() {
     with_each(|api, contact| {
         let client = Client::running(api, contact, &[("creepage", 3e-3)]);
-        let references: Vec<u32> = OUTPUTS.iter().map(|row| api.reference(row.name)).collect();
-        let orders = vec![1; references.len()];
         let read = || client.outputs().into_iter().map(f64::from_bits).collect::<Vec<_>>();
         let mut before = read();
         for step in 0..20 {
@@ -315,20 +314,7 @@ fn output_derivatives_are_differences_of_the_outputs() {
             }
             client.expect(OK, client.step(time, 1e-3));
             let after = read();
-            let mut derivatives = vec![f64::NAN; references.len()];
-            // SAFETY: as many elements as references.
-            let status = unsafe {
-                api.get_output_derivatives(
-                    client.component,
-                    references.as_ptr(),
-                    references.len(),
-                    orders.as_ptr(),
-                    derivatives.as_mut_ptr(),
-                )
-            };
-            client.expect(OK, status);
-            for (row, derivative) in OUTPUTS.iter().zip(&derivatives) {
-                let column = references.iter().position(|r| *r == api.reference(row.name)).unwrap();
+            for (column, (row, derivative)) in OUTPUTS.iter().zip(client.output_rates()).enumerate() {
                 let difference = (after[column] - before[column]) / 1e-3;
                 // Round-off of the difference.
                 let tolerance = 1e-12 * (after[column].abs() + before[column].abs()) / 1e-3;

@@ -31,6 +31,7 @@ mod soak;
 mod state;
 mod states;
 mod steps;
+mod texts;
 #[cfg(target_os = "linux")]
 mod unload;
 mod values;

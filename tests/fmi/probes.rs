@@ -4,8 +4,8 @@
 //! parameters after the initialisation and noise as a state, and crash on null states.
 
 use super::importer::{
-    Api, Arguments, Client, ContactModel, DISCARD, ERROR, Fmi2, Fmi3, Handle, Journal, Line, OK, Patch, RIGHT,
-    Standard, WARNING, sideways,
+    Api, Arguments, Client, ContactModel, DISCARD, ERROR, Fmi2, Fmi3, Handle, Journal, Line, OK, Patch, Profiles,
+    RIGHT, Standard, WARNING, sideways,
 };
 use super::probes_fmi3;
 use std::ffi::{CStr, CString, c_int};
@@ -521,7 +521,7 @@ probes! {
                     client.expect(DISCARD, status);
                     assert!(client.last_message().contains(&format!("{name} = {}: must be 0", 2.0 * value)));
                 }
-                Patch => client.expect(OK, status),
+                Patch | Profiles => client.expect(OK, status),
             }
             advance(&client, 0.0);
         }

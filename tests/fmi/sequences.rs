@@ -5,7 +5,7 @@
 use super::calls::{Call, any_call};
 use super::importer::{
     Api, Arguments, Client, Component, ContactModel, DISCARD, ERROR, Fmi2, Fmi3, Handle, Journal, Line, OK, Patch,
-    RIGHT, WARNING, sideways, with_each_contact_model,
+    Profiles, RIGHT, WARNING, sideways, with_each_contact_model,
 };
 use super::odd_calls::odd;
 use proptest::collection::vec;
@@ -456,7 +456,7 @@ fn try_sequences(api: &Api) {
         // Taken by the contact model that it is of, refused by the other one.
         let sideways = match contact {
             Line => tally.sideways_refused,
-            Patch => tally.sideways_taken,
+            Patch | Profiles => tally.sideways_taken,
         };
         assert!(sideways >= 200, "{tally:#?}");
         for status in [OK, DISCARD, ERROR] {

@@ -3,7 +3,7 @@
 //! fiftieth step is repeated by the other one from a serialised state: it gives the same bits. A minute of a line and a third of that of a coarse patch by
 //! default, an hour and a third with `WHEELRAIL_SOAK_MINUTES=60 cargo test --release --test fmi -- --nocapture soak`.
 
-use super::importer::{Api, Client, ContactModel, Fmi2, Fmi3, Handle, Line, OK, Patch, Standard};
+use super::importer::{Api, Client, ContactModel, Fmi2, Fmi3, Handle, Line, OK, Patch, Profiles, Standard};
 use super::own_process::in_own_process;
 use std::env::var;
 use std::fs::read_to_string;
@@ -230,7 +230,7 @@ fn simulate(standard: Standard, contact: ContactModel, steps: u64) {
     let running = |api| {
         let client = match contact {
             Line => Client::new(api),
-            Patch => Client::coarse(api, contact),
+            Patch | Profiles => Client::coarse(api, contact),
         };
         client.expect(OK, client.set_integers(&[("slip_source", 2)]));
         client.start();
@@ -248,7 +248,7 @@ fn simulate(standard: Standard, contact: ContactModel, steps: u64) {
         "spin_rate",
     ]
     .map(|name| api.reference(name));
-    let outputs: Vec<u32> = OUTPUTS.iter().map(|row| api.reference(row.name)).collect();
+    let outputs = api.standard.outputs();
     let column = |name: &str| OUTPUTS.iter().position(|row| row.name == name).expect("an output");
     let totals = ["worn_volume", "friction_energy", "distance", "wheel_wear_depth"].map(column);
     let not_negative = [

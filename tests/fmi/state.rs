@@ -1,7 +1,7 @@
 //! Saved states: the same bits again, and nothing that was tampered with is accepted.
 
 use super::importer::{
-    Api, Client, ContactModel, ERROR, Fmi2, Fmi3, Handle, Line, OK, Patch, coarse, sideways, with_each,
+    Api, Client, ContactModel, ERROR, Fmi2, Fmi3, Handle, Line, OK, Patch, Profiles, coarse, sideways, with_each,
 };
 use std::ffi::c_int;
 use std::ptr::{dangling_mut, null_mut};
@@ -314,7 +314,7 @@ fn lies_under_a_right_checksum_are_refused() {
         // in turn.
         let stride = match contact {
             Line => 1,
-            Patch => 5,
+            Patch | Profiles => 5,
         };
         // The other standard reads by the same function.
         let stride = match api.standard {
@@ -383,7 +383,7 @@ fn locals_are_those_of_the_restored_state() {
         let handle = client.save();
         let names: &[&str] = match contact {
             Line => &["profile.temperature[31]"],
-            Patch => &["profile.temperature[31]", "strip.temperature[11]"],
+            Patch | Profiles => &["profile.temperature[31]", "strip.temperature[11]"],
         };
         let read = || names.iter().map(|name| client.get(name)).collect::<Vec<_>>();
         let cold = read();

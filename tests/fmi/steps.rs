@@ -1,7 +1,8 @@
 //! The step: its times, the status of one that fails, derivatives of inputs and outputs.
 
 use super::importer::{
-    Client, ContactModel, DISCARD, ERROR, Fmi2, Fmi3, Line, OK, Patch, sideways, with_each, with_each_standard,
+    Client, ContactModel, DISCARD, ERROR, Fmi2, Fmi3, Line, OK, Patch, Profiles, sideways, with_each,
+    with_each_standard,
 };
 use std::ptr::null_mut;
 
@@ -127,7 +128,7 @@ fn content(client: &Client) -> Vec<u8> {
 pub fn stops(contact: ContactModel) -> impl Iterator<Item = (f64, f64)> {
     let penetrations: &[f64] = match contact {
         Line => &[1.8e-4, 1.9e-4, 1.95e-4, 2e-4, 2.03e-4, 2.06e-4],
-        Patch => &[4e-5, 5e-5, 6e-5, 6.4e-5, 6.47e-5, 6.48e-5],
+        Patch | Profiles => &[4e-5, 5e-5, 6e-5, 6.4e-5, 6.47e-5, 6.48e-5],
     };
     penetrations
         .iter()
@@ -301,7 +302,7 @@ fn directional_derivatives_are_the_differences_of_a_rolled_back_step() {
         // follows from it.
         let (change, left) = match contact {
             Line => (1e-4, 1e-10),
-            Patch => (3e-3, 2e-5),
+            Patch | Profiles => (3e-3, 2e-5),
         };
         let client = Client::running(api, contact, &start);
         for step in 0..3 {

@@ -1,6 +1,8 @@
 //! Who is to blame decides the status: a value is discarded, a call or a combination is an error.
 
-use super::importer::{Client, DISCARD, ERROR, Fmi2, Fmi3, Line, OK, Patch, find, with_each, with_each_standard};
+use super::importer::{
+    Client, DISCARD, ERROR, Fmi2, Fmi3, Line, OK, Patch, Profiles, find, with_each, with_each_standard,
+};
 use std::ffi::c_int;
 use wheelrail::fmi2::variables::{Causality, Kind, Variability, variables};
 use wheelrail::fmi3::references::Type;
@@ -88,33 +90,41 @@ fn inputs_outside_their_range_are_discarded_while_running() {
     });
 }
 
-/// Lateral and spin motion of a line contact: a value that cannot be while running, and a combination with contact_model before,
+/// Motion that a line contact does not take: a value that cannot be while running, and a combination with contact_model before,
 /// where that may still follow.
 #[test]
-fn a_line_contact_takes_no_lateral_and_no_spin_motion() {
+fn a_line_contact_takes_no_lateral_and_no_spin_motion_and_no_position() {
     with_each_standard(|api| {
-        let names = ["lateral_creepage", "spin_creepage", "lateral_speed", "spin_rate"];
+        let names = [
+            ("lateral_creepage", "= 2 (patch)"),
+            ("spin_creepage", "= 2 (patch)"),
+            ("lateral_speed", "= 2 (patch) and 3 (profiles)"),
+            ("spin_rate", "= 2 (patch)"),
+            ("yaw_angle", "= 3 (profiles)"),
+            ("rail_roll_angle", "= 3 (profiles)"),
+        ];
         let running = Client::running(api, Line, &[]);
-        let refused = |client: &Client, call: &str, name: &str, value: f64| {
+        let refused = |client: &Client, call: &str, name: &str, value: f64, taker: &str| {
             let message = client.last_message();
             for part in [
                 call,
                 &format!("{name} = {value}"),
                 "contact_model = 1 (line)",
-                "contact_model = 2",
+                &format!("contact_model {taker}"),
             ] {
                 assert!(message.contains(part), "{message} lacks {part}");
             }
         };
-        for name in names {
+        for (name, taker) in names {
             running.expect(DISCARD, running.set(&[("creepage", 0.01), (name, 0.002)]));
-            refused(&running, &api.standard.function("SetReal"), name, 0.002);
+            refused(&running, &api.standard.function("SetReal"), name, 0.002, taker);
             assert_eq!((running.get(name), running.get("creepage")), (0.0, 0.0));
 
             let starting = Client::initializing(api, Line);
             starting.expect(OK, starting.set(&[(name, 0.002)]));
             starting.expect(ERROR, starting.exit());
-            refused(&starting, &api.standard.function("ExitInitializationMode"), name, 0.002);
+            let exit = api.standard.function("ExitInitializationMode");
+            refused(&starting, &exit, name, 0.002, taker);
         }
         if !api.takes_rates() {
             return;
@@ -123,7 +133,8 @@ fn a_line_contact_takes_no_lateral_and_no_spin_motion() {
         let before = running.outputs();
         running.expect(OK, running.set_rates(&[("lateral_creepage", 1, 1.0)]));
         running.expect(ERROR, running.step(0.0, 1e-3));
-        refused(&running, &api.standard.function("DoStep"), "lateral_creepage", 1e-3);
+        let step = api.standard.function("DoStep");
+        refused(&running, &step, "lateral_creepage", 1e-3, "= 2 (patch)");
         assert_eq!(running.outputs(), before);
     });
 }
@@ -177,7 +188,7 @@ fn a_vector_is_set_as_a_whole_or_not_at_all() {
             client.set(&[("wheel_speed", 1.0), ("friction_cold", 0.3), ("normal_load", f64::NAN)]),
         );
         assert_eq!((client.get("wheel_speed"), client.get("friction_cold")), (before, 0.45));
-        client.expect(DISCARD, client.set_integers(&[("friction_law", 1), ("control", 3)]));
+        client.expect(DISCARD, client.set_integers(&[("friction_law", 1), ("control", 4)]));
         assert_eq!(client.get_integer("friction_law"), 2);
         // A larger load is allowed together with a larger largest load, in either order.
         client.expect(OK, client.set(&[("normal_load", 1.5e5), ("largest_load", 2e5)]));
@@ -200,6 +211,7 @@ fn only_inputs_and_tunable_parameters_are_set_while_running() {
                 Kind::Integer { start, .. } => {
                     client.expect(ERROR, client.set_integers(&[(&row.name, start.unwrap_or(0))]));
                 }
+                Kind::Text { .. } => client.expect(ERROR, client.set_text(&row.name, c"60E2")),
             }
             if !settable {
                 let message = client.last_message();
@@ -252,10 +264,23 @@ fn a_combination_that_cannot_be_is_an_error_at_the_end_of_the_initialization() {
                 "strip_half_length",
             ),
             (&[], &[("wheel_speed", 200.0), ("wheel_radius", 5.0)], "rolling speed"),
+            (&[("control", 3)], &[], "control = 3"),
+            (&[("contact_model", 3), ("slip_source", 1)], &[], "slip_source = 1"),
+            (
+                &[("contact_model", 3), ("slip_source", 2), ("control", 2)],
+                &[],
+                "control = 2",
+            ),
+            (
+                &[("contact_model", 3), ("slip_source", 2)],
+                &[("spin_rate", 0.1)],
+                "spin_rate = 0.1",
+            ),
+            (&[], &[("lateral_displacement", 1e-3)], "lateral_displacement = 0.001"),
         ];
         let own: &[Case] = match contact {
             Line => &[(&[], &[("largest_load", 1e7)], "largest_load")],
-            Patch => &[
+            Patch | Profiles => &[
                 (
                     &[],
                     &[("rail_transverse_curvature", -1.0)],
@@ -325,7 +350,7 @@ fn outputs_follow_the_inputs_in_initialization() {
         // Hertz, of a line and of an ellipse.
         let expected: f64 = match contact {
             Line => 2.0_f64.sqrt(),
-            Patch => 2.0_f64.cbrt(),
+            Patch | Profiles => 2.0_f64.cbrt(),
         };
         assert!((heavy / light - expected).abs() < 0.05, "{heavy} {light}");
         client.expect(OK, client.exit());

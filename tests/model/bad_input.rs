@@ -2,9 +2,10 @@
 
 use wheelrail::error::Error;
 use wheelrail::parameters::{
-    ContactModel, FrictionLaw, INTEGER_PARAMETERS, MeshKind, NormalSolver, Parameters, REAL_PARAMETERS, SlipSource,
+    ContactModel, Control, FrictionLaw, INTEGER_PARAMETERS, MeshKind, NormalSolver, Parameters, REAL_PARAMETERS,
+    SlipSource,
 };
-use wheelrail::signals::{INPUTS, Inputs};
+use wheelrail::signals::{INPUTS, InputSignal, Inputs};
 use wheelrail::simulation::Simulation as Run;
 use wheelrail::wheel_rail::Model;
 
@@ -84,61 +85,156 @@ fn every_input_out_of_its_range_is_refused_and_changes_nothing() {
     }
 }
 
-/// A line contact ignores no lateral or spin motion, whichever inputs define the motion: it refuses them, held and as a ramp.
+/// A contact model ignores no motion that it does not know of, whichever inputs define the motion: it refuses it, held and as a ramp.
 #[test]
-fn a_line_contact_refuses_lateral_and_spin_motion() {
-    for slip_source in SlipSource::ALL {
+fn motion_that_a_contact_model_does_not_know_is_refused() {
+    for (contact_model, slip_source) in [
+        (ContactModel::Line, SlipSource::Creepage),
+        (ContactModel::Line, SlipSource::VehicleSpeed),
+        (ContactModel::Patch, SlipSource::VehicleSpeed),
+    ] {
         let parameters = Parameters {
-            slip_source: *slip_source,
+            contact_model,
+            slip_source,
             contact_nodes: 21,
             depth_nodes: 11,
+            patch_nodes: 12,
+            patch_strips: 5,
             ..Parameters::default()
         };
         let mut run = Run::new(&parameters, &Inputs::default()).unwrap();
         run.hold(&Inputs::default(), 1e-3, 1).unwrap();
         let before = run.state.clone();
-        let patch_only: Vec<_> = INPUTS.iter().filter(|signal| signal.patch_only).collect();
-        assert_eq!(patch_only.len(), 4);
-        for signal in patch_only {
+        let others: Vec<_> = INPUTS
+            .iter()
+            .filter(|signal| !signal.is_taken_by(contact_model))
+            .collect();
+        assert_eq!(others.len(), if contact_model == ContactModel::Line { 16 } else { 12 });
+        for signal in others {
             let mut inputs = Inputs::default();
             (signal.set)(&mut inputs, 0.001);
-            let expected = Error::PatchOnly {
-                name: signal.name,
-                value: 0.001,
-            };
             let error = run.step(&inputs, 1e-3).unwrap_err();
-            assert_eq!(error, expected);
-            let message = error.to_string();
-            assert_eq!(
-                message,
-                format!(
-                    "{} = 0.001: must be 0 with contact_model = 1 (line), which has no lateral force and no spin; \
-                     contact_model = 2 (patch) takes it",
-                    signal.name
-                )
-            );
-            assert_eq!(
-                run.model.initial_state(&mut run.workspace, &inputs).unwrap_err(),
-                expected
-            );
+            assert_eq!(error.to_string(), refusal(signal, contact_model));
+            assert_eq!(run.model.initial_state(&mut run.workspace, &inputs).unwrap_err(), error);
             let mut rates = Inputs::ZERO;
             (signal.set)(&mut rates, 1.0);
             let interrupted = run
                 .model
                 .step(&mut run.workspace, &mut run.state, &Inputs::default(), &rates, 1e-3)
                 .unwrap_err();
-            assert_eq!((interrupted.committed, interrupted.error), (0.0, expected));
+            assert_eq!((interrupted.committed, interrupted.error), (0.0, error));
             assert_eq!(run.state, before);
-            // What is 0 is nothing, whatever its sign; a patch takes more.
+            // What is 0 is nothing, whatever its sign; another contact model takes more.
             (signal.set)(&mut inputs, -0.0);
             assert!(inputs.check(&parameters).is_ok());
             (signal.set)(&mut inputs, 0.001);
-            let patch = Parameters {
-                contact_model: ContactModel::Patch,
-                ..parameters.clone()
-            };
-            assert!(inputs.check(&patch).is_ok());
+            for contact_model in ContactModel::ALL {
+                let other = Parameters {
+                    contact_model: *contact_model,
+                    ..parameters.clone()
+                };
+                assert_eq!(inputs.check(&other).is_ok(), signal.is_taken_by(*contact_model));
+            }
         }
+    }
+    // Creepages and the patch's spin are not the wheelset's.
+    for name in ["lateral_creepage", "spin_creepage", "spin_rate"] {
+        let signal = INPUTS.iter().find(|signal| signal.name == name).unwrap();
+        let refused = signal.check(0.001, &profiles()).unwrap_err().to_string();
+        assert_eq!(refused, refusal(signal, ContactModel::Profiles));
+    }
+}
+
+/// The words in which a contact model refuses an input.
+fn refusal(signal: &InputSignal, contact_model: ContactModel) -> String {
+    let (number, choice) = (contact_model as usize + 1, ContactModel::NAMES[contact_model as usize]);
+    let takers = match signal.models {
+        [ContactModel::Patch] => "2 (patch) takes",
+        [ContactModel::Profiles] => "3 (profiles) takes",
+        _ => "2 (patch) and 3 (profiles) take",
+    };
+    let name = signal.name;
+    format!("{name} = 0.001: must be 0 with contact_model = {number} ({choice}); contact_model = {takers} it")
+}
+
+/// Parameters that profiles may have.
+fn profiles() -> Parameters {
+    Parameters {
+        contact_model: ContactModel::Profiles,
+        slip_source: SlipSource::VehicleSpeed,
+        ..Parameters::default()
+    }
+}
+
+#[test]
+fn combinations_that_profiles_cannot_have_are_refused() {
+    assert_eq!(profiles().validate(), Ok(()));
+    // What a patch or a line needs is nothing to them.
+    let hollow = Parameters {
+        rail_transverse_curvature: -1.0,
+        contact_width: 1e-4,
+        ..profiles()
+    };
+    assert_eq!(hollow.validate(), Ok(()));
+    let by_height = Parameters {
+        control: Control::Height,
+        ..profiles()
+    };
+    assert_eq!(by_height.validate(), Ok(()));
+    for (changed, parts) in [
+        (
+            Parameters {
+                slip_source: SlipSource::Creepage,
+                ..profiles()
+            },
+            ["contact_model = 3", "slip_source = 1", "2 (vehicle_speed)"],
+        ),
+        (
+            Parameters {
+                control: Control::Penetration,
+                ..profiles()
+            },
+            ["control = 2", "contact_model = 3", "1 (load) or 3 (height)"],
+        ),
+        (
+            Parameters {
+                mesh: MeshKind::Paper,
+                ..profiles()
+            },
+            ["contact_model = 3", "mesh = 2", "1 (graded)"],
+        ),
+        (
+            Parameters {
+                normal_solver: NormalSolver::Pschenichnyj,
+                ..profiles()
+            },
+            ["contact_model = 3", "normal_solver = 2", "1 (active_set)"],
+        ),
+        (
+            Parameters {
+                wheel_radius: 0.05,
+                largest_load: 1e6,
+                ..profiles()
+            },
+            ["largest_load", "wheel_radius = 0.05", "a tenth"],
+        ),
+        (
+            Parameters {
+                control: Control::Height,
+                ..Parameters::default()
+            },
+            ["control = 3", "contact_model = 1", "contact_model = 3 (profiles)"],
+        ),
+        (
+            Parameters {
+                control: Control::Height,
+                contact_model: ContactModel::Patch,
+                ..Parameters::default()
+            },
+            ["control = 3", "contact_model = 2", "contact_model = 3 (profiles)"],
+        ),
+    ] {
+        assert_combination(&changed, &parts);
     }
 }
 

@@ -2,12 +2,15 @@
 //! scenarios that switch everything on. What fails names the file in which something was forgotten.
 
 use wheelrail::parameters::{
-    ContactModel, Control, FrictionLaw, INTEGER_PARAMETERS, Parameters, REAL_PARAMETERS, SlipSource, TABLE_POINTS,
-    Wheel, WheelHeating,
+    ContactModel, Control, FrictionLaw, INTEGER_PARAMETERS, IntegerParameter, Parameters, REAL_PARAMETERS, SlipSource,
+    TABLE_POINTS, Wheel, WheelHeating,
 };
 use wheelrail::signals::{INPUTS, Inputs, OUTPUTS, Outputs};
 use wheelrail::simulation::Simulation;
 use wheelrail::wheel_rail::Model;
+
+/// Rows of what profiles alone have are passed over, as that contact model is not computed yet.
+const NOT_COMPUTED: &str = "contact_model is profiles";
 
 /// Parameters, and inputs that are held under them.
 type Scenario = (Parameters, Inputs);
@@ -123,7 +126,7 @@ fn every_output_leaves_zero() {
         .collect();
     let idle = OUTPUTS
         .iter()
-        .filter(|output| seen.iter().all(|outputs| (output.get)(outputs) == 0.0));
+        .filter(|output| !output.profiles_only && seen.iter().all(|outputs| (output.get)(outputs) == 0.0));
     let idle: Vec<_> = idle.map(|output| output.name).collect();
     assert!(
         idle.is_empty(),
@@ -149,6 +152,7 @@ fn every_input_moves_an_output() {
     };
     let idle = INPUTS
         .iter()
+        .filter(|input| !input.description.ends_with(NOT_COMPUTED))
         .filter(|input| !moves(input.set, (input.get)(&scenarios[0].1), input.maximum));
     let idle: Vec<_> = idle.map(|input| input.name).collect();
     assert!(
@@ -175,7 +179,10 @@ fn every_parameter_moves_an_output() {
         })
     };
     let mut idle = Vec::new();
-    for entry in REAL_PARAMETERS {
+    for entry in REAL_PARAMETERS
+        .iter()
+        .filter(|entry| !entry.description.contains(NOT_COMPUTED))
+    {
         for (element, name) in entry.elements.iter().enumerate() {
             let change = |parameters: &mut Parameters| {
                 let value = &mut (entry.get_mut)(parameters)[element];
@@ -186,7 +193,10 @@ fn every_parameter_moves_an_output() {
             }
         }
     }
-    for entry in INTEGER_PARAMETERS {
+    // Of these two it is a choice that says so.
+    let chooses = |name| ["control", "contact_model"].contains(&name);
+    let computed = |entry: &&IntegerParameter| chooses(entry.name) || !entry.description.contains(NOT_COMPUTED);
+    for entry in INTEGER_PARAMETERS.iter().filter(computed) {
         let change = |parameters: &mut Parameters| {
             let value = (entry.get)(parameters);
             let other = if value < entry.maximum { value + 1 } else { value - 1 };

@@ -74,7 +74,7 @@ fn difference(
     let share = match model.parameters().contact_model {
         ContactModel::Line => 4e-4,
         // Many more cells than nodes are close to joining or leaving the contact, or to sliding.
-        ContactModel::Patch => 1e-4,
+        ContactModel::Patch | ContactModel::Profiles => 1e-4,
     };
     let h = share * nominal;
     let (here, ahead, behind) = (run(0.0)?, run(h)?, run(-h)?);
@@ -153,8 +153,8 @@ pub fn check(parameters: Parameters, inputs: Inputs, step: f64) -> Result<usize,
         .unwrap();
     let mut compared = 0;
     for (row, input) in INPUTS.iter().enumerate() {
-        // No difference can be taken of what a line contact refuses.
-        if input.patch_only && model.parameters().contact_model == ContactModel::Line {
+        // No difference can be taken of what a contact model refuses.
+        if !input.is_taken_by(model.parameters().contact_model) {
             assert_eq!(sensitivities[row], Outputs::default(), "{}", input.name);
             continue;
         }
@@ -457,7 +457,7 @@ fn sensitivities_of_a_lifted_patch() {
     for (row, input) in INPUTS
         .iter()
         .enumerate()
-        .filter(|(_, input)| input.name != "normal_load")
+        .filter(|(_, input)| input.name != "normal_load" && input.is_taken_by(model.parameters().contact_model))
     {
         let h = 1e-4 * nominal(&model, row);
         let [ahead, behind] = [h, -h].map(|change| {
@@ -510,7 +510,8 @@ fn sensitivities_of_an_initial_patch() {
         let mut differences = Vec::new();
         for (row, input) in INPUTS.iter().enumerate() {
             // At standstill |V| has a corner.
-            if speed == 0.0 && input.name == "vehicle_speed" {
+            let corner = speed == 0.0 && input.name == "vehicle_speed";
+            if corner || !input.is_taken_by(ContactModel::Patch) {
                 continue;
             }
             let h = 1e-5 * nominal(&model, row);

@@ -21,7 +21,7 @@ pub struct Describe {
     /// Print the table in Markdown.
     #[arg(long, conflicts_with = "xml")]
     markdown: bool,
-    /// List every point of the profiles.
+    /// List every point of the profiles and every contact.
     #[arg(long, conflicts_with = "xml")]
     all: bool,
 }
@@ -77,9 +77,9 @@ impl Describe {
 const HEADINGS: [&str; 5] = ["name", "unit", "start", "range", "description"];
 type DescriptionRow = [String; 5];
 
-/// Returns whether a variable is listed: of a profile only the first point is.
+/// Returns whether a variable is listed: of a profile only the first point is, of the contacts the first one.
 fn is_listed(variable: &Variable) -> bool {
-    variable.causality != Causality::Local || !variable.name.contains('[') || variable.name.ends_with("[1]")
+    variable.causality == Causality::Parameter || !variable.name.contains('[') || variable.name.ends_with("[1]")
 }
 
 fn row(variable: &Variable) -> DescriptionRow {
@@ -108,6 +108,7 @@ fn row(variable: &Variable) -> DescriptionRow {
             let text = |value: &Option<i32>| value.map(|value| value.to_string());
             ("", text(start), range(text(minimum), text(maximum)))
         }
+        Kind::Text { start } => ("", Some((*start).to_owned()), String::new()),
     };
     [
         format!("{}{tunable}", variable.name),

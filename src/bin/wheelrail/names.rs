@@ -1,6 +1,6 @@
 //! Names that are meant, where one is given that there is none of.
 
-use wheelrail::parameters::{INTEGER_PARAMETERS, IntegerKind, REAL_PARAMETERS};
+use wheelrail::parameters::{INTEGER_PARAMETERS, IntegerKind, REAL_PARAMETERS, TEXT_PARAMETERS};
 use wheelrail::{Error as ModelError, INPUTS, OUTPUTS};
 
 /// Likeness from which on a name may be meant: of six letters two may be wrong.
@@ -55,7 +55,8 @@ pub fn is_output(name: &str) -> bool {
 /// The names of all parameters; of an array those of its elements.
 pub fn parameters() -> impl Iterator<Item = &'static str> {
     let reals = REAL_PARAMETERS.iter().flat_map(|row| row.elements.iter().copied());
-    reals.chain(INTEGER_PARAMETERS.iter().map(|row| row.name))
+    let integers = INTEGER_PARAMETERS.iter().map(|row| row.name);
+    reals.chain(integers).chain(TEXT_PARAMETERS.iter().map(|row| row.name))
 }
 
 /// Returns what helps after a refusal of a parameter's name or value, as the end of the message; empty where the

@@ -4,8 +4,8 @@ use super::{
     Causality, FIELDS, ITERATIONS, IntegerVariable, Kind, PROFILES, RESIDUAL, RealKind, RealVariable, Shape, TIME,
     Variability, Variable,
 };
-use crate::parameters::{INTEGER_PARAMETERS, IntegerKind, REAL_PARAMETERS};
-use crate::signals::{INPUTS, OUTPUTS};
+use crate::parameters::{INTEGER_PARAMETERS, IntegerKind, REAL_PARAMETERS, TEXT_PARAMETERS};
+use crate::signals::{CONTACTS, INPUTS, OUTPUTS};
 
 /// The table.
 pub fn variables() -> Vec<Variable> {
@@ -13,6 +13,7 @@ pub fn variables() -> Vec<Variable> {
         .chain(outputs())
         .chain(integer_parameters())
         .chain(real_parameters())
+        .chain(text_parameters())
         .chain(profiles())
         .chain(solver())
         .collect()
@@ -38,16 +39,24 @@ fn inputs() -> impl Iterator<Item = Variable> {
     })
 }
 
-/// Outputs of the model.
+/// Outputs of the model; the elements of an array are one variable.
 fn outputs() -> impl Iterator<Item = Variable> {
-    OUTPUTS.iter().enumerate().map(|(row, signal)| Variable {
-        name: signal.name,
+    let rows = OUTPUTS.iter().enumerate();
+    let firsts = rows.filter(|(_, signal)| signal.array.is_none_or(|(_, element)| element == 0));
+    firsts.map(|(row, signal)| Variable {
+        name: signal.array.map_or(signal.name, |(array, _)| array),
         description: signal.description,
         causality: Causality::Output,
         variability: Variability::Continuous,
         kind: Kind::Real(RealKind {
-            variable: RealVariable::Output(row),
-            shape: Shape::Number,
+            variable: match signal.array {
+                Some(_) => RealVariable::Contacts(row),
+                None => RealVariable::Output(row),
+            },
+            shape: match signal.array {
+                Some(_) => Shape::Array(CONTACTS),
+                None => Shape::Number,
+            },
             unit: signal.unit,
             display_unit: signal.display_unit,
             minimum: signal.minimum,
@@ -100,6 +109,20 @@ fn real_parameters() -> impl Iterator<Item = Variable> {
             nominal: None,
             start: entry.start,
         }),
+    })
+}
+
+/// Parameters that are texts.
+fn text_parameters() -> impl Iterator<Item = Variable> {
+    TEXT_PARAMETERS.iter().enumerate().map(|(row, entry)| Variable {
+        name: entry.name,
+        description: entry.description,
+        causality: Causality::Parameter,
+        variability: Variability::Fixed,
+        kind: Kind::Text {
+            row,
+            start: entry.start,
+        },
     })
 }
 

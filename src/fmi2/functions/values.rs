@@ -1,8 +1,9 @@
 //! Variables.
 
 use super::call::call;
+use crate::error::LONGEST_TEXT;
 use crate::fmi::failures::Failure;
-use crate::fmi::pointers::{input, output};
+use crate::fmi::pointers::{bytes, input, output};
 use crate::fmi2::instance::Instance;
 use crate::fmi2::states::Function;
 use crate::fmi2::types::{Boolean, Component, FmiString, Integer, Real, Status, ValueReference};
@@ -83,27 +84,65 @@ pub unsafe extern "C" fn fmi2SetInteger(
     unsafe { call(component, Function::SetInteger, body) }
 }
 
-/// Boolean and String: there are no variables of these types, so that every value reference is unknown.
+/// Reads String variables. What is read stays where it is at least until the next call.
 ///
 /// # Safety
 /// As [`fmi2GetReal`].
-unsafe fn no_variables<T>(
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2GetString(
+    component: Component,
+    references: *const ValueReference,
+    n: usize,
+    values: *mut FmiString,
+) -> Status {
+    // SAFETY: `n` elements (the caller's promise).
+    let body = |instance: &mut Instance| unsafe {
+        instance.get_string(input(references, n, "vr")?, output(values, n, "value")?)
+    };
+    // SAFETY: a live instance (the caller's promise).
+    unsafe { call(component, Function::GetString, body) }
+}
+
+/// Sets String variables, all or none.
+///
+/// # Safety
+/// As [`fmi2GetReal`]; each value is null or a string ended by zero.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2SetString(
+    component: Component,
+    references: *const ValueReference,
+    n: usize,
+    values: *const FmiString,
+) -> Status {
+    // SAFETY: `n` elements, each null or a string (the caller's promise).
+    let body = |instance: &mut Instance| unsafe {
+        let (references, values) = (input(references, n, "vr")?, input(values, n, "value")?);
+        instance.set_string(references, values.iter().map(|value| bytes(*value, LONGEST_TEXT)))
+    };
+    // SAFETY: a live instance (the caller's promise).
+    unsafe { call(component, Function::SetString, body) }
+}
+
+/// Boolean: there are no variables of this type, so that every value reference is unknown.
+///
+/// # Safety
+/// As [`fmi2GetReal`].
+unsafe fn no_variables(
     component: Component,
     function: Function,
     references: *const ValueReference,
     n: usize,
-    values: *const T,
-    expected: &'static str,
+    values: *const Boolean,
 ) -> Status {
     let body = |_: &mut Instance| {
         // SAFETY: `n` elements (the caller's promise).
         let references = unsafe { input(references, n, "vr") }?;
         // SAFETY: as before; the values are not read.
-        unsafe { input(values.cast::<MaybeUninit<T>>(), n, "value") }?;
+        unsafe { input(values.cast::<MaybeUninit<Boolean>>(), n, "value") }?;
         match references.first() {
             Some(reference) => Err(Failure::UnknownReference {
                 reference: *reference,
-                expected,
+                expected: "a Boolean variable: there are none",
             }
             .into()),
             None => Ok(()),
@@ -125,40 +164,7 @@ pub unsafe extern "C" fn fmi2GetBoolean(
     values: *mut Boolean,
 ) -> Status {
     // SAFETY: the caller's promise.
-    unsafe {
-        no_variables(
-            component,
-            Function::GetBoolean,
-            references,
-            n,
-            values,
-            "a Boolean variable: there are none",
-        )
-    }
-}
-
-/// Reads String variables: there are none.
-///
-/// # Safety
-/// As [`fmi2GetReal`].
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2GetString(
-    component: Component,
-    references: *const ValueReference,
-    n: usize,
-    values: *mut FmiString,
-) -> Status {
-    // SAFETY: the caller's promise.
-    unsafe {
-        no_variables(
-            component,
-            Function::GetString,
-            references,
-            n,
-            values,
-            "a String variable: there are none",
-        )
-    }
+    unsafe { no_variables(component, Function::GetBoolean, references, n, values) }
 }
 
 /// Sets Boolean variables: there are none.
@@ -173,38 +179,5 @@ pub unsafe extern "C" fn fmi2SetBoolean(
     values: *const Boolean,
 ) -> Status {
     // SAFETY: the caller's promise.
-    unsafe {
-        no_variables(
-            component,
-            Function::SetBoolean,
-            references,
-            n,
-            values,
-            "a Boolean variable: there are none",
-        )
-    }
-}
-
-/// Sets String variables: there are none.
-///
-/// # Safety
-/// As [`fmi2GetReal`].
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2SetString(
-    component: Component,
-    references: *const ValueReference,
-    n: usize,
-    values: *const FmiString,
-) -> Status {
-    // SAFETY: the caller's promise.
-    unsafe {
-        no_variables(
-            component,
-            Function::SetString,
-            references,
-            n,
-            values,
-            "a String variable: there are none",
-        )
-    }
+    unsafe { no_variables(component, Function::SetBoolean, references, n, values) }
 }

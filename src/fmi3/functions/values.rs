@@ -1,8 +1,9 @@
 //! Variables.
 
 use super::call::call;
+use crate::error::LONGEST_TEXT;
 use crate::fmi::failures::Failure;
-use crate::fmi::pointers::{input, output};
+use crate::fmi::pointers::{bytes, input, output};
 use crate::fmi3::instance::Instance;
 use crate::fmi3::states::Function;
 use crate::fmi3::types::{self, Binary, Boolean, Float64, FmiString, Int32, Int64, Status, UInt64, ValueReference};
@@ -61,6 +62,51 @@ variables! {
     "lengths of arrays", UInt64, fmi3GetUInt64 GetUInt64 by get_integer, fmi3SetUInt64 SetUInt64 by set_integer;
     "choices between off and on", Boolean,
         fmi3GetBoolean GetBoolean by get_integer, fmi3SetBoolean SetBoolean by set_integer;
+}
+
+/// Reads texts, all or none. What is read stays where it is at least until the next call.
+///
+/// # Safety
+/// A live instance and as many elements as given behind each pointer.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi3GetString(
+    instance: types::Instance,
+    references: *const ValueReference,
+    n_references: usize,
+    values: *mut FmiString,
+    n_values: usize,
+) -> Status {
+    // SAFETY: as many elements as given (the caller's promise).
+    let body = |instance: &mut Instance| unsafe {
+        instance.get_string(
+            input(references, n_references, "valueReferences")?,
+            output(values, n_values, "values")?,
+        )
+    };
+    // SAFETY: a live instance (the caller's promise).
+    unsafe { call(instance, Function::GetString, body) }
+}
+
+/// Sets texts, all or none.
+///
+/// # Safety
+/// As for reading them; each value is null or a string ended by zero.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi3SetString(
+    instance: types::Instance,
+    references: *const ValueReference,
+    n_references: usize,
+    values: *const FmiString,
+    n_values: usize,
+) -> Status {
+    // SAFETY: as many elements as given, each null or a string (the caller's promise).
+    let body = |instance: &mut Instance| unsafe {
+        let references = input(references, n_references, "valueReferences")?;
+        let values = input(values, n_values, "values")?;
+        instance.set_string(references, values.iter().map(|value| bytes(*value, LONGEST_TEXT)))
+    };
+    // SAFETY: a live instance (the caller's promise).
+    unsafe { call(instance, Function::SetString, body) }
 }
 
 /// No variable has the type, so that every value reference is unknown.
@@ -138,7 +184,6 @@ no_variables! {
     "Int16", i16, fmi3GetInt16 GetInt16, fmi3SetInt16 SetInt16;
     "UInt16", u16, fmi3GetUInt16 GetUInt16, fmi3SetUInt16 SetUInt16;
     "UInt32", u32, fmi3GetUInt32 GetUInt32, fmi3SetUInt32 SetUInt32;
-    "String", FmiString, fmi3GetString GetString, fmi3SetString SetString;
 }
 
 /// Reads Binary variables: there are none.

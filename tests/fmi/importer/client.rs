@@ -6,7 +6,7 @@ use super::messages::{Arguments, Journal, RIGHT};
 use super::standard::Standard::{Fmi2, Fmi3};
 use super::{ContactModel, Line, OK, coarse, sideways};
 use std::cell::Cell;
-use std::ffi::c_int;
+use std::ffi::{CStr, CString, c_int};
 use wheelrail::signals::OUTPUTS;
 
 pub struct Client<'a> {
@@ -291,6 +291,69 @@ impl<'a> Client<'a> {
         }
     }
 
+    /// The derivatives of outputs in a direction of inputs; more values than unknowns where these are arrays.
+    #[track_caller]
+    pub fn directional(&self, unknowns: &[u32], knowns: &[u32], seed: &[f64], values: &mut [f64]) -> c_int {
+        assert_eq!(seed.len(), knowns.len());
+        let (c, n_unknowns, n_knowns, n_values) = (self.component, unknowns.len(), knowns.len(), values.len());
+        let (unknowns, knowns) = (unknowns.as_ptr(), knowns.as_ptr());
+        let (seed, values) = (seed.as_ptr(), values.as_mut_ptr());
+        // SAFETY: as many elements as are counted.
+        unsafe {
+            match self.api.standard {
+                Fmi2 => {
+                    assert_eq!(n_unknowns, n_values);
+                    let derivative = self.api.fmi2.fmi2GetDirectionalDerivative;
+                    derivative(c, unknowns, n_unknowns, knowns, n_knowns, seed, values)
+                }
+                Fmi3 => {
+                    let derivative = self.api.fmi3.fmi3GetDirectionalDerivative;
+                    derivative(
+                        c, unknowns, n_unknowns, knowns, n_knowns, seed, n_knowns, values, n_values,
+                    )
+                }
+            }
+        }
+    }
+
+    /// The rates of change of all outputs.
+    #[track_caller]
+    pub fn output_rates(&self) -> Vec<f64> {
+        let references = self.api.standard.outputs();
+        let (c, n, orders) = (self.component, references.len(), vec![1; references.len()]);
+        let mut values = vec![f64::NAN; OUTPUTS.len()];
+        let (references, orders, n_values) = (references.as_ptr(), orders.as_ptr(), values.len());
+        // SAFETY: as many elements as are counted.
+        self.expect(OK, unsafe {
+            match self.api.standard {
+                Fmi2 => (self.api.fmi2.fmi2GetRealOutputDerivatives)(c, references, n, orders, values.as_mut_ptr()),
+                Fmi3 => {
+                    (self.api.fmi3.fmi3GetOutputDerivatives)(c, references, n, orders, values.as_mut_ptr(), n_values)
+                }
+            }
+        });
+        values
+    }
+
+    /// Sets a text.
+    #[track_caller]
+    pub fn set_text(&self, name: &str, text: &CStr) -> c_int {
+        let reference = self.api.reference(name);
+        // SAFETY: one element.
+        unsafe { self.api.set_string(self.component, &reference, 1, &text.as_ptr()) }
+    }
+
+    /// A text.
+    #[track_caller]
+    pub fn get_text(&self, name: &str) -> CString {
+        let (reference, mut text) = (self.api.reference(name), std::ptr::null());
+        // SAFETY: one element, and a string that stays until the next call.
+        unsafe {
+            self.expect(OK, self.api.get_string(self.component, &reference, 1, &mut text));
+            CStr::from_ptr(text).to_owned()
+        }
+    }
+
     /// One real variable, or an element of an array.
     #[track_caller]
     pub fn get(&self, name: &str) -> f64 {
@@ -303,11 +366,8 @@ impl<'a> Client<'a> {
     /// All outputs, as bits.
     #[track_caller]
     pub fn outputs(&self) -> Vec<u64> {
-        // Rows of the table have ascending value references.
-        let first = self.api.reference(OUTPUTS[0].name);
-        let references: Vec<u32> = (first..first + OUTPUTS.len() as u32).collect();
-        let mut values = vec![f64::NAN; references.len()];
-        self.expect(OK, self.get_references(&references, &mut values));
+        let mut values = vec![f64::NAN; OUTPUTS.len()];
+        self.expect(OK, self.get_references(&self.api.standard.outputs(), &mut values));
         values.into_iter().map(f64::to_bits).collect()
     }
 

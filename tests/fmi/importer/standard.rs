@@ -6,6 +6,7 @@ use std::sync::LazyLock;
 use wheelrail::fmi::variables::{Kind, Shape};
 use wheelrail::fmi2::variables::{Variable, variables};
 use wheelrail::fmi3::references::{self, Type};
+use wheelrail::signals::OUTPUTS;
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Standard {
@@ -66,6 +67,15 @@ impl Standard {
         references
     }
 
+    /// The value references of all outputs, in FMI 3.0 one for all contacts: their values follow each other as the rows of
+    /// [`OUTPUTS`] do.
+    pub fn outputs(self) -> Vec<u32> {
+        let rows = OUTPUTS.iter().map(|row| self.find(row.name).0.reference);
+        let mut references: Vec<u32> = rows.collect();
+        references.dedup();
+        references
+    }
+
     /// The type of a variable.
     pub fn type_of(self, reference: u32) -> Option<Type> {
         static TYPES: LazyLock<[HashMap<u32, Type>; 2]> = LazyLock::new(|| {
@@ -95,6 +105,7 @@ fn of_fmi2() -> HashMap<String, Entry> {
         let kind = match row.kind {
             wheelrail::fmi2::variables::Kind::Real { .. } => Type::Float64,
             wheelrail::fmi2::variables::Kind::Integer { .. } => Type::Int32,
+            wheelrail::fmi2::variables::Kind::Text { .. } => Type::String,
         };
         let entry = Entry {
             reference: row.reference,
@@ -114,6 +125,7 @@ fn of_fmi3() -> HashMap<String, Entry> {
                 _ => (Type::Float64, 1),
             },
             Kind::Integer { kind, .. } => (Type::of(kind), 1),
+            Kind::Text { .. } => (Type::String, 1),
         };
         let entry = Entry {
             reference,
