@@ -76,7 +76,9 @@ pub fn solve<E: Engine>(
     last_duration: f64,
     workspace: &mut StepWorkspace<E>,
 ) -> Result<Convergence> {
-    with_room(problem, |problem| solve_in_room(problem, state, last_duration, workspace))
+    with_room(problem, |problem| {
+        solve_in_room(problem, state, last_duration, workspace)
+    })
 }
 
 /// Tries a step with more and more room for the contacts, as long as one outgrows its window.

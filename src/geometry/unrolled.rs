@@ -204,11 +204,7 @@ impl<'a> PlacedWheel<'a> {
         let mut rate = self.angular_velocity(motion_change);
         rate = add(rate, axle, motion.spin);
         rate = add(rate, roll_axis, motion.roll_rate);
-        let turned = add(
-            cross(rate, at.arm),
-            cross(self.angular_velocity(motion), arm),
-            1.0,
-        );
+        let turned = add(cross(rate, at.arm), cross(self.angular_velocity(motion), arm), 1.0);
         add(motion_change.velocity, turned, 1.0)
     }
 

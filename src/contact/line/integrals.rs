@@ -1,6 +1,5 @@
 //! Integrals over a line contact, its extent, and the profiles' values that the outputs are made of.
 
-use crate::contact::surface::totals::OnWheelset;
 use super::fields::LineFields;
 use super::mechanics::LineProblem;
 use super::operators::LineOperators;
@@ -8,6 +7,7 @@ use crate::contact::engine::Engine;
 use crate::contact::integrals::Integrals;
 use crate::contact::integrals::{Node, NodeSums};
 use crate::contact::rim::ContactHeat;
+use crate::contact::surface::totals::OnWheelset;
 use crate::friction::coulomb;
 
 /// Integrals of the given fields under the problem's conditions.

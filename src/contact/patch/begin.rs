@@ -1,6 +1,7 @@
 //! Beginning of a step of one window of cells, for the gap and the rigid slip of the undeformed bodies that its solvers hold.
 
 use super::fields::PatchFields;
+use super::heat_and_wear;
 use super::mechanics;
 use super::problem::PatchProblem;
 use super::solvers::PatchSolvers;
@@ -40,4 +41,17 @@ pub fn begin(
         march.start(&before.heat, rise, &mut now.heat, &mut solvers.heat)?;
     }
     Ok(())
+}
+
+/// Prepares the solvers for the linearisation of a step that has ended with the given fields.
+pub fn begin_linearisation(problem: &PatchProblem, fields: &PatchFields, solvers: &mut PatchSolvers) {
+    for component in 0..2 {
+        let nodes = fields.displacement[component]
+            .iter()
+            .zip(&fields.displacement_change[component]);
+        for (before, (now, change)) in solvers.before[component].iter_mut().zip(nodes) {
+            *before = now - change;
+        }
+    }
+    heat_and_wear::take_all_wear(problem, fields, solvers);
 }

@@ -13,6 +13,7 @@ use super::profiles;
 use super::solvers::PatchSolvers;
 use super::tangent::PatchTangent;
 use crate::contact::engine::{Along, Direction, Engine, Linearised, MaterialPath, OneWindow};
+use crate::contact::fields::Fields;
 use crate::contact::integrals::Integrals;
 use crate::contact::interface::Interface;
 use crate::contact::memory;
@@ -22,6 +23,7 @@ use crate::contact::rim::HeatedNode;
 use crate::contact::work::Iterations;
 use crate::error::Result;
 use crate::friction::memory::Memory;
+use crate::mechanics::normal::normal_problem::Constraint;
 use crate::mechanics::normal_tangential::TractionChange;
 use crate::mechanics::patch::normal;
 use crate::parameters::Parameters;
@@ -248,15 +250,7 @@ impl Engine for PatchOperators {
 
     fn begin_linearisation(problem: &PatchProblem, fields: &PatchFields, solvers: &mut PatchSolvers) {
         solvers.undeformed.set_slip(problem, &problem.conditions.motion);
-        for component in 0..2 {
-            let nodes = fields.displacement[component]
-                .iter()
-                .zip(&fields.displacement_change[component]);
-            for (before, (now, change)) in solvers.before[component].iter_mut().zip(nodes) {
-                *before = now - change;
-            }
-        }
-        heat_and_wear::take_all_wear(problem, fields, solvers);
+        begin::begin_linearisation(problem, fields, solvers);
     }
 
     fn linearise(
@@ -281,6 +275,8 @@ impl Engine for PatchOperators {
         change: &mut PatchFields,
         tangent: &mut PatchTangent,
     ) {
+        change.clear();
+        tangent.undeformed.set_slip(problem, &direction.motion);
         march_tangent::begin(problem, fields, direction, change, tangent);
     }
 
@@ -290,7 +286,13 @@ impl Engine for PatchOperators {
             fields: &*at.fields,
             solvers: &*at.solvers,
         };
-        at.tangent.tractions(at.problem, solution, along, change, at.tolerance)
+        let load = along.direction.inputs.normal_load / at.problem.unit_force();
+        let constraint = match at.problem.constraint() {
+            Constraint::Total(_) => Constraint::Total(load),
+            Constraint::Penetration(_) => Constraint::Penetration(0.0),
+        };
+        at.tangent
+            .tractions(at.problem, solution, along, constraint, change, at.tolerance)
     }
 
     fn march_tangent(at: &mut Linearised<Self>, along: &Along, change: &mut PatchFields) -> Result<()> {

@@ -1,6 +1,5 @@
 //! Integrals over a patch, its extent, and the profiles' values that the outputs are made of.
 
-use crate::contact::surface::totals::OnWheelset;
 use super::extent::extent;
 use super::fields::PatchFields;
 use super::operators::PatchOperators;
@@ -9,6 +8,7 @@ use crate::contact::engine::Engine;
 use crate::contact::integrals::Integrals;
 use crate::contact::integrals::{Node, NodeSums};
 use crate::contact::rim::ContactHeat;
+use crate::contact::surface::totals::OnWheelset;
 use crate::friction::coulomb;
 
 /// Integrals of the given fields under the problem's conditions.

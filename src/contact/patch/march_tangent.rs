@@ -6,7 +6,6 @@ use super::operators::PatchOperators;
 use super::problem::PatchProblem;
 use super::tangent::PatchTangent;
 use crate::contact::engine::{Along, Direction, Linearised};
-use crate::contact::fields::Fields;
 use crate::error::Result;
 use crate::heat::strips::{CarriageChange, StripHeatChange};
 use crate::heat::surface::{CommonChange, ExchangeChange, SurfaceExchange};
@@ -14,7 +13,7 @@ use crate::numerics::dense::largest;
 use crate::parameters::WheelHeating;
 use crate::wear::WearChange;
 
-/// Begins a direction: no change yet, but that of the rail without a change of the heat flux.
+/// Begins a direction in fields without a change: sets that of the rail without a change of the heat flux.
 pub fn begin(
     problem: &PatchProblem,
     fields: &PatchFields,
@@ -22,8 +21,6 @@ pub fn begin(
     change: &mut PatchFields,
     tangent: &mut PatchTangent,
 ) {
-    change.clear();
-    tangent.undeformed.set_slip(problem, &direction.motion);
     if problem.conditions.duration > 0.0 {
         let carriage = carriage(direction, 0.0);
         problem

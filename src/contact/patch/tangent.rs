@@ -30,7 +30,7 @@ pub struct PatchTangent {
     friction: Friction,
     products: influence::ProductScratch<f64>,
     /// Change of gap and rigid slip of the undeformed bodies along the direction.
-    pub(super) undeformed: Undeformed,
+    pub(in crate::contact) undeformed: Undeformed,
     /// Change of the gap with heat and wear, on the grid, scaled.
     gap: Vec<f64>,
     /// Change of the displacement u that does not come from shear, on the grid, scaled.
@@ -46,7 +46,7 @@ pub struct PatchTangent {
     /// Change of μ of all cells at unchanged slip.
     friction_change: Vec<f64>,
     /// Heat march, change of the wear rate, surface exchange at the solution and its change.
-    pub(super) heat: StripHeatScratch,
+    pub(in crate::contact) heat: StripHeatScratch,
     pub(super) wear_rate: Vec<f64>,
     pub(super) exchange: Vec<SurfaceExchange>,
     pub(super) exchange_change: Vec<ExchangeTangent>,
@@ -90,7 +90,7 @@ impl PatchTangent {
     }
 
     /// Moves the change of tractions, friction coefficient and slip from the given one, a first guess, to that under the given change
-    /// of the interface vector.
+    /// of the interface vector and of the load or the penetration.
     ///
     /// # Errors
     /// [`crate::error::Error::NormalNotConverged`], [`crate::error::Error::TangentialNotConverged`].
@@ -99,6 +99,7 @@ impl PatchTangent {
         problem: &PatchProblem,
         solution: Solution,
         along: &Along,
+        constraint: Constraint,
         tangent: &mut PatchFields,
         tolerance: f64,
     ) -> Result<()> {
@@ -129,10 +130,9 @@ impl PatchTangent {
                 tangent.friction[place] = if touches { static_friction } else { 0.0 };
             }
         }
-        let total = direction.inputs.normal_load / problem.unit_force();
-        let constraint = match problem.constraint() {
-            Constraint::Total(_) => Constraint::Total(total),
-            Constraint::Penetration(_) => Constraint::Penetration(0.0),
+        let total = match constraint {
+            Constraint::Total(total) => total,
+            Constraint::Penetration(_) => 0.0,
         };
         let size = [
             largest(&tangent.pressure),

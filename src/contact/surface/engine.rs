@@ -5,7 +5,7 @@ use super::mechanics::{self, SurfaceProblem};
 use super::operators::SurfaceOperators;
 use super::placement;
 use super::solvers::SurfaceSolvers;
-use super::tangent::SurfaceTangent;
+use super::tangent::{self, SurfaceTangent};
 use super::totals;
 use super::windows::WINDOWS;
 use crate::contact::engine::{Along, Direction, Engine, Linearised};
@@ -15,13 +15,14 @@ use crate::contact::interface::Interface;
 use crate::contact::memory;
 use crate::contact::patch::extent::extent;
 use crate::contact::patch::operators::{PatchOperators, relaxation_length};
-use crate::contact::patch::{begin, heat_and_wear};
-use crate::contact::patch;
+use crate::contact::patch::{self, begin, heat_and_wear, march_tangent};
 use crate::contact::profiles::{ContactNode, Profiles};
 use crate::contact::rim::HeatedNode;
 use crate::contact::work::Iterations;
 use crate::error::Result;
+use crate::geometry::unrolled::PlacedWheel;
 use crate::mechanics::normal_tangential::TractionChange;
+use crate::numerics::dense::add_multiple;
 use crate::parameters::Parameters;
 use crate::settings::{SensitivitySettings, Settings, SplitSettings};
 
@@ -162,17 +163,17 @@ impl Engine for SurfaceOperators {
         }
     }
 
-    fn read(
-        problem: &SurfaceProblem,
-        fields: &SurfaceFields,
-        solvers: &mut SurfaceSolvers,
-        interface: &mut Interface,
-    ) {
+    fn read(problem: &SurfaceProblem, fields: &SurfaceFields, solvers: &mut SurfaceSolvers, interface: &mut Interface) {
         interface.values_mut().fill(0.0);
         interface.parts().set_temperatures(&[], fields.wheel_temperature);
         for (window, place) in fields.used() {
             let own = &mut solvers.windows[window];
-            heat_and_wear::read(&problem.of(&place), &fields.windows[window], &mut own.patch, &mut own.interface);
+            heat_and_wear::read(
+                &problem.of(&place),
+                &fields.windows[window],
+                &mut own.patch,
+                &mut own.interface,
+            );
             own.interface.put_window(interface, window);
         }
     }
@@ -229,7 +230,12 @@ impl Engine for SurfaceOperators {
         let before = at_places(solvers.moved, &solvers.before, before);
         for (window, place) in now.used() {
             let own = &mut solvers.windows[window].patch;
-            heat_and_wear::march_wear(&problem.of(&place), &before.windows[window], &mut now.windows[window], own);
+            heat_and_wear::march_wear(
+                &problem.of(&place),
+                &before.windows[window],
+                &mut now.windows[window],
+                own,
+            );
         }
     }
 
@@ -288,7 +294,12 @@ impl Engine for SurfaceOperators {
         let before = at_places(solvers.moved, &solvers.before, before);
         for (window, place) in now.used() {
             let own = &mut solvers.windows[window].patch;
-            PatchOperators::finalise(&problem.of(&place), &before.windows[window], &mut now.windows[window], own)?;
+            PatchOperators::finalise(
+                &problem.of(&place),
+                &before.windows[window],
+                &mut now.windows[window],
+                own,
+            )?;
         }
         Ok(())
     }
@@ -326,36 +337,57 @@ impl Engine for SurfaceOperators {
         })
     }
 
-    fn begin_linearisation(_problem: &SurfaceProblem, _fields: &SurfaceFields, _solvers: &mut SurfaceSolvers) {}
+    fn begin_linearisation(problem: &SurfaceProblem, fields: &SurfaceFields, solvers: &mut SurfaceSolvers) {
+        let (operators, pose) = (problem.operators, problem.pose());
+        let wheel = PlacedWheel::new(&operators.wheel, &pose.at_height(problem.height(fields)));
+        let apart = &mut solvers.apart;
+        apart.set(operators, fields);
+        for (window, place) in fields.used() {
+            let own = &mut solvers.windows[window];
+            own.prepare(place.length);
+            let everywhere = [f64::NEG_INFINITY, f64::INFINITY];
+            let undeformed = &mut own.patch.undeformed;
+            own.geometry
+                .set(operators, &place, &wheel, &pose.motion, everywhere, undeformed);
+            add_multiple(&apart.displacement[window], 1.0, &mut undeformed.gap);
+            begin::begin_linearisation(&problem.of(&place), &fields.windows[window], &mut own.patch);
+        }
+    }
 
     fn linearise(
-        _problem: &SurfaceProblem,
-        _interface: &Interface,
-        _fields: &mut SurfaceFields,
-        _solvers: &mut SurfaceSolvers,
-        _tangent: &mut SurfaceTangent,
+        problem: &SurfaceProblem,
+        interface: &Interface,
+        fields: &mut SurfaceFields,
+        solvers: &mut SurfaceSolvers,
+        tangent: &mut SurfaceTangent,
     ) -> Result<()> {
-        Err(crate::error::Error::OtherContactModel)
+        tangent.linearise(problem, interface, fields, solvers)
     }
 
     fn begin_direction(
-        _problem: &SurfaceProblem,
-        _fields: &SurfaceFields,
-        _direction: &Direction,
-        _change: &mut SurfaceFields,
-        _tangent: &mut SurfaceTangent,
+        problem: &SurfaceProblem,
+        fields: &SurfaceFields,
+        direction: &Direction,
+        change: &mut SurfaceFields,
+        tangent: &mut SurfaceTangent,
     ) {
+        tangent.begin(problem, fields, direction, change);
     }
 
-    fn mechanics_tangent(_at: &mut Linearised<Self>, _along: &Along, _change: &mut SurfaceFields) -> Result<()> {
-        Ok(())
+    fn mechanics_tangent(at: &mut Linearised<Self>, along: &Along, change: &mut SurfaceFields) -> Result<()> {
+        tangent::tractions(at, along, change)
     }
 
-    fn march_tangent(_at: &mut Linearised<Self>, _along: &Along, _change: &mut SurfaceFields) -> Result<()> {
-        Ok(())
+    fn march_tangent(at: &mut Linearised<Self>, along: &Along, change: &mut SurfaceFields) -> Result<()> {
+        tangent::in_windows(at, along, change, |at, along, change| {
+            march_tangent::wear(at, along.direction, change);
+            march_tangent::heat(at, along, change)
+        })
     }
 
-    fn finalise_tangent(_at: &mut Linearised<Self>, _direction: &Direction, _change: &mut SurfaceFields) {}
+    fn finalise_tangent(at: &mut Linearised<Self>, direction: &Direction, change: &mut SurfaceFields) {
+        tangent::finalise(at, direction, change);
+    }
 
     fn integrals(problem: &SurfaceProblem, fields: &SurfaceFields) -> Integrals {
         totals::integrals(problem, fields)

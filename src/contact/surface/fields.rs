@@ -43,7 +43,10 @@ impl SurfaceFields {
     /// Windows that are used, each with its number and its place.
     pub fn used(&self) -> impl Iterator<Item = (usize, Place)> + use<> {
         let places = self.places;
-        places.into_iter().enumerate().filter_map(|(window, place)| place.map(|place| (window, place)))
+        places
+            .into_iter()
+            .enumerate()
+            .filter_map(|(window, place)| place.map(|place| (window, place)))
     }
 }
 

@@ -4,19 +4,11 @@ use super::operators::SurfaceOperators;
 use super::windows::Place;
 use crate::contact::patch::undeformed::Undeformed;
 use crate::geometry::unrolled::{Distance, PlacedWheel, RailPoint, WheelsetMotion, WheelsetPosition};
+use crate::parameters::Parameters;
 use crate::signals::Inputs;
 
 /// Distance that is added where another window has the surface, `m`: far more than any approach.
 const ELSEWHERE: f64 = 1e-2;
-
-/// Rail as it is displaced, or a change of it; of one side: y points to the field side.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct RailPosition {
-    /// Lateral and vertical displacement, `m`.
-    pub displacement: [f64; 2],
-    /// Roll about the forward axis through the top of the rail, rad.
-    pub roll: f64,
-}
 
 /// Position of the wheelset but for the height of its middle, and its motion, both relative to the rail; of one side.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -50,11 +42,68 @@ impl Pose {
                 velocity: {
                     let across = side * (inputs.lateral_speed - inputs.rail_lateral_speed);
                     let up = inputs.vertical_speed - inputs.rail_vertical_speed;
-                    [inputs.vehicle_speed, cosine * across + sine * up, cosine * up - sine * across]
+                    [
+                        inputs.vehicle_speed,
+                        cosine * across + sine * up,
+                        cosine * up - sine * across,
+                    ]
                 },
                 roll_rate: side * inputs.roll_rate,
                 yaw_rate: side * inputs.yaw_rate,
                 spin: inputs.wheel_speed,
+            },
+            rail_roll,
+        }
+    }
+
+    /// Change of the pose of the given inputs with a change of them.
+    pub fn change(
+        &self,
+        operators: &SurfaceOperators,
+        inputs: &Inputs,
+        change: &Inputs,
+        parameters: &Parameters,
+    ) -> Pose {
+        let side = operators.side;
+        let top = operators.rail.top();
+        let (sine, cosine) = self.rail_roll.sin_cos();
+        let rail_roll = side * change.rail_roll_angle;
+        let lateral = side * (inputs.lateral_displacement - inputs.rail_lateral_displacement) - top;
+        let height = parameters.wheel_radius + inputs.vertical_displacement - inputs.rail_vertical_displacement;
+        let across = side * (inputs.lateral_speed - inputs.rail_lateral_speed);
+        let up = inputs.vertical_speed - inputs.rail_vertical_speed;
+        let turned = |[y, z]: [f64; 2], [dy, dz]: [f64; 2]| {
+            [
+                cosine * dy + sine * dz + (cosine * z - sine * y) * rail_roll,
+                cosine * dz - sine * dy - (cosine * y + sine * z) * rail_roll,
+            ]
+        };
+        let place = turned(
+            [lateral, height],
+            [
+                side * (change.lateral_displacement - change.rail_lateral_displacement),
+                change.vertical_displacement - change.rail_vertical_displacement,
+            ],
+        );
+        let velocity = turned(
+            [across, up],
+            [
+                side * (change.lateral_speed - change.rail_lateral_speed),
+                change.vertical_speed - change.rail_vertical_speed,
+            ],
+        );
+        Pose {
+            position: WheelsetPosition {
+                lateral: place[0],
+                height: place[1],
+                roll: side * change.roll_angle - rail_roll,
+                yaw: side * change.yaw_angle,
+            },
+            motion: WheelsetMotion {
+                velocity: [change.vehicle_speed, velocity[0], velocity[1]],
+                roll_rate: side * change.roll_rate,
+                yaw_rate: side * change.yaw_rate,
+                spin: change.wheel_speed,
             },
             rail_roll,
         }
@@ -148,6 +197,48 @@ impl WindowGeometry {
             };
             let row = grid.row(strip);
             let mut before = slip(row.start);
+            for at in row.start + 1..row.end {
+                let here = slip(at);
+                let to = if forward { at - 1 } else { at };
+                for component in 0..2 {
+                    undeformed.rigid_slip[component][to] = 0.5 * (before[component] + here[component]);
+                }
+                before = here;
+            }
+        }
+    }
+
+    /// Takes what another one has found.
+    pub fn copy_from(&mut self, other: &WindowGeometry) {
+        self.points.copy_from_slice(&other.points);
+        self.distances.copy_from_slice(&other.distances);
+        self.rise.copy_from_slice(&other.rise);
+    }
+
+    /// Sets the change of gap and rigid slip with a change of the pose.
+    pub fn set_change(
+        &self,
+        operators: &SurfaceOperators,
+        place: &Place,
+        wheel: &PlacedWheel,
+        (pose, change): (&Pose, &Pose),
+        undeformed: &mut Undeformed,
+    ) {
+        let window = operators.of(place);
+        let (grid, scale) = (&window.grid, window.scales.displacement);
+        let forward = pose.motion.velocity[0] >= 0.0;
+        let both = (&change.position, &change.motion);
+        for (strip, point) in self.points.iter().enumerate() {
+            let tangent = point.tangent();
+            let slip = |at: usize| {
+                let [x, y, z] = wheel.velocity_change(&self.distances[at], point, &pose.motion, both);
+                [-x, -(y * tangent[0] + z * tangent[1])]
+            };
+            let row = grid.row(strip);
+            let mut before = slip(row.start);
+            for at in row.clone() {
+                undeformed.gap[at] = wheel.distance_change(&self.distances[at], &change.position) / scale;
+            }
             for at in row.start + 1..row.end {
                 let here = slip(at);
                 let to = if forward { at - 1 } else { at };

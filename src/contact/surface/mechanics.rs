@@ -9,8 +9,9 @@
 //! is found by the secant method within bounds.
 
 use super::fields::SurfaceFields;
+use super::geometry::Pose;
 use super::operators::SurfaceOperators;
-use super::solvers::{SurfaceSolvers, WindowSolvers};
+use super::solvers::SurfaceSolvers;
 use super::windows::Place;
 use crate::contact::engine::Engine;
 use crate::contact::interface::Interface;
@@ -22,6 +23,7 @@ use crate::contact::problem::Problem;
 use crate::error::{Error, Result};
 use crate::mechanics::normal::normal_problem::Constraint;
 use crate::mechanics::normal_tangential::TractionChange;
+use crate::numerics::dense::largest_change;
 use crate::parameters::Control;
 
 /// Problem of a step of a contact of profiles.
@@ -50,6 +52,20 @@ impl<'a> SurfaceProblem<'a> {
         self.parameters.control == Control::Height
     }
 
+    /// Pose of the wheelset over the rail.
+    pub fn pose(&self) -> Pose {
+        Pose::new(self.operators, &self.conditions.inputs, self.parameters.wheel_radius)
+    }
+
+    /// Height of the axle's middle over the rail's top at the end of a step, `m`.
+    pub fn height(&self, fields: &SurfaceFields) -> f64 {
+        if self.is_height_given() {
+            self.pose().position.height
+        } else {
+            fields.touch - fields.approach[0]
+        }
+    }
+
     /// Vertical load to carry, `N`. A negligible one counts as none.
     pub fn vertical_load(&self) -> f64 {
         let load = self.conditions.inputs.normal_load;
@@ -57,16 +73,22 @@ impl<'a> SurfaceProblem<'a> {
     }
 }
 
-/// Vertical forces of a window on the wheel: of the pressure and of the friction, `N`.
-pub fn vertical_forces(operators: &PatchOperators, window: &WindowSolvers, fields: &PatchFields) -> [f64; 2] {
-    let grid = &operators.grid;
+/// Vertical forces of a window on the wheel, or their changes: of the pressure and of the friction, `N`.
+pub fn vertical_forces(operators: &SurfaceOperators, place: &Place, fields: &PatchFields) -> [f64; 2] {
+    let window = operators.of(place);
+    let grid = &window.grid;
     let mut forces = [0.0; 2];
-    for (strip, point) in window.geometry.points.iter().enumerate() {
+    for strip in 0..grid.strips {
         let sum = |values: &[f64]| values[grid.row(strip)].iter().sum::<f64>();
-        forces[0] += point.normal[1] * sum(&fields.pressure);
-        forces[1] -= point.tangent()[1] * sum(&fields.shear[1]);
+        let (pressure, shear) = (sum(&fields.pressure), sum(&fields.shear[1]));
+        if pressure == 0.0 && shear == 0.0 {
+            continue;
+        }
+        let point = operators.rail.at(place.arc(grid, strip));
+        forces[0] += point.normal[1] * pressure;
+        forces[1] -= point.tangent()[1] * shear;
     }
-    forces.map(|force| operators.unit_force() * force)
+    forces.map(|force| window.unit_force() * force)
 }
 
 /// (31): pressure for the load and the shear there is, then friction for that pressure.
@@ -81,7 +103,7 @@ pub fn solve(
         let own = &mut solvers.windows[window];
         own.interface.take_window(interface, window);
         own.contact_before.clone_from(&own.patch.contact);
-        let [normal, friction] = vertical_forces(problem.operators.of(&place), own, &fields.windows[window]);
+        let [normal, friction] = vertical_forces(problem.operators, &place, &fields.windows[window]);
         own.friction_share = if normal > 0.0 { friction / normal } else { 0.0 };
     }
     let unloaded = if problem.is_height_given() {
@@ -114,27 +136,28 @@ pub fn solve(
             tolerance,
         )?;
         let touches = own.patch.contact.cells() > 0;
-        change.shear_change = change.shear_change.max(if touches { own_change.shear_change } else { 0.0 });
+        change.shear_change = change
+            .shear_change
+            .max(if touches { own_change.shear_change } else { 0.0 });
         change.set_changed |= own_change.set_changed;
     }
     if !problem.is_height_given() {
         // The load that the friction has made of it is another one than asked for: so far have the tractions changed.
         let load = problem.vertical_load();
-        fields.load = carried(problem, fields, solvers);
+        fields.load = carried(problem, fields);
         change.shear_change = change.shear_change.max((fields.load / load - 1.0).abs());
     } else {
-        fields.load = carried(problem, fields, solvers);
+        fields.load = carried(problem, fields);
     }
     Ok(change)
 }
 
 /// Vertical force of all windows, `N`.
-fn carried(problem: &SurfaceProblem, fields: &SurfaceFields, solvers: &SurfaceSolvers) -> f64 {
+fn carried(problem: &SurfaceProblem, fields: &SurfaceFields) -> f64 {
     fields
         .used()
         .map(|(window, place)| {
-            let own = &solvers.windows[window];
-            let [normal, friction] = vertical_forces(problem.operators.of(&place), own, &fields.windows[window]);
+            let [normal, friction] = vertical_forces(problem.operators, &place, &fields.windows[window]);
             normal + friction
         })
         .sum()
@@ -147,68 +170,129 @@ fn press(
     solvers: &mut SurfaceSolvers,
     tolerance: f64,
 ) -> Result<()> {
-    if problem.is_height_given() {
-        return press_at(problem, solvers.reference, fields, solvers, tolerance).map(|_| ());
-    }
-    let load = problem.vertical_load();
-    let mut approach = fields.approach[0].max(0.05 * solvers.reference);
-    let mut bounds = [0.0, f64::INFINITY];
-    let mut last: Option<[f64; 2]> = None;
+    let mut search = Approaches::new(problem, fields, solvers);
+    let tolerance_of_load = tolerance.max(LOAD_TOLERANCE);
     let mut left = f64::INFINITY;
     for _ in 0..APPROACHES {
-        let excess = press_at(problem, approach, fields, solvers, tolerance)? - load;
-        left = (excess / load).abs();
-        bounds[usize::from(excess > 0.0)] = approach;
-        let stiffness = match last {
-            Some([before, excess_before]) if before != approach && excess != excess_before => {
-                (excess - excess_before) / (approach - before)
-            }
-            _ if fields.stiffness > 0.0 => fields.stiffness,
-            _ => 1.5 * (excess + load).max(0.1 * load) / approach,
-        };
-        if stiffness > 0.0 && stiffness.is_finite() && last.is_some() {
-            fields.stiffness = stiffness;
-        }
-        if left <= tolerance.max(LOAD_TOLERANCE) {
-            fields.approach[0] = approach;
+        let (force, apart) = press_at(problem, search.approach, fields, solvers, tolerance)?;
+        let excess = search.load.map_or(0.0, |load| (force - load) / load);
+        left = excess.abs().max(apart);
+        if left <= tolerance_of_load {
+            search.end(fields);
             return check_room(problem, fields, solvers);
         }
-        last = Some([approach, excess]);
-        let next = approach - excess / stiffness;
-        let inside = next > bounds[0] && next < bounds[1] && stiffness > 0.0;
-        approach = if inside {
-            next.min(2.0 * approach)
-        } else if bounds[1].is_finite() {
-            0.5 * (bounds[0] + bounds[1])
-        } else {
-            2.0 * approach
-        };
+        search.next(excess);
     }
     Err(Error::NormalNotConverged {
         solver: "height of the wheel",
         iterations: APPROACHES,
         residual: left,
-        tolerance,
+        tolerance: tolerance_of_load,
     })
 }
 
-/// Solves the pressure of all windows at an approach. Returns the vertical force with the friction in proportion, `N`.
+/// Secant method within bounds for the approach at which a load is carried.
+struct Approaches {
+    /// Load, `N`; none where the approach is given.
+    load: Option<f64>,
+    /// Approach, `m`.
+    approach: f64,
+    /// Largest approach that was too small, and smallest that was too large, `m`.
+    bounds: [f64; 2],
+    /// Approach before and its excess of load, relative.
+    last: Option<[f64; 2]>,
+    /// Change of the load with the approach, relative, `1/m`.
+    stiffness: f64,
+}
+
+impl Approaches {
+    fn new(problem: &SurfaceProblem, fields: &SurfaceFields, solvers: &SurfaceSolvers) -> Approaches {
+        if problem.is_height_given() {
+            return Approaches {
+                load: None,
+                approach: solvers.reference,
+                bounds: [0.0, f64::INFINITY],
+                last: None,
+                stiffness: 0.0,
+            };
+        }
+        let (load, approach) = (
+            problem.vertical_load(),
+            fields.approach[0].max(0.05 * solvers.reference),
+        );
+        Approaches {
+            load: Some(load),
+            approach,
+            bounds: [0.0, f64::INFINITY],
+            last: None,
+            // Hertz's load is as the approach to the power of 3/2.
+            stiffness: if fields.stiffness > 0.0 {
+                fields.stiffness / load
+            } else {
+                1.5 / approach
+            },
+        }
+    }
+
+    /// Takes the excess of load at the approach, relative, and moves on.
+    fn next(&mut self, excess: f64) {
+        if self.load.is_none() {
+            return;
+        }
+        self.bounds[usize::from(excess > 0.0)] = self.approach;
+        if let Some([before, excess_before]) = self.last
+            && before != self.approach
+        {
+            let slope = (excess - excess_before) / (self.approach - before);
+            if slope > 0.0 {
+                self.stiffness = slope;
+            }
+        }
+        self.last = Some([self.approach, excess]);
+        if self.bounds[1] - self.bounds[0] < 1e-12 {
+            // What the windows do to each other has moved the load that belongs to an approach.
+            self.bounds = [0.0, f64::INFINITY];
+        }
+        let next = self.approach - excess / self.stiffness;
+        self.approach = if next > self.bounds[0] && next < self.bounds[1] {
+            next.min(2.0 * self.approach)
+        } else if self.bounds[1].is_finite() {
+            0.5 * (self.bounds[0] + self.bounds[1])
+        } else {
+            2.0 * self.approach
+        };
+    }
+
+    /// Leaves the approach and the stiffness in the fields.
+    fn end(&self, fields: &mut SurfaceFields) {
+        fields.approach[0] = self.approach;
+        if let (Some(load), Some(_)) = (self.load, self.last) {
+            fields.stiffness = self.stiffness * load;
+        }
+    }
+}
+
+/// Solves the pressure of all windows at an approach. Returns the vertical force with the friction in proportion, `N`, and by how much the
+/// windows displace each other otherwise than they were solved for, relative to the approach.
 fn press_at(
     problem: &SurfaceProblem,
     approach: f64,
     fields: &mut SurfaceFields,
     solvers: &mut SurfaceSolvers,
     tolerance: f64,
-) -> Result<f64> {
+) -> Result<(f64, f64)> {
     let lowered = approach - solvers.reference;
     let mut force = 0.0;
+    solvers.apart.set(problem.operators, fields);
     for (window, place) in fields.used() {
         let own = &mut solvers.windows[window];
         let patch = problem.of(&place);
         let scale = patch.operators.scales.displacement;
-        let gaps = own.patch.undeformed.gap.iter_mut().zip(&own.gap);
-        for ((gap, reference), rise) in gaps.zip(&own.geometry.rise) {
-            *gap = reference - lowered * rise / scale;
+        let displaced = &solvers.apart.displacement[window];
+        own.displaced.copy_from_slice(displaced);
+        let gaps = own.patch.undeformed.gap.iter_mut().zip(&own.gap).zip(displaced);
+        for (((gap, reference), displaced), rise) in gaps.zip(&own.geometry.rise) {
+            *gap = reference - lowered * rise / scale + displaced;
         }
         mechanics::solve_normal(
             &patch,
@@ -218,10 +302,18 @@ fn press_at(
             &mut own.patch,
             tolerance,
         )?;
-        let [normal, _] = vertical_forces(patch.operators, own, &fields.windows[window]);
+        let [normal, _] = vertical_forces(problem.operators, &place, &fields.windows[window]);
         force += normal * (1.0 + own.friction_share);
     }
-    Ok(force)
+    let mut apart = 0.0;
+    if solvers.apart.set(problem.operators, fields) {
+        for (window, place) in fields.used() {
+            let scale = problem.operators.of(&place).scales.displacement;
+            let change = largest_change(&solvers.apart.displacement[window], &solvers.windows[window].displaced);
+            apart = f64::max(apart, change * scale / approach.abs());
+        }
+    }
+    Ok((force, apart))
 }
 
 /// Refuses a contact that has become larger than its window, as long as there are larger ones.
@@ -230,7 +322,11 @@ fn check_room(problem: &SurfaceProblem, fields: &SurfaceFields, solvers: &Surfac
         return Ok(());
     }
     for (window, place) in fields.used() {
-        if PatchOperators::is_cut_off(&problem.of(&place), &fields.windows[window], &solvers.windows[window].patch) {
+        if PatchOperators::is_cut_off(
+            &problem.of(&place),
+            &fields.windows[window],
+            &solvers.windows[window].patch,
+        ) {
             return Err(Error::ContactOutgrowsWindow);
         }
     }

@@ -3,6 +3,7 @@
 //! [`operators`] are wheel and rail in their shapes and the operators of a patch for each size of a [`windows`]' cells; [`search`] finds
 //! where they overlap. In each window the fields, the mechanics, heat and wear are those of a patch.
 
+mod apart;
 mod engine;
 pub mod fields;
 mod geometry;
@@ -10,8 +11,8 @@ mod mechanics;
 pub mod operators;
 mod placement;
 mod search;
-pub mod tangent;
 pub mod solvers;
+pub mod tangent;
 #[cfg(test)]
 mod tests;
 pub mod totals;

@@ -14,9 +14,12 @@ use crate::parameters::{Parameters, Side};
 /// an appreciable load.
 const SCAN_STEP: f64 = 0.5e-3;
 /// Length of the longest window over that of a patch's: contacts on the flange are several times as long as broad.
-const LONGEST: f64 = 2.0;
+const LONGEST: f64 = 4.0;
 /// Breadth of the broadest window over that of a patch's: contacts in the gauge corner are several times as broad as long.
 const BROADEST: f64 = 4.0;
+
+/// Strips of a window over those of a patch: a contact in a gauge corner may be broad, and the load in it concentrated.
+const STRIPS: usize = 2;
 
 /// Wheel, rail, and the operators of a window for each of its sizes.
 pub struct SurfaceOperators {
@@ -48,7 +51,7 @@ impl SurfaceOperators {
         let sizes = Sizes {
             largest: Grid::new(
                 parameters.patch_nodes,
-                parameters.patch_strips,
+                STRIPS * parameters.patch_strips,
                 LONGEST * half_length,
                 BROADEST * half_breadth,
             ),

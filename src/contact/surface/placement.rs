@@ -1,11 +1,10 @@
 //! Placement of the windows at the beginning of a step: about the regions in which wheel and rail overlap.
 
 use super::fields::SurfaceFields;
-use super::geometry::Pose;
 use super::mechanics::SurfaceProblem;
+use super::operators::SurfaceOperators;
 use super::search::Overlap;
 use super::solvers::SurfaceSolvers;
-use super::operators::SurfaceOperators;
 use super::windows::{Place, Region, WINDOWS};
 use crate::contact::fields::Fields;
 use crate::contact::patch::fields::PatchFields;
@@ -38,14 +37,21 @@ pub fn place(
     solvers: &mut SurfaceSolvers,
 ) -> Result<()> {
     let operators = problem.operators;
-    let pose = Pose::new(operators, &problem.conditions.inputs, problem.parameters.wheel_radius);
-    let guess = if now.touch > 0.0 { now.touch } else { problem.parameters.wheel_radius };
+    let pose = problem.pose();
+    let guess = if now.touch > 0.0 {
+        now.touch
+    } else {
+        problem.parameters.wheel_radius
+    };
     now.touch = solvers.search.touch(operators, &pose.position, guess);
     let approach = expected_approach(problem, before, now.touch - pose.position.height, solvers);
     solvers.reference = approach;
     now.approach[0] = approach;
     let wanted = if approach > 0.0 {
-        wanted(operators.sizes.largest.strips, solvers.search.overlaps(approach * AHEAD * problem.conditions.room))
+        wanted(
+            operators.sizes.largest.strips,
+            solvers.search.overlaps(approach * AHEAD * problem.conditions.room),
+        )
     } else {
         ([Wanted::default(); WINDOWS], 0)
     };
@@ -141,9 +147,10 @@ fn wanted(strips: usize, overlaps: &[Overlap]) -> ([Wanted; WINDOWS], usize) {
 /// Whether two regions are so near each other that one window serves both, and well.
 fn share_window(a: &Region, b: &Region, strips: usize) -> bool {
     let breadth = |region: &Region| region.across[1] - region.across[0];
+    let both = a.union(b);
     let gap = b.across[0] - a.across[1];
-    let both = breadth(&a.union(b)) / (strips as f64 - 2.0);
-    gap < NEAR * 0.5 * (breadth(a) + breadth(b)) && breadth(a).min(breadth(b)) > LEAST_STRIPS * both
+    gap < NEAR * 0.5 * (breadth(a) + breadth(b))
+        && both.narrowest > LEAST_STRIPS * breadth(&both) / (strips as f64 - 2.0)
 }
 
 /// Gives each region a window: the one that it had, or one that is free. Returns the arc lengths between which each window has the
@@ -156,7 +163,11 @@ fn assign(problem: &SurfaceProblem, wanted: &[Wanted], now: &mut SurfaceFields) 
         let nearest = now
             .used()
             .filter(|(window, _)| !taken[*window])
-            .filter(|(_, place)| place.region(&sizes.grid(place.length, place.breadth)).meets(&wanted.region))
+            .filter(|(_, place)| {
+                place
+                    .region(&sizes.grid(place.length, place.breadth))
+                    .meets(&wanted.region)
+            })
             .min_by(|(_, a), (_, b)| {
                 let distance = |place: &Place| {
                     let across = place.region(&sizes.grid(place.length, place.breadth)).across;
@@ -182,8 +193,12 @@ fn assign(problem: &SurfaceProblem, wanted: &[Wanted], now: &mut SurfaceFields) 
         let window = window_of[number];
         now.places[window] = Some(sizes.place(&wanted_here.region, now.places[window]));
         let between = |a: &Wanted, b: &Wanted| 0.5 * (a.region.across[1] + b.region.across[0]);
-        let low = number.checked_sub(1).map_or(f64::NEG_INFINITY, |last| between(&wanted[last], wanted_here));
-        let high = wanted.get(number + 1).map_or(f64::INFINITY, |next| between(wanted_here, next));
+        let low = number
+            .checked_sub(1)
+            .map_or(f64::NEG_INFINITY, |last| between(&wanted[last], wanted_here));
+        let high = wanted
+            .get(number + 1)
+            .map_or(f64::INFINITY, |next| between(wanted_here, next));
         own[window] = [low, high];
     }
     // A window without a region stays while nothing else needs its place: rail that it has heated rolls out of it.
@@ -210,5 +225,9 @@ fn free_ends(operators: &SurfaceOperators, place: &Place, fields: &mut PatchFiel
 fn is_warm(fields: &SurfaceFields, window: usize) -> bool {
     /// Temperature that counts, K.
     const APPRECIABLE: f64 = 0.1;
-    fields.windows[window].heat.surface.iter().any(|rise| rise.abs() > APPRECIABLE)
+    fields.windows[window]
+        .heat
+        .surface
+        .iter()
+        .any(|rise| rise.abs() > APPRECIABLE)
 }

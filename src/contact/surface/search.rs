@@ -87,7 +87,11 @@ impl Search {
     fn room(&self) -> f64 {
         let room = |point: usize| {
             let Closest { distance, rise, .. } = self.points[point];
-            if rise > LEAST_RISE { distance / rise } else { f64::INFINITY }
+            if rise > LEAST_RISE {
+                distance / rise
+            } else {
+                f64::INFINITY
+            }
         };
         let mut least = f64::INFINITY;
         for point in 1..self.points.len().saturating_sub(1) {
@@ -97,7 +101,11 @@ impl Search {
             }
             let second = before + after - 2.0 * here;
             let slope = 0.5 * (before - after);
-            let below = if second > 0.0 { 0.5 * slope * slope / second } else { 0.0 };
+            let below = if second > 0.0 {
+                0.5 * slope * slope / second
+            } else {
+                0.0
+            };
             least = least.min(here - below);
         }
         least
@@ -156,7 +164,9 @@ impl Search {
     pub fn approach(&mut self, load: f64, modulus: f64) -> f64 {
         let mut carried = |approach: f64| -> f64 {
             let overlaps = self.overlaps(approach).iter();
-            overlaps.map(|overlap| overlap.rise * hertz_load(overlap, modulus)).sum()
+            overlaps
+                .map(|overlap| overlap.rise * hertz_load(overlap, modulus))
+                .sum()
         };
         let (mut low, mut high) = (0.0, 1e-5);
         while carried(high) < load && high < 1e-2 {
@@ -204,14 +214,21 @@ fn about(points: &[Closest], deepest: usize, depth: &impl Fn(usize) -> f64) -> O
     // The parabola through the three points: a small contact may lie between them.
     let slope = 0.5 * (depth(deepest - 1) - depth(deepest + 1)) / step;
     let second = (2.0 * depth(deepest) - depth(deepest - 1) - depth(deepest + 1)) / (step * step);
-    let shift = if second > 0.0 { (slope / second).clamp(-step, step) } else { 0.0 };
+    let shift = if second > 0.0 {
+        (slope / second).clamp(-step, step)
+    } else {
+        0.0
+    };
     let most = depth(deepest) + 0.5 * slope * shift;
     let middle = points[deepest].arc + shift;
     let end = EDGE_SHARE * most;
     let mut along = [points[deepest].along; 2];
     let mut widen = |point: usize| {
         let half = REGION_SHARE * half_length(&points[point], depth(point));
-        along = [along[0].min(points[point].along - half), along[1].max(points[point].along + half)];
+        along = [
+            along[0].min(points[point].along - half),
+            along[1].max(points[point].along + half),
+        ];
     };
     let half = REGION_SHARE * half_length(&points[deepest], most);
     let mut reach = |direction: isize| {
@@ -244,9 +261,13 @@ fn about(points: &[Closest], deepest: usize, depth: &impl Fn(usize) -> f64) -> O
         region: Region {
             along: [along[0].min(place - half), along[1].max(place + half)],
             across,
+            narrowest: across[1] - across[0],
         },
         depth: most,
         rise: points[deepest].rise,
-        curvatures: [points[deepest].curvature.max(0.2), (2.0 * most / (breadth * breadth)).max(0.2)],
+        curvatures: [
+            points[deepest].curvature.max(0.2),
+            (2.0 * most / (breadth * breadth)).max(0.2),
+        ],
     }
 }

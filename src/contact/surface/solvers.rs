@@ -1,5 +1,6 @@
 //! Solvers and buffers of a step of a contact of profiles, made once, so that a step allocates nothing.
 
+use super::apart::Apart;
 use super::fields::SurfaceFields;
 use super::geometry::WindowGeometry;
 use super::operators::SurfaceOperators;
@@ -25,6 +26,8 @@ pub struct SurfaceSolvers {
     pub before: SurfaceFields,
     /// Whether places have changed with this step.
     pub moved: bool,
+    /// Influence of the windows on one another.
+    pub apart: Apart,
     /// Approach for which the geometry is that of the windows, `m`.
     pub reference: f64,
 }
@@ -44,6 +47,8 @@ pub struct WindowSolvers {
     pub contact_before: Contact,
     /// Vertical force of the friction on the wheel over that of the pressure.
     pub friction_share: f64,
+    /// Displacement by the pressure of the other windows that the pressure was solved for, on the grid, scaled.
+    pub displaced: Vec<f64>,
     /// Opening of the gap at the reference approach, on the grid, scaled.
     pub gap: Vec<f64>,
 }
@@ -63,6 +68,7 @@ impl SurfaceSolvers {
             transfer: Transfer::new(operators),
             before: SurfaceFields::new(operators),
             moved: false,
+            apart: Apart::new(operators),
             reference: 0.0,
         }
     }
@@ -85,6 +91,7 @@ impl WindowSolvers {
             interface: Interface::new(first.grid.strips * first.grid.cells, 1),
             contact_before: Contact::new(&first.grid),
             friction_share: 0.0,
+            displaced: vec![0.0; first.grid.len()],
             gap: vec![0.0; first.grid.len()],
         }
     }

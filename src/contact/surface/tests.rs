@@ -70,15 +70,27 @@ fn zz_manchester() {
         let peak = c.iter().map(|c| c.peak_pressure).fold(0.0, f64::max) * 1e-6;
         let area: f64 = c.iter().map(|c| c.area).sum::<f64>() * 1e6;
         let bound = 0.3 * value("FN");
-        let ContactState::Surface(s) = &state.contact else { panic!() };
+        let ContactState::Surface(s) = &state.contact else {
+            panic!()
+        };
         println!(
             "{:5} {:4.1} n{} FN {:7.0} {:+.4} FX {:+.4} FS {:+.4} p {:6.1} {:+.4} area {:6.2} {:+.4} size {:.2}x{:.2} dz {:+.4} places {:?} {:?}",
-            cells[0], value("y_ws"), all.count, normal, normal / value("FN") - 1.0,
-            (-fx - value("FX")) / bound, (fs - value("FS")) / bound,
-            peak, peak / value("pmax") - 1.0, area, area / value("area") - 1.0,
-            c[0].size[0] * 1e3, c[0].size[1] * 1e3,
+            cells[0],
+            value("y_ws"),
+            all.count,
+            normal,
+            normal / value("FN") - 1.0,
+            (-fx - value("FX")) / bound,
+            (fs - value("FS")) / bound,
+            peak,
+            peak / value("pmax") - 1.0,
+            area,
+            area / value("area") - 1.0,
+            c[0].size[0] * 1e3,
+            c[0].size[1] * 1e3,
             -(1e3 * (s.fields.touch - s.fields.approach[0]) - 460.0) - value("z_ws"),
-            s.fields.used().map(|(_, p)| (p.length, p.breadth)).collect::<Vec<_>>(), time
+            s.fields.used().map(|(_, p)| (p.length, p.breadth)).collect::<Vec<_>>(),
+            time
         );
     }
 }
@@ -88,23 +100,59 @@ fn zz_overlaps() {
     use super::geometry::Pose;
     use super::search::Search;
     let model = Model::new(parameters(true, false)).unwrap();
-    let crate::contact::Operators::Surface(operators) = model.operators_for_tests() else { panic!() };
+    let crate::contact::Operators::Surface(operators) = model.operators_for_tests() else {
+        panic!()
+    };
     for y in [5.0, 5.4, 5.5, 6.0, 6.5] {
-        let inputs = Inputs { normal_load: 60e3, wheel_speed: 20.0 / 0.46, vehicle_speed: 20.0, lateral_displacement: -1e-3 * y, roll_angle: -0.4e-3 * y, yaw_angle: -3e-3 * y, ..Inputs::default() };
+        let inputs = Inputs {
+            normal_load: 60e3,
+            wheel_speed: 20.0 / 0.46,
+            vehicle_speed: 20.0,
+            lateral_displacement: -1e-3 * y,
+            roll_angle: -0.4e-3 * y,
+            yaw_angle: -3e-3 * y,
+            ..Inputs::default()
+        };
         let mut workspace = model.workspace();
         let state = model.initial_state(&mut workspace, &inputs).unwrap();
-        let ContactState::Surface(s) = &state.contact else { panic!() };
+        let ContactState::Surface(s) = &state.contact else {
+            panic!()
+        };
         let pose = Pose::new(operators, &inputs, 0.46);
         let mut search = Search::new(operators);
         let touch = search.touch(operators, &pose.position, 0.46);
-        println!("y {y} touch {:.6} {:.6} approach {:.1} {:?}", touch, s.fields.touch, 1e6 * s.fields.approach[0], s.fields.used().map(|(w, p)| (w, p.length, p.breadth, p.strip)).collect::<Vec<_>>());
+        println!(
+            "y {y} touch {:.6} {:.6} approach {:.1} {:?}",
+            touch,
+            s.fields.touch,
+            1e6 * s.fields.approach[0],
+            s.fields
+                .used()
+                .map(|(w, p)| (w, p.length, p.breadth, p.strip))
+                .collect::<Vec<_>>()
+        );
         for o in search.overlaps(s.fields.approach[0]) {
-            println!("   across {:.2?} along {:.1?} depth {:.1} rise {:.3} curv {:.1?}", o.region.across.map(|s| 1e3 * s), o.region.along.map(|s| 1e3 * s), 1e6 * o.depth, o.rise, o.curvatures);
+            println!(
+                "   across {:.2?} along {:.1?} depth {:.1} rise {:.3} curv {:.1?}",
+                o.region.across.map(|s| 1e3 * s),
+                o.region.along.map(|s| 1e3 * s),
+                1e6 * o.depth,
+                o.rise,
+                o.curvatures
+            );
         }
         let place = s.fields.used().next().unwrap();
         let patch = operators.of(&place.1);
         let p = &s.fields.windows[place.0].pressure;
-        println!("   {:?}", (0..21).map(|strip| (1e-6 * patch.scales.pressure * crate::numerics::dense::largest(&p[patch.grid.row(strip)])) as i64).collect::<Vec<_>>());
+        println!(
+            "   {:?}",
+            (0..21)
+                .map(
+                    |strip| (1e-6 * patch.scales.pressure * crate::numerics::dense::largest(&p[patch.grid.row(strip)]))
+                        as i64
+                )
+                .collect::<Vec<_>>()
+        );
     }
 }
 
@@ -146,27 +194,129 @@ fn zz_sweep() {
                 break;
             }
             inputs = inputs.advanced(&rates, 1e-3);
-            let (ContactState::Surface(a), ContactState::Surface(b)) = (&before.contact, &state.contact) else { panic!() };
+            let (ContactState::Surface(a), ContactState::Surface(b)) = (&before.contact, &state.contact) else {
+                panic!()
+            };
             moved += usize::from(a.fields.places != b.fields.places);
             staggered += usize::from(state.convergence.staggered);
             let all = on_wheelset(&model, &state, &inputs);
             if let Some([before, twice]) = last {
-                let jump = (0..3).map(|k| (all.force[k] - 2.0 * before[k] + twice[k]).abs()).fold(0.0, f64::max) / load;
+                let jump = (0..3)
+                    .map(|k| (all.force[k] - 2.0 * before[k] + twice[k]).abs())
+                    .fold(0.0, f64::max)
+                    / load;
                 jumps.push((jump, step, a.fields.places != b.fields.places));
                 last = Some([all.force, before]);
             } else {
                 last = Some([all.force, all.force]);
             }
             if step % 100 == 0 || staggered > 0 && state.convergence.staggered {
-                println!("{step} y {:.2} n {} F {:.0?} T {:.0} its {} {:?} {:?}", -1e3 * inputs.lateral_displacement, all.count, all.force,
-                    state.outputs.peak_temperature, state.convergence.iterations, b.fields.used().map(|(w, p)| (w, p.length, p.breadth, p.strip)).collect::<Vec<_>>(),
-                    all.contacts[..all.count].iter().map(|c| (c.normal_force as i64, c.peak_pressure as i64 / 1000000)).collect::<Vec<_>>());
+                println!(
+                    "{step} y {:.2} n {} F {:.0?} T {:.0} its {} {:?} {:?}",
+                    -1e3 * inputs.lateral_displacement,
+                    all.count,
+                    all.force,
+                    state.outputs.peak_temperature,
+                    state.convergence.iterations,
+                    b.fields
+                        .used()
+                        .map(|(w, p)| (w, p.length, p.breadth, p.strip))
+                        .collect::<Vec<_>>(),
+                    all.contacts[..all.count]
+                        .iter()
+                        .map(|c| (c.normal_force as i64, c.peak_pressure as i64 / 1000000))
+                        .collect::<Vec<_>>()
+                );
             }
         }
         times.sort_by(f64::total_cmp);
         jumps.sort_by(|a, b| b.0.total_cmp(&a.0));
         let n = times.len();
-        println!("load {load} moved {moved} staggered {staggered} median {:.0} 99 {:.0} max {:.0} us {:?}", times[n / 2], times[n * 99 / 100], times[n - 1], workspace.iterations());
+        println!(
+            "load {load} moved {moved} staggered {staggered} median {:.0} 99 {:.0} max {:.0} us {:?}",
+            times[n / 2],
+            times[n * 99 / 100],
+            times[n - 1],
+            workspace.iterations()
+        );
         println!("jumps {:?}", &jumps[..12]);
+    }
+}
+
+/// Derivatives of the outputs with respect to each input against central differences of whole steps, with one contact and with two.
+#[test]
+fn zz_derivatives() {
+    use crate::signals::{INPUTS, OUTPUTS};
+    for (y, load, height) in [(1.0, 60e3, false), (5.0, 20e3, false), (2.0, 60e3, true)] {
+        let mut parameters = parameters(true, height);
+        parameters.wear_coefficient = 0.5e-12;
+        parameters.thermal_expansion = 12e-6;
+        parameters.friction_law = FrictionLaw::PiecewiseLinear;
+        let model = Model::new(parameters).unwrap();
+        let mut workspace = model.workspace();
+        let mut inputs = Inputs {
+            normal_load: load,
+            wheel_speed: 20.1 / 0.46,
+            vehicle_speed: 20.0,
+            lateral_displacement: -1e-3 * y,
+            yaw_angle: 1e-3,
+            ..Inputs::default()
+        };
+        if height {
+            inputs.vertical_displacement = -0.15e-3;
+        }
+        let mut start = match model.initial_state(&mut workspace, &inputs) {
+            Ok(s) => s,
+            Err(e) => {
+                println!("{e}");
+                continue;
+            }
+        };
+        for _ in 0..5 {
+            model
+                .step(&mut workspace, &mut start, &inputs, &Inputs::ZERO, 1e-3)
+                .unwrap();
+        }
+        let run = |inputs: &Inputs| {
+            let mut state = start.clone();
+            model
+                .step(&mut model.workspace(), &mut state, inputs, &Inputs::ZERO, 1e-3)
+                .unwrap();
+            state
+        };
+        let state = run(&inputs);
+        let all = on_wheelset(&model, &state, &inputs);
+        println!("y {y} n {} force {:.1?}", all.count, all.force);
+        let derivatives = match model.output_sensitivities(&mut workspace, &state, 0..INPUTS.len()) {
+            Ok(d) => d,
+            Err(e) => {
+                println!("{e}");
+                continue;
+            }
+        };
+        for (row, signal) in INPUTS.iter().enumerate() {
+            let step = 1e-5 * signal.nominal;
+            let mut ahead = inputs;
+            let mut behind = inputs;
+            (signal.set)(&mut ahead, (signal.get)(&inputs) + step);
+            (signal.set)(&mut behind, (signal.get)(&inputs) - step);
+            let (a, b) = (run(&ahead), run(&behind));
+            for name in [
+                "traction_force",
+                "peak_pressure",
+                "peak_temperature",
+                "friction_power",
+                "contact_area",
+                "friction_torque",
+            ] {
+                let output = OUTPUTS.iter().find(|o| o.name == name).unwrap();
+                let difference = ((output.get)(&a.outputs) - (output.get)(&b.outputs)) / (2.0 * step);
+                let exact = (output.get)(&derivatives[row]);
+                let scale = output.nominal / signal.nominal;
+                if (exact - difference).abs() > 1e-3 * (difference.abs() + 0.01 * scale) {
+                    println!("   {} by {}: {exact:.6e} {difference:.6e}", name, signal.name);
+                }
+            }
+        }
     }
 }

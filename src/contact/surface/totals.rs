@@ -1,7 +1,6 @@
 //! What is read off the fields of a contact of profiles: integrals over all windows, forces on the wheelset, the contacts one by one.
 
 use super::fields::SurfaceFields;
-use super::geometry::Pose;
 use super::mechanics::SurfaceProblem;
 use super::operators::SurfaceOperators;
 use crate::contact::engine::Engine;
@@ -101,12 +100,7 @@ pub fn integrals(problem: &SurfaceProblem, fields: &SurfaceFields) -> Integrals 
 /// Force and moment on the wheelset and the contacts.
 fn on_wheelset(problem: &SurfaceProblem, fields: &SurfaceFields) -> OnWheelset {
     let operators = problem.operators;
-    let pose = Pose::new(operators, &problem.conditions.inputs, problem.parameters.wheel_radius);
-    let height = if problem.is_height_given() {
-        pose.position.height
-    } else {
-        fields.touch - fields.approach[0]
-    };
+    let (pose, height) = (problem.pose(), problem.height(fields));
     let mut all = OnWheelset::default();
     for (window, place) in fields.used() {
         let patch = problem.of(&place);
@@ -126,7 +120,10 @@ fn on_wheelset(problem: &SurfaceProblem, fields: &SurfaceFields) -> OnWheelset {
             let [mut normal, mut ahead, mut x_moment, mut along, mut across, mut twist] = [0.0; 6];
             for (cell, at) in row.enumerate() {
                 let x = middle + grid.x(cell);
-                let (pressure, shear) = (unit * own.pressure[at], [unit * own.shear[0][at], unit * own.shear[1][at]]);
+                let (pressure, shear) = (
+                    unit * own.pressure[at],
+                    [unit * own.shear[0][at], unit * own.shear[1][at]],
+                );
                 normal += pressure;
                 ahead += x * pressure;
                 along -= shear[0];

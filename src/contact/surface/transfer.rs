@@ -121,8 +121,20 @@ impl Transfer {
             self.mean(grid, grid.cells, of, &mut values);
             *into.memory.vectors_mut()[part] = values;
         }
-        self.carry(&window.strips, modes, |fields| &fields.heat.window, before, &mut into.heat.window);
-        self.carry(&window.strips, 1, |fields| &fields.wear.window, before, &mut into.wear.window);
+        self.carry(
+            &window.strips,
+            modes,
+            |fields| &fields.heat.window,
+            before,
+            &mut into.heat.window,
+        );
+        self.carry(
+            &window.strips,
+            1,
+            |fields| &fields.wear.window,
+            before,
+            &mut into.wear.window,
+        );
         let of_cells: [fn(&PatchFields) -> &Vec<f64>; 4] = [
             |fields| &fields.heat.surface,
             |fields| &fields.heat.flux,
@@ -139,10 +151,14 @@ impl Transfer {
             for strip in 0..grid.strips {
                 for cell in 0..grid.cells {
                     // The first column is the one beside the window.
-                    let sum = self.sum(strip, |from| (&self.columns[from], cell + 1), |share, column| {
-                        let (cells, column) = (grid.cells, column.clamp(1, grid.cells) - 1);
-                        of(&sources[share.window])[share.index * cells + column]
-                    });
+                    let sum = self.sum(
+                        strip,
+                        |from| (&self.columns[from], cell + 1),
+                        |share, column| {
+                            let (cells, column) = (grid.cells, column.clamp(1, grid.cells) - 1);
+                            of(&sources[share.window])[share.index * cells + column]
+                        },
+                    );
                     target[strip * grid.cells + cell] = sum;
                 }
             }
@@ -171,7 +187,9 @@ impl Transfer {
             // Windows that lie over each other share what both cover.
             let total: f64 = strips.shares[first..].iter().map(|share| share.weight).sum();
             if total > 1.0 {
-                strips.shares[first..].iter_mut().for_each(|share| share.weight /= total);
+                strips.shares[first..]
+                    .iter_mut()
+                    .for_each(|share| share.weight /= total);
             }
         }
         for (window, source) in before.used() {
@@ -190,15 +208,25 @@ impl Transfer {
                 }
                 columns.begins.push(columns.shares.len());
                 let mut total = 0.0;
-                shares(from + own.length, grid.length, &own.length, own.cells + 2, |index, weight| {
-                    total += weight;
-                    columns.shares.push(Share { window, index, weight });
-                });
+                shares(
+                    from + own.length,
+                    grid.length,
+                    &own.length,
+                    own.cells + 2,
+                    |index, weight| {
+                        total += weight;
+                        columns.shares.push(Share { window, index, weight });
+                    },
+                );
                 if total < 1.0 - 1e-9 {
                     let middle = from + 0.5 * grid.length;
                     columns.shares.push(Share {
                         window,
-                        index: if middle < 0.5 * own.length * own.cells as f64 { 0 } else { own.cells + 1 },
+                        index: if middle < 0.5 * own.length * own.cells as f64 {
+                            0
+                        } else {
+                            own.cells + 1
+                        },
                         weight: 1.0 - total,
                     });
                 }
@@ -227,9 +255,11 @@ impl Transfer {
     fn mean<'f>(&self, grid: &Grid, stride: usize, of: impl Fn(&Share) -> &'f Vec<f64>, into: &mut [f64]) {
         for strip in 0..grid.strips {
             for cell in 0..grid.cells {
-                into[strip * stride + cell] = self.sum(strip, |from| (&self.cells[from], cell), |share, cell| {
-                    of(share)[share.index * stride + cell]
-                });
+                into[strip * stride + cell] = self.sum(
+                    strip,
+                    |from| (&self.cells[from], cell),
+                    |share, cell| of(share)[share.index * stride + cell],
+                );
             }
         }
     }
@@ -272,7 +302,9 @@ impl Transfer {
         into: &mut PatchFields,
         own: usize,
     ) {
-        let source = before.places[own].map(|from| (own, from)).or_else(|| before.used().next());
+        let source = before.places[own]
+            .map(|from| (own, from))
+            .or_else(|| before.used().next());
         let modes = operators.of(place).basis.len();
         let strips = &operators.of(place).strips;
         for side in [Side::Left, Side::Right] {
@@ -290,7 +322,10 @@ impl Transfer {
                 into.wear.outer[k].copy_from_slice(&before.wear.outer[k]);
                 continue;
             }
-            let (to, from) = (strips.outer_positions(side), operators.of(&from).strips.outer_positions(side));
+            let (to, from) = (
+                strips.outer_positions(side),
+                operators.of(&from).strips.outer_positions(side),
+            );
             for (column, x) in to.iter().enumerate() {
                 let after = from.partition_point(|place| place < x).clamp(1, from.len() - 1);
                 let share = ((x - from[after - 1]) / (from[after] - from[after - 1])).clamp(0.0, 1.0);

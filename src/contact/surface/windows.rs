@@ -10,16 +10,20 @@ use serde::{Deserialize, Serialize};
 /// Largest number of windows: contacts that are resolved.
 pub const WINDOWS: usize = 4;
 /// Number of lengths that a window may have.
-pub const LENGTHS: usize = 4;
+pub const LENGTHS: usize = 5;
 /// Number of breadths that a window may have.
-pub const BREADTHS: usize = 7;
+pub const BREADTHS: usize = 6;
 /// Number of sizes that a window may have.
 pub const SHAPES: usize = LENGTHS * BREADTHS;
 
 /// Cells along the window, and strips across it, that stay free on either side of a region that a window is placed for.
 const MARGIN: [f64; 2] = [1.5, 1.0];
-/// Least share of a window that the region in it takes up, along and across, before the window becomes smaller.
+/// Least share of a window's length that the region in it takes up, before the window becomes shorter.
 const LEAST_SHARE: f64 = 0.36;
+/// Share of a window's strips that the narrowest contact in it has at least when a window is placed, and when it stays.
+const FEWEST_STRIPS: [f64; 2] = [0.3, 0.25];
+/// Largest share of a window's strips that the narrowest contact has in a window that stays.
+const MOST_STRIPS: f64 = 0.66;
 
 /// Size and place of a window.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -41,6 +45,8 @@ pub struct Region {
     pub along: [f64; 2],
     /// From and to in arc length of the rail's profile, `m`.
     pub across: [f64; 2],
+    /// Breadth of the narrowest contact in it, `m`.
+    pub narrowest: f64,
 }
 
 /// Sizes of all windows.
@@ -72,6 +78,7 @@ impl Place {
         Region {
             along: [cell, cell + grid.cells as f64].map(|count| count * grid.length),
             across: [strip, strip + grid.strips as f64].map(|count| count * grid.breadth),
+            narrowest: grid.strips as f64 * grid.breadth,
         }
     }
 }
@@ -83,6 +90,7 @@ impl Region {
         Region {
             along: hull(self.along, other.along),
             across: hull(self.across, other.across),
+            narrowest: self.narrowest.min(other.narrowest),
         }
     }
 
@@ -103,35 +111,31 @@ impl Sizes {
         }
     }
 
-    /// Window for a region: `kept` where that holds it and is not far too large, else the smallest that does, about the region's
-    /// middle.
+    /// Window for a region: `kept` where that holds it and is not far too large, else one about the region's middle: the shortest that
+    /// holds it, with as broad strips as resolve the narrowest contact, or broader ones where it would not hold the region.
     pub fn place(&self, region: &Region, kept: Option<Place>) -> Place {
         if let Some(kept) = kept
             && self.suits(region, &kept)
         {
             return kept;
         }
-        let fits = |extent: [f64; 2], cells: usize, margin: f64, largest: f64, count: usize| {
-            let size = (extent[1] - extent[0]) / (cells as f64 - 2.0 * margin);
-            (0..count)
+        let Grid { cells, strips, .. } = self.largest;
+        let shrunk = |size: f64, level: usize| size / f64::from(1_u32 << level);
+        // The finest of the sizes that are at least as large as the region needs.
+        let holding = |extent: [f64; 2], count: usize, margin: f64, largest: f64, levels: usize| {
+            let needed = (extent[1] - extent[0]) / (count as f64 - 2.0 * margin);
+            (0..levels)
                 .rev()
-                .find(|&level| size <= largest / f64::from(1_u32 << level))
+                .find(|&level| needed <= shrunk(largest, level))
                 .unwrap_or(0)
         };
-        let Grid { cells, strips, .. } = self.largest;
-        let mut length = fits(region.along, cells, MARGIN[0], self.largest.length, LENGTHS);
-        let mut breadth = fits(region.across, strips, MARGIN[1], self.largest.breadth, BREADTHS);
-        // A size that still holds the region is kept for a while: windows should not change with every step.
-        if let Some(kept) = kept {
-            let share = |extent: [f64; 2], size: f64, count: usize| (extent[1] - extent[0]) / (size * count as f64);
-            let grid = self.grid(kept.length, kept.breadth);
-            if kept.length < length && share(region.along, grid.length, cells) > LEAST_SHARE {
-                length = kept.length;
-            }
-            if kept.breadth < breadth && share(region.across, grid.breadth, strips) > LEAST_SHARE {
-                breadth = kept.breadth;
-            }
-        }
+        let length = holding(region.along, cells, MARGIN[0], self.largest.length, LENGTHS);
+        let broadest = holding(region.across, strips, MARGIN[1], self.largest.breadth, BREADTHS);
+        let resolved = region.narrowest / (FEWEST_STRIPS[0] * strips as f64);
+        let breadth = (0..BREADTHS)
+            .find(|&level| shrunk(self.largest.breadth, level) <= resolved)
+            .unwrap_or(BREADTHS - 1)
+            .min(broadest);
         let grid = self.grid(length, breadth);
         let first = |extent: [f64; 2], size: f64, count: usize| {
             (0.5 * (extent[0] + extent[1]) / size - 0.5 * count as f64).round() as i32
@@ -151,10 +155,12 @@ impl Sizes {
         let holds = |outer: [f64; 2], inner: [f64; 2], margin: f64| {
             inner[0] >= outer[0] + margin && inner[1] <= outer[1] - margin
         };
-        let fills = |outer: [f64; 2], inner: [f64; 2]| inner[1] - inner[0] > LEAST_SHARE * (outer[1] - outer[0]);
+        let length = (region.along[1] - region.along[0]) / (window.along[1] - window.along[0]);
+        let strips = region.narrowest / (window.across[1] - window.across[0]);
         holds(window.along, region.along, grid.length)
             && holds(window.across, region.across, 0.5 * grid.breadth)
-            && (place.length + 1 == LENGTHS || fills(window.along, region.along))
-            && (place.breadth + 1 == BREADTHS || fills(window.across, region.across))
+            && (place.length + 1 == LENGTHS || length > LEAST_SHARE)
+            && (place.breadth + 1 == BREADTHS || strips > FEWEST_STRIPS[1])
+            && (place.breadth == 0 || strips < MOST_STRIPS)
     }
 }
