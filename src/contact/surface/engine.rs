@@ -58,7 +58,11 @@ impl Engine for SurfaceOperators {
     }
 
     fn split_settings(settings: &Settings) -> SplitSettings {
-        settings.patch_split()
+        SplitSettings {
+            // The load is found to this by the height of the wheel.
+            mechanics_alone_tolerance: settings.patch_split().mechanics_alone_tolerance.max(1e-8),
+            ..settings.patch_split()
+        }
     }
 
     fn sensitivity_settings(settings: &Settings) -> SensitivitySettings {
@@ -210,6 +214,11 @@ impl Engine for SurfaceOperators {
 
     fn sweep_work(&self) -> u64 {
         self.shapes[0].sweep_work()
+    }
+
+    /// As many windows as there may be.
+    fn work_scale(&self) -> f64 {
+        WINDOWS as f64
     }
 
     fn set_surface_temperature(&self, interface: &Interface, now: &mut SurfaceFields) {

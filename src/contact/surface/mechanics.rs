@@ -6,7 +6,7 @@
 //! Σ ∫ (p cos δ − τ_s sin δ) dA = Q.
 //!
 //! The friction is that of the iteration before, in proportion to the pressure: where all slides, that is exact at once. The approach
-//! is found by the secant method within bounds.
+//! is found by the secant method.
 
 use super::fields::SurfaceFields;
 use super::geometry::Pose;
@@ -33,6 +33,12 @@ pub type SurfaceProblem<'a> = Problem<'a, SurfaceOperators>;
 const APPROACHES: usize = 40;
 /// Error of the load that is not worth another approach, relative: the pressure has more.
 const LOAD_TOLERANCE: f64 = 1e-9;
+/// Least change of the approach that shows the stiffness, relative: the windows' influence on each other lags behind.
+const LEAST_STEP: f64 = 1e-4;
+/// Error of the pressure at the first approach, relative.
+const FIRST_TOLERANCE: f64 = 1e-3;
+/// Error of the pressure at an approach over that of the load at the one before.
+const TOLERANCE_SHARE: f64 = 0.03;
 /// Room for windows beyond which a contact is held within them.
 pub const LARGEST_ROOM: f64 = 4.0;
 
@@ -173,10 +179,18 @@ fn press(
     let mut search = Approaches::new(problem, fields, solvers);
     let tolerance_of_load = tolerance.max(LOAD_TOLERANCE);
     let mut left = f64::INFINITY;
+    // The pressure need not be better than the approach is.
+    let mut own_tolerance = tolerance.max(FIRST_TOLERANCE);
     for _ in 0..APPROACHES {
-        let (force, apart) = press_at(problem, search.approach, fields, solvers, tolerance)?;
+        let (force, apart) = press_at(problem, search.approach, fields, solvers, own_tolerance)?;
         let excess = search.load.map_or(0.0, |load| (force - load) / load);
         left = excess.abs().max(apart);
+        let solved_well = own_tolerance <= tolerance;
+        own_tolerance = (TOLERANCE_SHARE * left).clamp(tolerance, own_tolerance);
+        if left <= tolerance_of_load && !solved_well {
+            own_tolerance = tolerance;
+            continue;
+        }
         if left <= tolerance_of_load {
             search.end(fields);
             return check_room(problem, fields, solvers);
@@ -191,14 +205,12 @@ fn press(
     })
 }
 
-/// Secant method within bounds for the approach at which a load is carried.
+/// Secant method for the approach at which a load is carried.
 struct Approaches {
     /// Load, `N`; none where the approach is given.
     load: Option<f64>,
     /// Approach, `m`.
     approach: f64,
-    /// Largest approach that was too small, and smallest that was too large, `m`.
-    bounds: [f64; 2],
     /// Approach before and its excess of load, relative.
     last: Option<[f64; 2]>,
     /// Change of the load with the approach, relative, `1/m`.
@@ -211,7 +223,6 @@ impl Approaches {
             return Approaches {
                 load: None,
                 approach: solvers.reference,
-                bounds: [0.0, f64::INFINITY],
                 last: None,
                 stiffness: 0.0,
             };
@@ -223,7 +234,6 @@ impl Approaches {
         Approaches {
             load: Some(load),
             approach,
-            bounds: [0.0, f64::INFINITY],
             last: None,
             // Hertz's load is as the approach to the power of 3/2.
             stiffness: if fields.stiffness > 0.0 {
@@ -239,9 +249,8 @@ impl Approaches {
         if self.load.is_none() {
             return;
         }
-        self.bounds[usize::from(excess > 0.0)] = self.approach;
         if let Some([before, excess_before]) = self.last
-            && before != self.approach
+            && (before - self.approach).abs() > LEAST_STEP * self.approach
         {
             let slope = (excess - excess_before) / (self.approach - before);
             if slope > 0.0 {
@@ -249,18 +258,9 @@ impl Approaches {
             }
         }
         self.last = Some([self.approach, excess]);
-        if self.bounds[1] - self.bounds[0] < 1e-12 {
-            // What the windows do to each other has moved the load that belongs to an approach.
-            self.bounds = [0.0, f64::INFINITY];
-        }
+        // Half way to no contact at most, and to twice the approach: where another contact begins to carry, the stiffness jumps.
         let next = self.approach - excess / self.stiffness;
-        self.approach = if next > self.bounds[0] && next < self.bounds[1] {
-            next.min(2.0 * self.approach)
-        } else if self.bounds[1].is_finite() {
-            0.5 * (self.bounds[0] + self.bounds[1])
-        } else {
-            2.0 * self.approach
-        };
+        self.approach = next.clamp(0.5 * self.approach, 2.0 * self.approach);
     }
 
     /// Leaves the approach and the stiffness in the fields.
