@@ -285,7 +285,8 @@ def outputs_named(fmu: AnyPath, names: str | Iterable[str] | None) -> list[str]:
         chosen += [name] if name in known else points[name]
     for name in chosen:
         if known[name].type not in ("Real", "Float64"):
-            raise ValueError(f"{name} is a number that counts or chooses, and no output")
+            what = "text" if known[name].type == "String" else "number that counts or chooses"
+            raise ValueError(f"{name} is a {what}, and no output")
     return list(dict.fromkeys(chosen))
 
 

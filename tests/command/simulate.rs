@@ -402,7 +402,7 @@ fn profiles_are_checked() {
     with("blank", &blank, &["wheel_profile is blank", "1 to 4096 bytes"], rolling);
     let unknown = ["--set", "rail_profil=60E1"];
     with("unknown", &unknown, &["did you mean rail_profile?"], rolling);
-    place.refused(&PROFILES, &["creepage [1]\"", "no effect with slip_source = 2"]);
+    place.refused(&PROFILES, &["column \"creepage\"", "no effect with slip_source = 2"]);
     let height = "time,vertical_displacement\n0,0\n0.001,-1e-4\n";
     let words = [
         "vertical_displacement = -0.0001 has no effect with control = 1 (load)",
