@@ -71,8 +71,10 @@ def reference(description):
 
 @pytest.fixture(scope="session")
 def outputs(description):
-    """Return the names of the outputs."""
-    return [variable.name for variable in description.modelVariables if variable.causality == "output"]
+    """Return the names of the outputs that line and patch have."""
+    found = (variable for variable in description.modelVariables if variable.causality == "output")
+    others = ("; 0 unless contact_model is profiles", "; contacts count from the gauge side")
+    return [variable.name for variable in found if not any(part in variable.description for part in others)]
 
 
 @pytest.fixture

@@ -50,6 +50,8 @@ def references(fmu3):
         "SWITCH": "wheel_heating",
         "ARRAY": "friction_table.coefficient",
         "FIELD": "patch.pressure",
+        "TEXT": "rail_profile",
+        "CONTACTS": "contact.normal_force",
     }
     variables = fmpy.read_model_description(fmu3).modelVariables
     found = {variable.name: variable.valueReference for variable in variables}

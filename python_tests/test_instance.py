@@ -161,6 +161,12 @@ REFUSED = {
     "not finite": (lambda i: i.set(creepage=np.inf), ValueError, "creepage = inf: a finite number is needed"),
     "no number": (lambda i: i.set(creepage=None), TypeError, "creepage = None: a number, the name of a choice, or"),
     "sequence": (lambda i: i.set(creepage=[0.1]), ValueError, "creepage is a single value"),
+    "fixed text": (lambda i: i.set(rail_profile="54E1"), ValueError, "rail_profile is fixed from start() on"),
+    "no number to get": (
+        lambda i: i.get("rail_profile"),
+        ValueError,
+        "rail_profile is no number, but of the type String; parameters() has it",
+    ),
     "fixed": (lambda i: i.set(wheel_radius=0.4), ValueError, "wheel_radius is fixed from start() on"),
     "output": (lambda i: i.set(traction_force=0.0), ValueError, "traction_force is of kind output"),
     "misspelt": (lambda i: i.set(crepage=0.0), ValueError, "there is no variable crepage; did you mean creepage"),
@@ -281,6 +287,34 @@ def test_parameters_make_the_same_instance(running):
     again = Instance(running.fmu, **running.parameters())
     assert again.parameters() == running.parameters()
     assert again.parameters()["friction_law"] == "piecewise_linear"
+
+
+def test_texts(either, running, tmp_path):
+    """Texts and paths, before the start; they are among the parameters, and so in saved states."""
+    worn = tmp_path / "räil 1.prr"
+    instance = Instance(either, rail_profile=worn, **MOVING)
+    instance.set(wheel_profile="cone40", creepage=0.0)
+    texts = {"rail_profile": str(worn), "wheel_profile": "cone40"}
+    assert texts.items() <= instance.parameters().items()
+    instance.start().step(1e-3)
+    assert texts.items() <= instance.parameters().items()
+    again = Instance.load(instance.save().to_bytes(), either)
+    assert texts.items() <= again.parameters().items()
+    assert running.parameters()["rail_profile"] == wheelrail.variables(either)["start"]["rail_profile"] == "60E1"
+    with pytest.raises(ValueError, match=r"rail_profile = '60E1', in the state '.*1\.prr'"):
+        running.restore(instance.save().to_bytes())
+    for wrong, kind, message in (
+        (5, TypeError, "rail_profile = 5: a text is needed"),
+        (b"60E1", TypeError, "a text is needed"),
+        (["60E1"], TypeError, "a text is needed"),
+        (" ", ValueError, "not blank"),
+        ("a\0b", ValueError, "no zero"),
+        ("\ud800", ValueError, "surrogates not allowed"),
+    ):
+        with pytest.raises(kind, match=re.escape(message)):
+            Instance(either, rail_profile=wrong)
+    with pytest.raises(SimulationError, match=r"rail_profile is too long; allowed is UTF-8 of 1 to 4096 bytes"):
+        Instance(either, rail_profile="x" * 5000)
 
 
 def test_shown(running):

@@ -52,6 +52,7 @@ PARAMETERS = (
     "patch_nodes",
     "friction_law",
     "friction_table.temperature",
+    "rail_profile",
 )
 NO_NAMES = ("traction_forc", "", "time", "profile.pressure[0]", "\0", "é", 5, None, b"creepage", ("creepage",), 1.5)
 NO_NUMBERS = (
@@ -84,6 +85,7 @@ GOOD = {
     "patch_nodes": (10, 12),
     "friction_law": ("constant", 1, "piecewise_linear"),
     "friction_table.temperature": ([300.0, 400.0], np.array([300.0, 500.0])),
+    "rail_profile": ("60E1", Path("worn.prr")),
 }
 
 

@@ -45,11 +45,11 @@ pub enum Error {
         requirement: &'static str,
     },
     /// A text that cannot be a parameter's.
-    #[error("{name} {problem}; allowed is UTF-8 of 1 to {LONGEST_TEXT} bytes, none of them zero")]
+    #[error("{name} {problem}; allowed is {allowed}", allowed = problem.allowed())]
     Text {
         /// Parameter.
         name: &'static str,
-        /// What is wrong with it.
+        /// Problem of the text.
         problem: TextProblem,
     },
     /// An input other than 0 that the contact model knows nothing of.

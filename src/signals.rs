@@ -47,7 +47,7 @@ pub struct InputSignal {
     pub used_by: Option<UsedBy>,
     /// Contact models that take another value than 0.
     pub models: &'static [ContactModel],
-    /// Those models, with the verb, in words for a refusal: "2 (patch) takes".
+    /// Words for those models, with the verb, in a refusal: "2 (patch) takes".
     takers: &'static str,
     /// Typical magnitude.
     pub nominal: f64,
@@ -62,9 +62,9 @@ pub struct InputSignal {
 /// Choice under which an input is used.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum UsedBy {
-    /// This `slip_source`.
+    /// Choice of `slip_source`.
     SlipSource(SlipSource),
-    /// This `control`.
+    /// Choice of `control`.
     Control(Control),
 }
 
@@ -178,7 +178,7 @@ macro_rules! used_where {
     };
 }
 
-/// The contact models of a column `only`.
+/// The contact models that a column `only` names.
 macro_rules! models {
     () => {
         ContactModel::ALL
@@ -194,7 +194,7 @@ macro_rules! models {
     };
 }
 
-/// The same in words for a refusal.
+/// Words for the contact models of a column `only` in a refusal.
 macro_rules! takers {
     () => {
         ""
@@ -607,6 +607,11 @@ impl InputSignal {
             });
         }
         Ok(())
+    }
+
+    /// Whether profiles alone take another value than 0.
+    pub fn is_of_profiles_alone(&self) -> bool {
+        self.models == [ContactModel::Profiles]
     }
 
     /// Whether a contact model takes another value than 0.

@@ -41,7 +41,7 @@ FIRST += ["peak_temperature", "friction_coefficient", "worn_volume"]
 
 def variables():
     """Return (title, rows) of each group; of repeated variables only the first."""
-    text = subprocess.check_output([WHEELRAIL, "describe", "--markdown"], text=True)
+    text = subprocess.check_output([WHEELRAIL, "describe", "--markdown"], text=True).replace(", this is number 1", "")
     groups = []
     for block in text.split("### ")[1:]:
         title, *lines = block.splitlines()

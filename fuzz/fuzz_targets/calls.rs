@@ -50,7 +50,7 @@ enum Call {
     GetInteger(Vec<Reference>, Pointer, Pointer),
     SetInteger(Vec<(Reference, i32)>, Pointer, Pointer),
     Boolean(Vec<Reference>, Pointer, Pointer),
-    String(Vec<Reference>, Pointer, Pointer),
+    String(Vec<(Reference, Option<Vec<u8>>)>, Pointer, Pointer),
     GetState(u8, Pointer),
     SetState(u8),
     FreeState(u8, Pointer),
@@ -142,6 +142,12 @@ fn callbacks() -> CallbackFunctions {
     }
 }
 
+/// A string of bytes but for zeros.
+fn string(bytes: Option<&[u8]>) -> Option<CString> {
+    let bytes = bytes?.iter().copied().filter(|byte| *byte != 0);
+    Some(CString::new(bytes.collect::<Vec<_>>()).expect("no zero"))
+}
+
 /// An instance and what a master remembers of it.
 struct Master {
     component: *mut c_void,
@@ -193,13 +199,8 @@ impl Master {
         let c = self.component;
         match call {
             Call::Instantiate(name, fmu_type, guid, location, logging) => {
-                let string = |bytes: &Option<Vec<u8>>| {
-                    bytes.as_ref().map(|bytes| {
-                        CString::new(bytes.iter().copied().filter(|b| *b != 0).collect::<Vec<_>>()).expect("no zero")
-                    })
-                };
                 let pointer = |text: &Option<CString>| text.as_ref().map_or(null(), |text| text.as_ptr());
-                let (name, guid, location) = (string(name), string(guid), string(location));
+                let [name, guid, location] = [name, guid, location].map(|bytes| string(bytes.as_deref()));
                 let instance = fmi2Instantiate(
                     pointer(&name),
                     *fmu_type,
@@ -299,12 +300,21 @@ impl Master {
                 expect(fmi2GetBoolean(c, references, n, second.to_mut(values.as_mut_ptr())));
                 expect(fmi2SetBoolean(c, references, n, second.to(values.as_ptr())));
             }
-            Call::String(references, first, second) => {
-                let references = self.table.references(references);
-                let (n, mut values) = (references.len(), vec![c"%n".as_ptr(); references.len()]);
-                let references = first.to(references.as_ptr());
-                expect(fmi2GetString(c, references, n, second.to_mut(values.as_mut_ptr())));
+            Call::String(pairs, first, second) => {
+                // Any bytes without a zero, ended by one, and null pointers.
+                let texts: Vec<Option<CString>> = pairs.iter().map(|(_, text)| string(text.as_deref())).collect();
+                let values: Vec<_> = texts.iter().map(|text| text.as_ref().map_or(null(), |text| text.as_ptr())).collect();
+                let references: Vec<u32> = pairs.iter().map(|(known, _)| self.table.reference(*known)).collect();
+                let (n, references) = (references.len(), first.to(references.as_ptr()));
                 expect(fmi2SetString(c, references, n, second.to(values.as_ptr())));
+                let mut read = values.clone();
+                let status = fmi2GetString(c, references, n, second.to_mut(read.as_mut_ptr()));
+                expect(status);
+                if status == Status::OK && n > 0 {
+                    for text in read {
+                        assert!(CStr::from_ptr(text).to_str().is_ok_and(|text| text.len() <= 4096));
+                    }
+                }
             }
             Call::GetState(slot, pointer) => {
                 expect(fmi2GetFMUstate(

@@ -118,14 +118,14 @@ class Access:
         ----------
         **values
             Inputs, and parameters: before `start` all but the lengths of arrays of FMI 3.0, from then on those that are
-            tunable. Choices by name or number, arrays as a sequence.
+            tunable. Choices by name or number, arrays as a sequence, texts as a text or a path.
 
         Raises
         ------
         ValueError
             An unknown name or choice, a value out of its range, a variable that cannot be set, or not any more.
         TypeError
-            A value that is no number.
+            A value that is no number, or no text where one is needed.
         SimulationError
             The component refuses a value beside the others, a load above `largest_load` for example.
         """
@@ -140,11 +140,13 @@ class Access:
 
     def _set(self, values: Mapping[str, Any]) -> None:
         """Set variables: lengths of arrays first, then choices and counts, at last all quantities in one call."""
-        texts = {name: value for name, value in values.items() if self._variable(name, True).type == "String"}
-        rest = {name: plain(name, value) for name, value in values.items() if name not in texts}
+        given = {
+            name: value if self._variable(name, True).type == "String" else plain(name, value)
+            for name, value in values.items()
+        }
         calls: dict[str, tuple[list[int], list[Any]]] = {}
         lengths = {}
-        for name, value in start_values(self.fmu, rest).items():
+        for name, value in start_values(self.fmu, given).items():
             variable = self.variables[name]
             self._check_settable(variable)
             elements = value if isinstance(value, list) else [value]
@@ -156,12 +158,6 @@ class Access:
             references, numbers = calls.setdefault(self._kind(variable), ([], []))
             references.append(variable.valueReference)
             numbers.extend(elements)
-        for name, text in texts.items():
-            if not isinstance(text, str):
-                raise TypeError(f"{name} = {text!r}: a text is needed")
-            references, numbers = calls.setdefault("String", ([], []))
-            references.append(self.variables[name].valueReference)
-            numbers.append(text)
         if lengths:
             self.slave.enterConfigurationMode()
             for name, (reference, length) in lengths.items():
@@ -229,7 +225,8 @@ class Access:
         for kind, together in groupby(variables, key=self._kind):
             group = list(together)
             if kind in ("String", "Binary", "Clock"):
-                raise ValueError(f"{group[0].name} is no number, but of the type {kind}")
+                where = "; parameters() has it" if group[0].causality == "parameter" else ""
+                raise ValueError(f"{group[0].name} is no number, but of the type {kind}{where}")
             arguments: list[Any] = [[variable.valueReference for variable in group]]
             if isinstance(self.slave, FMU3Component):
                 arguments.append(sum(math.prod(shape(variable, self.lengths)) for variable in group))
@@ -247,7 +244,7 @@ class Access:
         return elements or [self._variable(name)]
 
     def parameters(self) -> dict[str, Any]:
-        """Parameters as they are, choices by name: what an instance like this one is made with.
+        """Parameters as they are, choices by name and texts: what an instance like this one is made with.
 
         Raises
         ------
@@ -258,10 +255,13 @@ class Access:
         named = [
             variable
             for variable in self.variables.values()
-            if variable.causality in ("parameter", "structuralParameter") and variable.type != "String"
+            if variable.causality in ("parameter", "structuralParameter")
         ]
         with self._calls("parameters"):
             for variable in named:
+                if variable.type == "String":
+                    found[variable.name] = self._text(variable)
+                    continue
                 values = self.get(variable.name)
                 texts = {chosen: choice for choice, chosen in choices(variable).items()}
                 plain_values = [texts.get(int(value), value) if texts else value for value in values]
@@ -271,6 +271,13 @@ class Access:
                 else:
                     found[variable.name] = plain_values[0]
         return found
+
+    def _text(self, variable: ModelVariable) -> str:
+        """The value of a text."""
+        phases = Phase.INITIALISING, Phase.RUNNING, Phase.ENDED, Phase.FAILED
+        with self._calls("get", *phases):
+            (value,) = self.slave.getString([variable.valueReference])
+        return value.decode() if isinstance(value, bytes) else str(value)
 
     def fields(self) -> dict[str, np.ndarray]:
         """Fields of the patch as they are now, each as an array of strips by cells: FMI 3.0 alone has them.

@@ -91,8 +91,8 @@ def simulate(
     stop_time
         End [s]; by default the last time of the table. Behind the table inputs stay as they are in its last row.
     outputs
-        Names of what comes back, or one name; by default every output. A profile's name, `profile.pressure`, stands for
-        its points.
+        Names of what comes back, or one name; by default every output but arrays. A profile's name, `profile.pressure`,
+        stands for its points, `contact.normal_force` for the contacts.
     preset
         Name of a set of parameters, "wet" for example; what is given by name goes before it.
     parameters

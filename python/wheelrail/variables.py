@@ -6,7 +6,7 @@ import numbers
 import re
 from collections.abc import Iterable, Mapping
 from functools import cache
-from os import fspath
+from os import PathLike, fspath
 from typing import Any
 
 import numpy as np
@@ -143,6 +143,29 @@ def number(variable: ModelVariable, value: Any) -> float | int:
     return plain if real else int(plain)
 
 
+def text(variable: ModelVariable, value: Any) -> str:
+    """A text, or a path as one.
+
+    Raises
+    ------
+    TypeError
+        It is neither.
+    ValueError
+        It is blank, or has a character in it that no text of C has.
+    """
+    if isinstance(value, np.str_ | PathLike):
+        value = fspath(value)
+    if not isinstance(value, str):
+        raise TypeError(f"{variable.name} = {value!r}: a text is needed")
+    try:
+        value.encode()
+    except UnicodeEncodeError as error:
+        raise ValueError(f"{variable.name} = {value!r}: {error.reason}") from None
+    if not value.strip() or "\0" in value:
+        raise ValueError(f"{variable.name} = {value!r}: a text that is not blank and has no zero in it is needed")
+    return str(value)
+
+
 def bounds(variable: ModelVariable) -> tuple[float, float]:
     """Smallest and largest value."""
     named = choices(variable)
@@ -166,14 +189,14 @@ def allowed(variable: ModelVariable, low: float, high: float) -> str:
 def start_values(fmu: AnyPath, given: Mapping[str, Any]) -> dict[str, Any]:
     """Parameters and constant inputs as the component takes them.
 
-    The points of a table may be given in one: `{"friction_table.temperature": [300.0, 400.0]}`.
+    The points of a table may be given in one: `{"friction_table.temperature": [300.0, 400.0]}`. A text may be a path.
 
     Raises
     ------
     ValueError
         An unknown name, a value that is none, is out of range, or has too many elements.
     TypeError
-        A name that is no text.
+        A name that is no text, a value of a text that is none.
     """
     values: dict[str, Any] = {}
     known = by_name(fspath(fmu))
@@ -181,6 +204,9 @@ def start_values(fmu: AnyPath, given: Mapping[str, Any]) -> dict[str, Any]:
     for name, value in given.items():
         if not isinstance(name, str):
             raise TypeError(f"parameters: {name!r} is no name of a variable")
+        if name in known and known[name].type == "String":
+            values[name] = text(settable(fmu, name, kinds), value)
+            continue
         elements = several(value)
         if elements is None:
             variable = settable(fmu, name, kinds)
@@ -228,7 +254,7 @@ def shape(variable: ModelVariable, lengths: Mapping[str, int]) -> tuple[int, ...
 
 
 def outputs_named(fmu: AnyPath, names: str | Iterable[str] | None) -> list[str]:
-    """Names of outputs: all of them by default; a profile's name stands for all of its points.
+    """Names of outputs: by default all but arrays; a profile's name stands for all of its points.
 
     Raises
     ------
@@ -239,7 +265,10 @@ def outputs_named(fmu: AnyPath, names: str | Iterable[str] | None) -> list[str]:
     """
     known = by_name(fspath(fmu))
     if names is None:
-        return [name for name, variable in known.items() if variable.causality == "output" and not variable.dimensions]
+        outputs = (
+            name for name, variable in known.items() if variable.causality == "output" and not variable.dimensions
+        )
+        return [name for name in outputs if "[" not in name]
     if isinstance(names, str):
         names = (names,)
     if not isinstance(names, Iterable):
@@ -256,7 +285,8 @@ def outputs_named(fmu: AnyPath, names: str | Iterable[str] | None) -> list[str]:
         chosen += [name] if name in known else points[name]
     for name in chosen:
         if known[name].type not in ("Real", "Float64"):
-            raise ValueError(f"{name} is a number that counts or chooses, and no output")
+            what = "text" if known[name].type == "String" else "number that counts or chooses"
+            raise ValueError(f"{name} is a {what}, and no output")
     return list(dict.fromkeys(chosen))
 
 

@@ -39,14 +39,14 @@ static void logger(fmi2ComponentEnvironment e, fmi2String name, fmi2Status statu
 
 int main(int argc, char **argv) {
     fmi2CallbackFunctions callbacks = {logger, calloc, free, NULL, NULL};
-    const fmi2ValueReference input = 0, output = 1000, integer = 3000;
+    const fmi2ValueReference input = 0, output = 1000, integer = 3000, text = 18000;
     const fmi2Integer order = 1;
     const fmi2String category = "logEvents";
     const fmi2Real one = 1.0;
     fmi2Real real = 21.0;
     fmi2Integer number = 1;
     fmi2Boolean boolean = 0;
-    fmi2String string = NULL;
+    fmi2String string = "a path/räil.prr";
     fmi2Status status = fmi2OK;
     fmi2FMUstate state = NULL, copy = NULL;
     size_t size = 0;
@@ -60,6 +60,8 @@ int main(int argc, char **argv) {
     if (!c) return 1;
     EXPECT(fmi2OK, p_fmi2SetDebugLogging(c, fmi2True, 1, &category));
     EXPECT(fmi2OK, p_fmi2SetInteger(c, &integer, 1, &number));
+    EXPECT(fmi2OK, p_fmi2SetString(c, &text, 1, &string));
+    string = NULL;
     EXPECT(fmi2OK, p_fmi2SetupExperiment(c, fmi2True, 1e-6, 0.0, fmi2True, 1.0));
     EXPECT(fmi2OK, p_fmi2EnterInitializationMode(c));
     EXPECT(fmi2OK, p_fmi2SetReal(c, &input, 1, &real));
@@ -71,6 +73,8 @@ int main(int argc, char **argv) {
     EXPECT(fmi2OK, p_fmi2GetInteger(c, &integer, 1, &number));
     EXPECT(fmi2OK, p_fmi2GetBoolean(c, NULL, 0, NULL));
     EXPECT(fmi2OK, p_fmi2SetBoolean(c, NULL, 0, NULL));
+    EXPECT(fmi2OK, p_fmi2GetString(c, &text, 1, &string));
+    if (strcmp(string, "a path/räil.prr")) return 1;
     EXPECT(fmi2OK, p_fmi2GetString(c, NULL, 0, NULL));
     EXPECT(fmi2OK, p_fmi2SetString(c, NULL, 0, NULL));
     EXPECT(fmi2OK, p_fmi2GetRealOutputDerivatives(c, &output, 1, &order, &real));

@@ -67,7 +67,7 @@ static void logger(fmi3InstanceEnvironment environment, fmi3Status status, fmi3S
 
 int main(int argc, char **argv) {
     const fmi3ValueReference input = 1000, output = 2000, choice = 4000, count = 4002, length = LENGTH, on = SWITCH;
-    const fmi3ValueReference array = ARRAY, field = FIELD, nothing = 9999;
+    const fmi3ValueReference array = ARRAY, field = FIELD, text = TEXT, contacts = CONTACTS, nothing = 9999;
     const fmi3Int32 order = 1;
     const fmi3String category = "logEvents";
     const fmi3Float64 one = 1.0;
@@ -75,6 +75,7 @@ int main(int argc, char **argv) {
     fmi3Int32 number = 31;
     fmi3Int64 chosen = 1;
     fmi3UInt64 cells_along = 8, strips = 3;
+    fmi3String string = "a path/räil.prr";
     fmi3Boolean boolean = true, event = true, end = true, early = true;
     fmi3FMUState state = NULL, copy = NULL;
     size_t size = 0;
@@ -96,6 +97,8 @@ int main(int argc, char **argv) {
     EXPECT(fmi3OK, p_fmi3SetInt64(c, &choice, 1, &chosen, 1));
     EXPECT(fmi3OK, p_fmi3SetInt32(c, &count, 1, &number, 1));
     EXPECT(fmi3OK, p_fmi3SetBoolean(c, &on, 1, &boolean, 1));
+    EXPECT(fmi3OK, p_fmi3SetString(c, &text, 1, &string, 1));
+    string = NULL;
     EXPECT(fmi3OK, p_fmi3EnterInitializationMode(c, true, 1e-6, 0.0, true, 1.0));
     EXPECT(fmi3OK, p_fmi3SetFloat64(c, &input, 1, &real, 1));
     EXPECT(fmi3OK, p_fmi3GetFloat64(c, &array, 1, values, 10));
@@ -110,7 +113,11 @@ int main(int argc, char **argv) {
     EXPECT(fmi3OK, p_fmi3GetInt64(c, &choice, 1, &chosen, 1));
     EXPECT(fmi3OK, p_fmi3GetUInt64(c, &length, 1, &cells_along, 1));
     EXPECT(fmi3OK, p_fmi3GetBoolean(c, &on, 1, &boolean, 1));
-    if (number != 31 || chosen != 1 || cells_along != 8 || !boolean) return 1;
+    EXPECT(fmi3OK, p_fmi3GetString(c, &text, 1, &string, 1));
+    if (number != 31 || chosen != 1 || cells_along != 8 || !boolean || strcmp(string, "a path/räil.prr")) return 1;
+    EXPECT(fmi3OK, p_fmi3GetFloat64(c, &contacts, 1, values, 4));
+    EXPECT(fmi3OK, p_fmi3GetOutputDerivatives(c, &contacts, 1, &order, values, 4));
+    EXPECT(fmi3OK, p_fmi3GetDirectionalDerivative(c, &contacts, 1, &input, 1, &one, 1, values, 4));
     EXPECT(fmi3OK, p_fmi3GetOutputDerivatives(c, &output, 1, &order, &real, 1));
     EXPECT(fmi3OK, p_fmi3GetDirectionalDerivative(c, &output, 1, &input, 1, &one, 1, &real, 1));
     EXPECT(fmi3OK, p_fmi3GetAdjointDerivative(c, &output, 1, &input, 1, &one, 1, values, 1));

@@ -26,4 +26,22 @@ pub enum TextProblem {
         /// Number of bytes that are.
         valid: usize,
     },
+    /// A URI of something else than a file here.
+    #[error("is a URI, and not that of a file on this machine")]
+    OtherUri,
+    /// A URI whose escapes are none, or stand for what no path has.
+    #[error("is a URI with an escape that is none in a path")]
+    Escape,
+}
+
+impl TextProblem {
+    /// Texts that are allowed, in words.
+    pub(crate) fn allowed(self) -> String {
+        match self {
+            TextProblem::OtherUri | TextProblem::Escape => {
+                "the name of a profile that is built in, a path, or a URI file:///path with escapes as %20".to_owned()
+            }
+            _ => format!("UTF-8 of 1 to {LONGEST_TEXT} bytes, none of them zero"),
+        }
+    }
 }

@@ -6,6 +6,7 @@
 use super::failures::{Blame, Failure};
 use super::logging::{Category, Journal};
 use super::modes::Mode;
+use super::resources::Resources;
 use super::saved_states::SavedStates;
 use super::snapshot::Experiment;
 use crate::error;
@@ -40,6 +41,8 @@ pub(super) struct Plots {
 
 /// An instance of the component.
 pub struct Component {
+    /// The resources of the archive.
+    resources: Resources,
     /// Limits and tolerances of the solvers: the default ones, but in tests.
     pub(super) settings: Settings,
     pub(super) mode: Mode,
@@ -67,8 +70,9 @@ pub struct Component {
 
 impl Component {
     /// A new instance, in *instantiated*.
-    pub fn new(journal: Journal) -> Component {
+    pub fn new(journal: Journal, resources: Resources) -> Component {
         Component {
+            resources,
             settings: Settings::default(),
             mode: Mode::Instantiated,
             experiment: None,
@@ -195,6 +199,7 @@ impl Component {
 
     /// Makes `built` the model of the given parameters; nothing is built anew where only tunable ones differ.
     pub(super) fn prepare(&mut self, parameters: &Parameters) -> error::Result<&mut Built> {
+        let parameters = &*self.resources.located(parameters);
         let reusable = self
             .built
             .take_if(|built| built.model.parameters().fixed_part() == parameters.fixed_part());

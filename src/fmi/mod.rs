@@ -1,7 +1,7 @@
 //! Parts that every version of FMI shares: an instance of the component, without a C type or a function of a standard.
 //!
 //! Read in this order: [`variables`] (the one table, arrays as arrays) and [`units`]; [`modes`] (the states of an
-//! instance); [`component`] (what an instance holds, its way through the states), `values`, `stepping`, `derivatives`
+//! instance); [`component`] (what an instance holds, its way through the states), [`resources`] (files beside it), `values`, `stepping`, `derivatives`
 //! and `saving` (the rest of what it does); [`snapshot`], [`serialized`] and [`saved_states`] (saved states);
 //! `states` (how a standard's table of calls is written), `call` (the way into every call);
 //! [`failures`] (what can go wrong, and who is to blame) and [`logging`] (messages); `pointers` and `fence` (the boundary to
@@ -17,6 +17,7 @@ pub(crate) mod fence;
 pub mod logging;
 pub mod modes;
 pub(crate) mod pointers;
+pub mod resources;
 pub mod saved_states;
 mod saving;
 #[cfg(feature = "cli")]

@@ -135,6 +135,7 @@ impl Component {
 mod tests {
     use super::*;
     use crate::fmi::logging::{Journal, Rules};
+    use crate::fmi::resources::Resources;
     use crate::parameters::{ContactModel, WheelHeating};
     use crate::settings::Settings;
     use crate::settings::limits::{LIMITS, Limit, PATCH_LIMITS};
@@ -170,7 +171,7 @@ mod tests {
     /// the last committed state stands, and a saved state or a reset leads on.
     #[test]
     fn a_step_that_fails_leaves_the_last_committed_state() {
-        let mut component = Component::new(Journal::new(false, false, RULES));
+        let mut component = Component::new(Journal::new(false, false, RULES), Resources::default());
         let (mut at_once, mut after_a_part) = ([0; 2], [0; 2]);
         // A step solves the mechanics together with the heat, never alone, and by the active set here.
         let of_a_step = |(words, _): &&Limit| !words.starts_with("coupling") && !words.contains("Pschenichnyj");

@@ -9,6 +9,8 @@ use crate::fmi::call::{self, Logger as _};
 use crate::fmi::component::Component;
 use crate::fmi::failures::Blame;
 use crate::fmi::logging::{Category, Journal, Rules};
+use crate::fmi::resources::Resources;
+use crate::parameters::path_of;
 use std::ffi::CStr;
 
 /// Rules of logging: at first the reasons of failed calls are told, and a list of categories is the whole list.
@@ -85,7 +87,7 @@ impl Instance {
         }
         logger.send(&journal.take());
         checked.is_ok().then(|| Instance {
-            component: Component::new(journal),
+            component: Component::new(journal, arguments.resources()),
             logger,
         })
     }
@@ -125,7 +127,14 @@ impl Instantiation<'_> {
         Ok(())
     }
 
-    /// The location of the resources is only reported, as it was given: the component reads no file.
+    /// The resources of the archive. A location that is no folder's is that of none.
+    fn resources(&self) -> Resources {
+        let location = self.resource_location.and_then(|location| location.to_str().ok());
+        let folder = location.filter(|location| !location.is_empty());
+        Resources::new(folder.and_then(|folder| path_of(folder).ok()))
+    }
+
+    /// The location of the resources as it was given.
     fn greeting(&self) -> String {
         let location = self.resource_location.unwrap_or_default().to_string_lossy();
         if location.is_empty() {

@@ -122,11 +122,7 @@ fn real(variable: &shared::Variable, kind: &shared::RealKind, element: usize) ->
     let description = match (variable.causality, kind.shape) {
         (Causality::Local, shared::Shape::Array(_)) => format!("{} at point {}", variable.description, element + 1),
         (Causality::Output, shared::Shape::Array(_)) => {
-            format!(
-                "{}; of contact {} from the gauge side",
-                variable.description,
-                element + 1
-            )
+            format!("{}, this is number {}", variable.description, element + 1)
         }
         _ => variable.description.to_owned(),
     };

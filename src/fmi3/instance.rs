@@ -9,6 +9,7 @@ use crate::fmi::call::{self, Logger as _};
 use crate::fmi::component::Component;
 use crate::fmi::failures::{self, Blame};
 use crate::fmi::logging::{Category, Journal, Rules};
+use crate::fmi::resources::Resources;
 use std::ffi::CStr;
 
 /// Rules of logging: without logging the reasons of errors are told, and nothing else is. Each list of categories
@@ -28,13 +29,14 @@ pub struct Instance {
     early_return_allowed: bool,
 }
 
-/// The arguments of fmi3InstantiateCoSimulation that matter, copied from C. The path of the resources is not one of them: the
-/// component reads no file.
+/// The arguments of fmi3InstantiateCoSimulation that matter, copied from C.
 pub struct Instantiation<'a> {
     /// Name of the instance.
     pub name: Option<&'a CStr>,
     /// Token of the importer's model description.
     pub token: Option<&'a CStr>,
+    /// The resources of the archive.
+    pub resources: Resources,
     /// Whether the importer wants events.
     pub event_mode_used: bool,
     /// Whether the importer can handle a step that ends before its end.
@@ -130,7 +132,7 @@ impl Instance {
         journal.inform(Category::Events, "instantiated".to_owned());
         logger.send(&journal.take());
         Some(Instance {
-            component: Component::new(journal),
+            component: Component::new(journal, arguments.resources),
             logger,
             early_return_allowed: arguments.early_return_allowed,
         })

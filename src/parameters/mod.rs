@@ -4,7 +4,8 @@
 //! [`REAL_PARAMETERS`], [`INTEGER_PARAMETERS`] or [`TEXT_PARAMETERS`] that the FMI variables, the command line and the validation
 //! read; `rows` has the macros that make these three of one declaration.
 //! `choices` are the types of those that choose, `derived` what follows from the values by a formula, `validation` what must
-//! hold between them, `text` what a text must be.
+//! hold between them, `text` what a text must be, `source` what
+//! that of a profile names.
 
 // First, because `table` is written in its macros.
 #[macro_use]
@@ -13,6 +14,7 @@ mod rows;
 mod choices;
 mod derived;
 mod range;
+mod source;
 mod table;
 mod text;
 mod validation;
@@ -20,6 +22,7 @@ mod validation;
 pub use crate::geometry::hertz::HertzEllipse;
 pub use choices::{ContactModel, Control, FrictionLaw, MeshKind, NormalSolver, Side, SlipSource, Wheel, WheelHeating};
 pub use range::check_range;
+pub use source::{ProfileSource, path_of};
 pub use table::{
     INTEGER_PARAMETERS, IntegerKind, IntegerParameter, Parameters, REAL_PARAMETERS, RealParameter, TABLE_POINTS,
     TEXT_PARAMETERS, TextParameter,

@@ -250,9 +250,9 @@ parameters! {
     rail_transverse_curvature: f64 = real { "1/m", 1.0 / 0.3, -1e3, 1e3 }
     /// Curvature of the wheel's tread across the rail, used where contact_model is patch; negative is hollow, 0 is a cone
     wheel_transverse_curvature: f64 = real { "1/m", 0.0, -1e3, 1e3 }
-    /// Number of cells along the contact window, used where contact_model is patch
+    /// Number of cells along the contact window, used where contact_model is patch or profiles
     patch_nodes: usize = length { 34, 8, 201 }
-    /// Number of strips across the contact window, used where contact_model is patch
+    /// Number of strips across the contact window, used where contact_model is patch or profiles
     patch_strips: usize = length { 21, 3, 101 }
     /// Share of the friction coefficient that is left at large slip velocity s: it is multiplied by
     /// friction_slip_share + (1 - friction_slip_share)*exp(-friction_slip_decay*s); 1 switches the law of slip off

@@ -1,6 +1,7 @@
 //! Checks of the parameters, once, before a model is built.
 
 use super::choices::{ContactModel, Control, FrictionLaw, MeshKind, NormalSolver, SlipSource};
+use super::source::ProfileSource;
 use super::table::{INTEGER_PARAMETERS, Parameters, REAL_PARAMETERS, TEXT_PARAMETERS};
 use crate::error::{Error, Result};
 use crate::geometry::hertz::LARGEST_CURVATURE_RATIO;
@@ -105,6 +106,8 @@ impl Parameters {
                 "profiles take the motion of the wheelset; slip_source must be 2 (vehicle_speed) with contact_model = 3 (profiles)",
             );
         }
+        ProfileSource::of("rail_profile", &self.rail_profile)?;
+        ProfileSource::of("wheel_profile", &self.wheel_profile)?;
         self.validate_grid()?;
         self.validate_window(self.patch_window().0)
     }

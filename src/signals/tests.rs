@@ -118,7 +118,7 @@ fn the_motion_follows_from_the_inputs_that_its_source_uses() {
     assert!(height.is_some_and(|signal| signal.check_used(1e-3, &by_height).is_ok()));
 }
 
-/// What an input, or an output, says of the contact models that it is 0 without.
+/// The contact models without which an input or an output is 0.
 #[test]
 fn the_end_of_a_description_names_the_contact_models() {
     for signal in INPUTS {

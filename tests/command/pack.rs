@@ -155,6 +155,50 @@ fn libraries_of_other_platforms_are_added_and_merged() {
     }
 }
 
+/// Profiles lie among the resources under the names of their files.
+#[test]
+fn profiles_are_put_among_the_resources() {
+    let folder = folder("profiles");
+    let other = folder.join("other");
+    std::fs::create_dir_all(&other).unwrap();
+    let [rail, wheel, twin, known] = [
+        folder.join("worn räil.prr"),
+        folder.join("wheel.prw"),
+        other.join("wheel.prw"),
+        other.join("60e1"),
+    ];
+    write(&rail, "a rail").unwrap();
+    write(&wheel, "a wheel").unwrap();
+    write(&twin, "another wheel").unwrap();
+    write(&known, "a rail").unwrap();
+    let [rail, wheel, twin, known] = [&rail, &wheel, &twin, &known].map(|path| path.to_str().unwrap());
+    for standard in ["2", "3"] {
+        let options = ["--fmi", standard, "--rail-profile", rail, "--wheel-profile", wheel];
+        let archive = packed(&folder, "profiles.fmu", &options);
+        let mut archive = ZipArchive::new(File::open(archive).unwrap()).unwrap();
+        for (name, expected) in [
+            ("resources/worn räil.prr", "a rail"),
+            ("resources/wheel.prw", "a wheel"),
+        ] {
+            let mut content = String::new();
+            archive.by_name(name).unwrap().read_to_string(&mut content).unwrap();
+            assert_eq!(content, expected);
+        }
+    }
+    let message = refused(&folder, &["--wheel-profile", wheel, "--wheel-profile", twin]);
+    assert!(
+        message.contains("another profile has a file of the same name"),
+        "{message}"
+    );
+    let message = refused(&folder, &["--rail-profile", known]);
+    assert!(
+        message.contains("the profile 60E1 that is built in would go before it"),
+        "{message}"
+    );
+    let message = refused(&folder, &["--rail-profile", "nowhere.prr"]);
+    assert!(message.contains("nowhere.prr"), "{message}");
+}
+
 #[test]
 fn what_does_not_belong_together_is_refused() {
     let folder = folder("refused");

@@ -4,7 +4,7 @@
 use std::fs::{create_dir_all, read_to_string, remove_file, write};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
-use wheelrail::signals::{INPUTS, OUTPUTS};
+use wheelrail::signals::{INPUTS, InputSignal, OUTPUTS};
 
 const GOOD: &str = "time,normal_load,creepage\n0,60e3,0\n0.002,60e3,0.001\n";
 
@@ -73,8 +73,9 @@ fn a_scenario_becomes_a_table_of_inputs_and_outputs() {
         assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
         let table = read_to_string(&place.output).unwrap();
         let mut lines = table.lines();
-        let inputs = INPUTS.iter().map(|row| (row.name, row.unit));
-        let outputs = OUTPUTS.iter().map(|row| (row.name, row.unit));
+        let inputs = inputs().map(|row| (row.name, row.unit));
+        let outputs = OUTPUTS.iter().filter(|row| !row.profiles_only);
+        let outputs = outputs.map(|row| (row.name, row.unit));
         let all = [("time", "s")].into_iter().chain(inputs).chain(outputs);
         let headings: Vec<_> = all.map(|(name, unit)| format!("{name} [{unit}]")).collect();
         assert_eq!(lines.next().unwrap().split(',').collect::<Vec<_>>(), headings);
@@ -218,11 +219,16 @@ fn a_scenario_is_not_written_over() {
     assert_eq!(read_to_string(&place.scenario).unwrap(), GOOD);
 }
 
+/// The inputs that line and patch may have.
+fn inputs() -> impl Iterator<Item = &'static InputSignal> {
+    INPUTS.iter().filter(|signal| !signal.is_of_profiles_alone())
+}
+
 /// The table of inputs of a run: the rows up to the column of the last input.
 fn inputs_of(place: &Place) -> String {
     let table = read_to_string(&place.output).unwrap();
     let inputs = table.lines().map(|line| {
-        let cells: Vec<_> = line.split(',').take(1 + INPUTS.len()).collect();
+        let cells: Vec<_> = line.split(',').take(1 + inputs().count()).collect();
         cells.join(",") + "\n"
     });
     inputs.collect()
@@ -365,6 +371,55 @@ fn columns_without_effect_are_refused() {
         let output = place.simulate(options);
         assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     }
+}
+
+const PROFILES: [&str; 4] = ["--set", "contact_model=profiles", "--set", "slip_source=2"];
+
+/// Profiles are declared and checked; they are not computed yet.
+#[test]
+fn profiles_are_checked() {
+    let place = Place::new("profiles", GOOD);
+    let with = |name: &str, more: &[&str], expected: &[&str], scenario: &str| {
+        Place::new(&format!("profiles_{name}"), scenario).refused(&[&PROFILES[..], more].concat(), expected);
+    };
+    let rolling = "time,vehicle_speed,lateral_displacement [mm],yaw_angle [mrad]\n0,10,0,0\n0.001,10,3,1.5\n";
+    with(
+        "plain",
+        &[],
+        &["contact_model = 3 (profiles) is not computed yet"],
+        rolling,
+    );
+    let files = [
+        "--set",
+        "rail_profile=a b.prr",
+        "--set",
+        "side=right",
+        "--set",
+        "control=height",
+    ];
+    with("files", &files, &["is not computed yet"], rolling);
+    let blank = ["--set", "wheel_profile= "];
+    with("blank", &blank, &["wheel_profile is blank", "1 to 4096 bytes"], rolling);
+    let unknown = ["--set", "rail_profil=60E1"];
+    with("unknown", &unknown, &["did you mean rail_profile?"], rolling);
+    place.refused(&PROFILES, &["column \"creepage\"", "no effect with slip_source = 2"]);
+    let height = "time,vertical_displacement\n0,0\n0.001,-1e-4\n";
+    let words = [
+        "vertical_displacement = -0.0001 has no effect with control = 1 (load)",
+        "say --set control=3",
+    ];
+    with("height", &[], &words, height);
+    with("by_height", &["--set", "control=3"], &["is not computed yet"], height);
+    let creeping = "time,spin_creepage\n0,0\n0.001,0.1\n";
+    let words = ["must be 0 with contact_model = 3 (profiles); contact_model = 2 (patch) takes it"];
+    with("creeping", &[], &words, creeping);
+    let line = Place::new("yawing", "time,yaw_angle\n0,0\n0.001,1e-3\n");
+    let words = "must be 0 with contact_model = 1 (line); contact_model = 3 (profiles) takes it";
+    line.refused(&[], &["line 3", "column \"yaw_angle\"", words]);
+    line.refused(
+        &["--set", "contact_model=3"],
+        &["slip_source must be 2 (vehicle_speed)"],
+    );
 }
 
 /// A run that nobody waits for ends quietly, and no run is too short to show all of it.

@@ -272,7 +272,7 @@ fn simulate(standard: Standard, contact: ContactModel, steps: u64) {
     let mut locals = vec![0.0; 3 * PROFILE_POINTS];
 
     let mut scenario = Scenario::new(20_240_607, contact);
-    let mut values = vec![0.0; outputs.len()];
+    let mut values = vec![0.0; OUTPUTS.len()];
     let mut last = values.clone();
     let mut tally = Tally::default();
     let mut handle: Handle = null_mut();

@@ -39,7 +39,7 @@ enum Command {
     /// The scenario is a table with a header: a column `time`, ascending, and a column for each input that changes. A
     /// heading may have a unit, `time [ms]`, `normal_load [kN]`, `creepage [%]`; without one it is that of `wheelrail
     /// describe`. Between its rows the inputs are interpolated linearly; other inputs keep their start values. A column
-    /// that the chosen slip_source does not use is refused, unless it is everywhere at the input's start value. Lines that
+    /// that the chosen slip_source or control does not use is refused, unless it is everywhere at the input's start value. Lines that
     /// begin with # are comments.
     ///
     /// Fields are written for one instant, the last one: place, pressure, shear on the rail, slip of the rail relative to

@@ -10,6 +10,7 @@ use std::fs::{self, File};
 use std::io::{self, BufWriter, Read, Write};
 use std::path::{Path, PathBuf};
 use wheelrail::fmi3::terminals::terminals_and_icons;
+use wheelrail::parameters::ProfileSource;
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, DateTime, ZipArchive, ZipWriter};
 
@@ -33,6 +34,12 @@ pub struct Pack {
     /// Another WheelRailContact.fmu of the same sources: its platforms are merged in.
     #[arg(long, value_name = "FMU")]
     merge: Vec<PathBuf>,
+    /// A rail's profile to put among the resources: the file's name is then what rail_profile may be. Repeatable.
+    #[arg(long, value_name = "FILE")]
+    rail_profile: Vec<PathBuf>,
+    /// A wheel's profile to put among the resources: the file's name is then what wheel_profile may be. Repeatable.
+    #[arg(long, value_name = "FILE")]
+    wheel_profile: Vec<PathBuf>,
     /// File of the archive; target/WheelRailContact.fmu, or -fmi3.fmu, if not told.
     #[arg(short, long, value_name = "FMU")]
     output: Option<PathBuf>,
@@ -84,6 +91,14 @@ impl Pack {
                 let terminals = fresh(&folder.join(FILE), &terminals_and_icons()?)?;
                 entries.insert(format!("terminalsAndIcons/{FILE}"), terminals);
                 entries.insert("terminalsAndIcons/icon.png".to_owned(), picture);
+            }
+        }
+        for (name, path) in [
+            ("rail_profile", &self.rail_profile),
+            ("wheel_profile", &self.wheel_profile),
+        ] {
+            for path in path {
+                add_profile(&mut entries, name, path)?;
             }
         }
         let libraries = self.libraries(self.fmi.token_of(&generated), &xml)?;
@@ -255,6 +270,30 @@ fn add_folder(entries: &mut Entries, folder: &Path, prefix: &str) -> Result<(), 
         }
     }
     Ok(())
+}
+
+/// Adds a profile among the resources, under the name of its file.
+fn add_profile(entries: &mut Entries, parameter: &'static str, path: &Path) -> Result<(), Error> {
+    let content = read(path)?;
+    let refused = |reason| Error::Profile {
+        path: path.to_owned(),
+        reason,
+    };
+    let name = path.file_name().and_then(|name| name.to_str());
+    let name = name.ok_or_else(|| refused("its name is not UTF-8".to_owned()))?;
+    match ProfileSource::of(parameter, name) {
+        Ok(ProfileSource::File(found)) if found == Path::new(name) => {}
+        Ok(ProfileSource::BuiltIn(known)) => {
+            return Err(refused(format!(
+                "the profile {known} that is built in would go before it"
+            )));
+        }
+        _ => return Err(refused("its name would be taken as a URI".to_owned())),
+    }
+    match entries.insert(format!("resources/{name}"), content.clone()) {
+        Some(other) if other != content => Err(refused("another profile has a file of the same name".to_owned())),
+        _ => Ok(()),
+    }
 }
 
 /// Writes the archive; the same entries give the same bytes: sorted names, a fixed date, fixed permissions, one

@@ -254,9 +254,13 @@ fn check_used(path: &Path, columns: &[Column], rows: &[ScenarioRow], parameters:
                 path: path.to_owned(),
                 line: row.line,
                 column: column.heading.clone(),
-                number: match source {
-                    ModelError::NotUsed { other_number, .. } => other_number,
-                    _ => 0,
+                used_by: match source {
+                    ModelError::NotUsed {
+                        parameter,
+                        other_number,
+                        ..
+                    } => format!("{parameter}={other_number}"),
+                    _ => String::new(),
                 },
                 source: Box::new(source),
             })?;

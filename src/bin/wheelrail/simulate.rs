@@ -7,8 +7,9 @@ use clap::Args;
 use std::fs;
 use std::path::PathBuf;
 use std::sync::Arc;
+use wheelrail::signals::{InputSignal, OutputSignal};
 use wheelrail::simulation::{self, Point, Schedule};
-use wheelrail::{Error as ModelError, INPUTS, Model, OUTPUTS, Outputs, Parameters, Simulation};
+use wheelrail::{ContactModel, Error as ModelError, INPUTS, Model, OUTPUTS, Outputs, Parameters, Simulation};
 
 /// Steps of a run at most: at a microsecond each these are a quarter of an hour, and no step is as short.
 const MOST_STEPS: usize = 1_000_000_000;
@@ -19,7 +20,7 @@ pub struct Simulate {
     /// The scenario: time and inputs, linear between the rows.
     #[arg(value_name = "SCENARIO.csv")]
     scenario: PathBuf,
-    /// CSV file for time, all inputs and all outputs
+    /// CSV file for time, inputs and outputs: all that the contact model may have
     #[arg(short, long, value_name = "OUT.csv")]
     output: PathBuf,
     /// CSV file for the fields at the end: a row for each node of a line contact or cell of a patch
@@ -122,8 +123,9 @@ impl Simulate {
         let start = schedule.start();
         let mut simulation = Simulation::of(model, &start.inputs).map_err(Error::Start)?;
         // Only now that nothing can be refused any more, so that a refusal leaves no file behind.
-        let (mut table, mut fields) = self.tables()?;
-        write(&mut table, &start, simulation.outputs())?;
+        let columns = Columns::of(simulation.model.parameters().contact_model);
+        let (mut table, mut fields) = self.tables(&columns)?;
+        columns.write(&mut table, &start, simulation.outputs())?;
 
         let count = steps.len();
         let mut progress = Progress::new(count as u64);
@@ -134,7 +136,7 @@ impl Simulate {
                 break;
             }
             staggered += usize::from(simulation.state.convergence.staggered);
-            write(&mut table, &step.to, simulation.outputs())?;
+            columns.write(&mut table, &step.to, simulation.outputs())?;
             progress.step();
         }
         table.finish()?;
@@ -157,11 +159,8 @@ impl Simulate {
     }
 
     /// The tables of results, or neither of them.
-    fn tables(&self) -> Result<(Table, Option<Table>), Error> {
-        let inputs = INPUTS.iter().map(|signal| heading(signal.name, signal.unit));
-        let outputs = OUTPUTS.iter().map(|signal| heading(signal.name, signal.unit));
-        let time = std::iter::once(heading("time", "s"));
-        let table = Table::create(&self.output, time.chain(inputs).chain(outputs))?;
+    fn tables(&self, columns: &Columns) -> Result<(Table, Option<Table>), Error> {
+        let table = Table::create(&self.output, columns.headings())?;
         match self.fields.as_deref().map(fields::create).transpose() {
             Ok(fields) => Ok((table, fields)),
             Err(error) => {
@@ -226,10 +225,38 @@ impl Simulate {
     }
 }
 
-/// A row of the table of results.
-fn write(table: &mut Table, point: &Point, outputs: &Outputs) -> Result<(), Error> {
-    let inputs = INPUTS.iter().map(|signal| (signal.get)(&point.inputs));
-    let outputs = OUTPUTS.iter().map(|signal| (signal.get)(outputs));
-    table.write(std::iter::once(point.time).chain(inputs).chain(outputs))?;
-    Ok(())
+/// Columns of the table of results beside the time: all inputs and outputs, but what profiles alone have only with profiles.
+struct Columns {
+    inputs: Vec<&'static InputSignal>,
+    outputs: Vec<&'static OutputSignal>,
+}
+
+impl Columns {
+    fn of(contact_model: ContactModel) -> Columns {
+        let with_profiles = contact_model == ContactModel::Profiles;
+        let inputs = INPUTS.iter();
+        let outputs = OUTPUTS.iter();
+        Columns {
+            inputs: inputs
+                .filter(|signal| with_profiles || !signal.is_of_profiles_alone())
+                .collect(),
+            outputs: outputs
+                .filter(|signal| with_profiles || !signal.profiles_only)
+                .collect(),
+        }
+    }
+
+    fn headings(&self) -> impl Iterator<Item = String> {
+        let inputs = self.inputs.iter().map(|signal| heading(signal.name, signal.unit));
+        let outputs = self.outputs.iter().map(|signal| heading(signal.name, signal.unit));
+        std::iter::once(heading("time", "s")).chain(inputs).chain(outputs)
+    }
+
+    /// Writes a row.
+    fn write(&self, table: &mut Table, point: &Point, outputs: &Outputs) -> Result<(), Error> {
+        let inputs = self.inputs.iter().map(|signal| (signal.get)(&point.inputs));
+        let outputs = self.outputs.iter().map(|signal| (signal.get)(outputs));
+        table.write(std::iter::once(point.time).chain(inputs).chain(outputs))?;
+        Ok(())
+    }
 }

@@ -5,13 +5,15 @@ use crate::fmi::component::Component;
 use crate::fmi::exported;
 use crate::fmi::fence;
 use crate::fmi::pointers::string;
+use crate::fmi::resources::Resources;
 use crate::fmi3::instance::{Instance, Instantiation, Messages, Refusal};
 use crate::fmi3::states::Function;
 use crate::fmi3::types::{
     self, Boolean, ClockUpdateCallback, FALSE, Float64, FmiString, InstanceEnvironment, IntermediateUpdateCallback,
     LogMessageCallback, PreemptionCallback, Status, ValueReference,
 };
-use std::ffi::c_char;
+use std::ffi::{CStr, c_char};
+use std::path::PathBuf;
 
 /// The string "3.0".
 #[unsafe(no_mangle)]
@@ -27,7 +29,7 @@ pub extern "C" fn fmi3GetVersion() -> *const c_char {
 pub unsafe extern "C" fn fmi3InstantiateCoSimulation(
     instance_name: FmiString,
     instantiation_token: FmiString,
-    _resource_path: FmiString,
+    resource_path: FmiString,
     _visible: Boolean,
     logging_on: Boolean,
     event_mode_used: Boolean,
@@ -45,6 +47,7 @@ pub unsafe extern "C" fn fmi3InstantiateCoSimulation(
             Instantiation {
                 name: string(instance_name),
                 token: string(instantiation_token),
+                resources: resources(string(resource_path)),
                 event_mode_used: event_mode_used != FALSE,
                 early_return_allowed: early_return_allowed != FALSE,
                 intermediate_variables: n_required_intermediate_variables,
@@ -57,6 +60,12 @@ pub unsafe extern "C" fn fmi3InstantiateCoSimulation(
         Ok(Some(instance)) => Box::into_raw(Box::new(instance)).cast(),
         _ => std::ptr::null_mut(),
     }
+}
+
+/// The resources of the archive in the folder of a path.
+fn resources(path: Option<&CStr>) -> Resources {
+    let path = path.and_then(|path| path.to_str().ok());
+    Resources::new(path.filter(|path| !path.is_empty()).map(PathBuf::from))
 }
 
 /// No instance: there is no model exchange.

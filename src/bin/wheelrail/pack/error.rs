@@ -25,6 +25,14 @@ pub enum Error {
         /// Error of the archive.
         source: zip::result::ZipError,
     },
+    /// A profile that cannot be among the resources.
+    #[error("{path}: {reason}; give the file another name")]
+    Profile {
+        /// The file.
+        path: PathBuf,
+        /// Reason in words.
+        reason: String,
+    },
     /// The checked-in description is not what the variable table says.
     #[error("{path} is stale: run `make description` and build the library again")]
     StaleDescription {

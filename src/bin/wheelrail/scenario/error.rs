@@ -143,9 +143,7 @@ pub enum Error {
         source: Box<ModelError>,
     },
     /// A column without effect.
-    #[error(
-        "{path}, line {line}, column {column:?}: {source}; say --set slip_source={number}, or leave the column out"
-    )]
+    #[error("{path}, line {line}, column {column:?}: {source}; say --set {used_by}, or leave the column out")]
     NotUsed {
         /// The file.
         path: PathBuf,
@@ -155,8 +153,8 @@ pub enum Error {
         column: String,
         /// Input that has no effect, and what uses it.
         source: Box<ModelError>,
-        /// The choice that uses it.
-        number: i32,
+        /// The choice that uses it: parameter=number.
+        used_by: String,
     },
     /// Fewer than two rows.
     #[error("{path}: a scenario needs at least two rows, this one has {rows}")]
