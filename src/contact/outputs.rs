@@ -3,9 +3,10 @@
 use super::integrals::Integrals;
 use super::problem::StepConditions;
 use super::rim;
+use super::surface::totals::OneContact;
 use crate::friction;
 use crate::parameters::{ContactModel, Parameters};
-use crate::signals::{Inputs, Motion, Outputs};
+use crate::signals::{ContactOutputs, Inputs, Motion, Outputs};
 
 impl Integrals {
     /// Force of a scaled traction of 1 on a node, `N`.
@@ -51,6 +52,43 @@ impl Integrals {
             / motion.rolling_speed.abs().max(LEAST_CREEPAGE_SPEED);
     }
 
+    /// Writes the outputs that profiles have: forces on the wheelset, the contacts one by one.
+    fn add_profiles(&self, ambient: f64, outputs: &mut Outputs) {
+        let all = &self.on_wheelset;
+        [outputs.force_x, outputs.force_y, outputs.force_z] = all.force;
+        [outputs.moment_x, outputs.moment_y, outputs.moment_z] = all.moment;
+        outputs.friction_torque = all.torque;
+        outputs.contacts = all.count as f64;
+        let contacts = &all.contacts[..all.count];
+        outputs.lateral_force = contacts.iter().map(|contact| contact.friction[1]).sum();
+        outputs.spin_moment = contacts.iter().map(|contact| contact.spin_moment).sum();
+        outputs.contact_breadth = self.contact_breadth;
+        outputs.contact_area = self.contact_area;
+        outputs.wear_number = contacts.iter().map(OneContact::wear_number).sum();
+        for (written, contact) in outputs.contact.iter_mut().zip(contacts) {
+            *written = ContactOutputs {
+                rail_position: contact.positions[0],
+                wheel_position: contact.positions[1],
+                position: contact.along,
+                inclination: contact.inclination,
+                normal_force: contact.normal_force,
+                longitudinal_force: contact.friction[0],
+                lateral_force: contact.friction[1],
+                spin_moment: contact.spin_moment,
+                longitudinal_creepage: contact.creepages[0],
+                lateral_creepage: contact.creepages[1],
+                spin_creepage: contact.creepages[2],
+                length: contact.size[0],
+                breadth: contact.size[1],
+                area: contact.area,
+                peak_pressure: contact.peak_pressure,
+                peak_temperature: ambient + contact.peak_rise,
+                friction_power: contact.friction_power,
+                wear_number: contact.wear_number(),
+            };
+        }
+    }
+
     /// The outputs at one instant; the totals are 0.
     pub fn outputs(&self, parameters: &Parameters, inputs: &Inputs) -> Outputs {
         let motion = inputs.motion(parameters);
@@ -93,8 +131,10 @@ impl Integrals {
             leaving_wear_depth: self.leaving_wear_depth,
             ..Outputs::default()
         };
-        if parameters.contact_model == ContactModel::Patch {
-            self.add_patch(&motion, &mut outputs);
+        match parameters.contact_model {
+            ContactModel::Line => {}
+            ContactModel::Patch => self.add_patch(&motion, &mut outputs),
+            ContactModel::Profiles => self.add_profiles(ambient, &mut outputs),
         }
         outputs
     }
@@ -123,7 +163,7 @@ impl Integrals {
 }
 
 /// Speed at which the divisor of the creepage is held near rest, so that it stays finite, `m/s`.
-const LEAST_CREEPAGE_SPEED: f64 = 1e-3;
+pub const LEAST_CREEPAGE_SPEED: f64 = 1e-3;
 
 /// (ω r₀ − V)/V.
 fn creepage(motion: &Motion) -> f64 {

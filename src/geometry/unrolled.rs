@@ -177,6 +177,21 @@ impl<'a> PlacedWheel<'a> {
         [self.turn[0][1], self.turn[1][1], self.turn[2][1]]
     }
 
+    /// Distance η of a point from the running circle along the axle, to the field side, `m`.
+    pub fn profile_position(&self, at: &Distance) -> f64 {
+        dot(self.axle(), at.arm) - self.wheel.offset
+    }
+
+    /// Moment about the axle of a moment about the axle's middle.
+    pub fn about_axle(&self, moment: [f64; 3]) -> f64 {
+        dot(self.axle(), moment)
+    }
+
+    /// Angular velocity about the normal of a rail's point, out of the rail, `rad/s`.
+    pub fn spin(&self, point: &RailPoint, motion: &WheelsetMotion) -> f64 {
+        dot(self.angular_velocity(motion), [0.0, point.normal[0], point.normal[1]])
+    }
+
     /// Velocity of the wheel's material at a point, `m/s`.
     pub fn velocity(&self, at: &Distance, motion: &WheelsetMotion) -> [f64; 3] {
         add(motion.velocity, cross(self.angular_velocity(motion), at.arm), 1.0)

@@ -295,7 +295,12 @@ fn zz_derivatives() {
             }
         };
         for (row, signal) in INPUTS.iter().enumerate() {
-            if signal.name.starts_with("incoming") || (signal.get)(&inputs) == 0.0 && ["lateral_creepage", "spin_creepage", "creepage", "spin_rate"].contains(&signal.name) { continue; }
+            if signal.name.starts_with("incoming")
+                || (signal.get)(&inputs) == 0.0
+                    && ["lateral_creepage", "spin_creepage", "creepage", "spin_rate"].contains(&signal.name)
+            {
+                continue;
+            }
             let step = 1e-3 * signal.nominal;
             let mut ahead = inputs;
             let mut behind = inputs;
@@ -340,13 +345,27 @@ fn zz_two() {
             roll_angle: -0.4e-3 * y0,
             ..Inputs::default()
         };
-        let rates = Inputs { lateral_displacement: -5e-3, yaw_angle: -1.5e-2, roll_angle: -0.2e-2, ..Inputs::ZERO };
+        let rates = Inputs {
+            lateral_displacement: -5e-3,
+            yaw_angle: -1.5e-2,
+            roll_angle: -0.2e-2,
+            ..Inputs::ZERO
+        };
         let mut state = model.initial_state(&mut workspace, &inputs).unwrap();
         for step in 0..14 {
             let result = model.step(&mut workspace, &mut state, &inputs, &rates, 1e-3);
             inputs = inputs.advanced(&rates, 1e-3);
             let all = on_wheelset(&model, &state, &inputs);
-            println!("{step} {:?} y {:.3} n {} F {:.0?} its {} staggered {} res {:.1e}", result.is_ok(), -1e3 * inputs.lateral_displacement, all.count, all.force, state.convergence.iterations, state.convergence.staggered, state.convergence.residual);
+            println!(
+                "{step} {:?} y {:.3} n {} F {:.0?} its {} staggered {} res {:.1e}",
+                result.is_ok(),
+                -1e3 * inputs.lateral_displacement,
+                all.count,
+                all.force,
+                state.convergence.iterations,
+                state.convergence.staggered,
+                state.convergence.residual
+            );
         }
     }
 }

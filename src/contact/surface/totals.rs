@@ -5,10 +5,13 @@ use super::mechanics::SurfaceProblem;
 use super::operators::SurfaceOperators;
 use crate::contact::engine::Engine;
 use crate::contact::integrals::{Integrals, NodeSums};
+use crate::contact::outputs::LEAST_CREEPAGE_SPEED;
 use crate::contact::patch;
 use crate::contact::patch::operators::PatchOperators;
 use crate::contact::profiles::ContactNode;
 use crate::contact::rim::ContactHeat;
+use crate::friction::coulomb;
+use crate::geometry::unrolled::PlacedWheel;
 
 /// Force and moment on the wheelset, and the contacts one by one, in the axes of the track.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -17,6 +20,8 @@ pub struct OnWheelset {
     pub force: [f64; 3],
     /// Moment on the wheelset about its middle, `N m`.
     pub moment: [f64; 3],
+    /// Moment about the axle, `N m`.
+    pub torque: f64,
     /// Number of contacts.
     pub count: usize,
     /// The contacts, from the gauge side to the field side.
@@ -28,8 +33,12 @@ pub struct OnWheelset {
 pub struct OneContact {
     /// Arc length of the rail's profile at the resultant of the pressure, `m`.
     pub arc: f64,
-    /// Place ahead of the axle, lateral position in the track and height over the rail's top of the resultant of the pressure, `m`.
-    pub place: [f64; 3],
+    /// Place of the resultant of the pressure ahead of the axle, `m`.
+    pub along: f64,
+    /// Lateral positions of the resultant of the pressure in the frames of the rail's and of the wheel's profile, `m`.
+    pub positions: [f64; 2],
+    /// Creepages along and across in the plane of the contact, and of spin, `1/m`, at the resultant of the pressure.
+    pub creepages: [f64; 3],
     /// Inclination of the rail's surface there, rad; positive where it rises to the field side.
     pub inclination: f64,
     /// Normal force, `N`.
@@ -48,6 +57,14 @@ pub struct OneContact {
     pub peak_rise: f64,
     /// Friction power, `W`.
     pub friction_power: f64,
+}
+
+impl OneContact {
+    /// Wear number: creep forces and spin moment times their creepages, `N`.
+    pub fn wear_number(&self) -> f64 {
+        let [along, across, spin] = self.creepages;
+        self.friction[0] * along - self.friction[1] * across - self.spin_moment * spin
+    }
 }
 
 /// Integrals of the given fields under the problem's conditions.
@@ -101,6 +118,7 @@ pub fn integrals(problem: &SurfaceProblem, fields: &SurfaceFields) -> Integrals 
 fn on_wheelset(problem: &SurfaceProblem, fields: &SurfaceFields) -> OnWheelset {
     let operators = problem.operators;
     let (pose, height) = (problem.pose(), problem.height(fields));
+    let wheel = PlacedWheel::new(&operators.wheel, &pose.at_height(height));
     let mut all = OnWheelset::default();
     for (window, place) in fields.used() {
         let patch = problem.of(&place);
@@ -156,20 +174,37 @@ fn on_wheelset(problem: &SurfaceProblem, fields: &SurfaceFields) -> OnWheelset {
         }
         let (x, arc) = (moment_x / contact.normal_force, moment_s / contact.normal_force);
         let point = operators.rail.at(arc);
+        let at = wheel.distance(x, &point, 0.0);
         let extent = patch::extent::extent(patch.operators, &own.pressure);
         contact.arc = arc;
-        contact.place = [x, operators.side * point.place[0], point.place[1]];
+        contact.along = x;
+        contact.positions = [point.place[0] - operators.rail.top(), wheel.profile_position(&at)];
         contact.inclination = (-point.normal[0]).atan2(point.normal[1]);
+        let [ahead, y, z] = wheel.velocity(&at, &pose.motion);
+        let tangent = point.tangent();
+        let speed = pose.motion.velocity[0].abs().max(LEAST_CREEPAGE_SPEED);
+        contact.creepages = [
+            -ahead / speed,
+            (y * tangent[0] + z * tangent[1]) / speed,
+            wheel.spin(&point, &pose.motion) / speed,
+        ];
         contact.spin_moment = friction_moment - x * contact.friction[1] + arc * contact.friction[0];
         contact.size = [extent.length, extent.breadth];
         contact.area = extent.area;
         contact.peak_pressure = crate::numerics::dense::largest(&own.pressure) * patch.operators.scales.pressure;
         contact.peak_rise = own.heat.surface.iter().fold(f64::NEG_INFINITY, |m: f64, t| t.max(m));
+        contact.friction_power = unit
+            * (0..own.pressure.len())
+                .map(|at| {
+                    coulomb::vector_power([own.shear[0][at], own.shear[1][at]], [own.slip[0][at], own.slip[1][at]])
+                })
+                .sum::<f64>();
         all.contacts[all.count] = contact;
         all.count += 1;
     }
     let count = all.count;
     all.contacts[..count].sort_by(|a, b| a.arc.total_cmp(&b.arc));
+    all.torque = wheel.about_axle(all.moment);
     // Back from the rail's axes to those of the track, and from the mirror image.
     let (sine, cosine) = pose.rail_roll.sin_cos();
     for vector in [&mut all.force, &mut all.moment] {
@@ -182,6 +217,8 @@ fn on_wheelset(problem: &SurfaceProblem, fields: &SurfaceFields) -> OnWheelset {
     for contact in &mut all.contacts {
         contact.friction[1] *= operators.side;
         contact.spin_moment *= operators.side;
+        contact.creepages[1] *= operators.side;
+        contact.creepages[2] *= operators.side;
     }
     all
 }
