@@ -1,5 +1,6 @@
 //! Undeformed surfaces of wheel and rail: the [`gap`] between them, [`hertz`], the contact of bodies whose gap is quadratic, and the
-//! [`profile`] of a wheel or rail as it is. [`rail`] places a rail in the track, [`unrolled`] a wheel over its surface.
+//! [`profile`] of a wheel or rail as it is, and where a [`wheelset`] of such profiles touches its track. [`rail`] places a rail in the
+//! track, [`unrolled`] a wheel over its surface.
 
 pub mod gap;
 pub mod hertz;
@@ -7,3 +8,5 @@ pub mod profile;
 mod quintics;
 pub mod rail;
 pub mod unrolled;
+mod spline;
+pub mod wheelset;

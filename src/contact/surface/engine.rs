@@ -216,11 +216,6 @@ impl Engine for SurfaceOperators {
         self.shapes[0].sweep_work()
     }
 
-    /// As many windows as there may be.
-    fn work_scale(&self) -> f64 {
-        WINDOWS as f64
-    }
-
     fn set_surface_temperature(&self, interface: &Interface, now: &mut SurfaceFields) {
         let mut rises = interface.temperatures();
         for window in &mut now.windows {

@@ -7,6 +7,15 @@ use crate::geometry::quintics::{Jet, Quintics, Span};
 /// (h/r)⁴/720, 1e-9 of it, and the place to round-off.
 pub const CELL: f64 = 0.25e-3;
 
+/// Abscissae and weights of Gauss and Legendre's rule with five points on (0, 1).
+const GAUSS: [[f64; 2]; 5] = [
+    [0.046_910_077_030_668_0, 0.118_463_442_528_094_5],
+    [0.230_765_344_947_158_5, 0.239_314_335_249_683_2],
+    [0.5, 0.284_444_444_444_444_4],
+    [0.769_234_655_052_841_5, 0.239_314_335_249_683_2],
+    [0.953_089_922_969_332, 0.118_463_442_528_094_5],
+];
+
 /// A curve over its arc length. Within a smooth piece it is twice differentiable; curvature and direction may jump between pieces.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Curve {
@@ -40,7 +49,7 @@ fn point([[y, dy, ddy], [z, dz, ddz]]: Jet<2>) -> CurvePoint {
 
 impl Curve {
     /// A curve of pieces that follow each other. Each is shifted to where the one before ends, by what their sources have rounded; at the
-    /// joint both take the mean of their directions, unless these differ by more than `kink` [rad].
+    /// joint both take the mean of their directions, unless these differ by more than `kink`, rad.
     ///
     /// `None` where there is no piece of two nodes.
     pub fn of_pieces(mut pieces: Vec<Piece>, kink: f64) -> Option<Curve> {
@@ -77,6 +86,15 @@ impl Curve {
         })
     }
 
+    /// Arc length between two parameters of a curve over which its speed is smooth.
+    pub fn arc_length(from: f64, to: f64, speed: impl Fn(f64) -> f64) -> f64 {
+        let sum: f64 = GAUSS
+            .iter()
+            .map(|[place, weight]| weight * speed(from + (to - from) * place))
+            .sum();
+        sum * (to - from)
+    }
+
     /// Arc length from end to end, `m`.
     pub fn length(&self) -> f64 {
         self.cells.range()[1]
@@ -92,9 +110,9 @@ impl Curve {
         self.cells.knots()
     }
 
-    /// Cells with the curve at both ends, each as it is within the cell.
-    pub fn spans(&self) -> impl DoubleEndedIterator<Item = ([f64; 2], [CurvePoint; 2])> + '_ {
-        self.cells.spans().map(|span| (span.ends, span.jets.map(point)))
+    /// Curve in a cell at an arc length, at the cell's ends as it is within the cell.
+    pub fn within(&self, cell: usize, arc: f64) -> CurvePoint {
+        point(self.cells.within(cell, arc))
     }
 
     /// Curve turned about the origin by an angle, from y towards z, and then shifted.

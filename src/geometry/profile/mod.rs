@@ -12,13 +12,17 @@
 
 pub mod built_in;
 mod curve;
+pub mod files;
 mod height;
+mod measured;
+mod norm;
 mod outline;
 
 pub use height::HeightFunction;
 
 use crate::error::ProfileError;
 use curve::Curve;
+use measured::Weighted;
 use serde::{Deserialize, Serialize};
 
 /// Body that a profile belongs to.
@@ -66,7 +70,7 @@ pub struct Profile {
 const STEEPEST_INCLINATION: f64 = 0.2;
 
 impl Profile {
-    /// Profile of a curve in its frame, except for a rail's origin, which is moved to its highest point.
+    /// Profile of a curve in its frame, except for the origin: a rail's is moved to its highest point, a wheel's to the height of its running circle.
     fn of_curve(body: Body, name: &str, source: &str, curve: Curve) -> Result<Profile, ProfileError> {
         let refused = |reason: &str| ProfileError::NoCurve {
             name: name.to_owned(),
@@ -82,7 +86,8 @@ impl Profile {
             Body::Wheel => {
                 let datum = rising(&curve, 0.0, None);
                 let datum = datum.ok_or_else(|| refused("it does not reach the running circle, y = 0"))?;
-                (curve, datum)
+                let height = curve.at(datum).place[1];
+                (curve.moved(0.0, [0.0, -height]).ok_or_else(whole)?, datum)
             }
         };
         Ok(Profile {
@@ -92,6 +97,40 @@ impl Profile {
             curve,
             middle,
         })
+    }
+
+    /// Profile through points, or smoothed; `points` are in the profile's frame, in either order, in `m`.
+    ///
+    /// `smoothing` is a wavelength, `m`: waves of this length are damped to a half, longer ones less (1/(1 + (smoothing/length)⁴)). 0 goes
+    /// through the points. A turn of more than 30° at a single point stays a kink, and points that go back are averaged.
+    ///
+    /// # Errors
+    /// The points are too few, too many or not finite, their curve is not 5 to 500 mm long, has a gap, or does not reach the running
+    /// circle of a wheel.
+    pub fn from_points(
+        body: Body,
+        name: &str,
+        source: &str,
+        points: &[[f64; 2]],
+        smoothing: f64,
+    ) -> Result<Profile, ProfileError> {
+        let points: Vec<_> = points.iter().map(|&place| Weighted { place, weight: 1.0 }).collect();
+        Profile::from_weighted(body, name, source, points, smoothing)
+    }
+
+    fn from_weighted(
+        body: Body,
+        name: &str,
+        source: &str,
+        mut points: Vec<Weighted>,
+        smoothing: f64,
+    ) -> Result<Profile, ProfileError> {
+        let lateral = |point: Option<&Weighted>| point.map_or(0.0, |point| point.place[0]);
+        if lateral(points.first()) > lateral(points.last()) {
+            points.reverse();
+        }
+        let curve = measured::curve(name, &points, smoothing)?;
+        Profile::of_curve(body, name, source, curve)
     }
 
     /// Body that the profile belongs to.
@@ -122,6 +161,11 @@ impl Profile {
     /// Points of the profile, from the gauge or flange side to the field side, no farther than 0.25 mm from each other, `m`.
     pub fn points(&self) -> Vec<[f64; 2]> {
         self.curve.arcs().iter().map(|&arc| self.at(arc).place).collect()
+    }
+
+    /// Arc lengths of the [points](Profile::points), ascending, `m`: among them are those at which the curvature jumps.
+    pub fn arc_lengths(&self) -> &[f64] {
+        self.curve.arcs()
     }
 
     /// Arc length at which the running surface has a lateral position y, `m`: where more than one place has it, the one that is
