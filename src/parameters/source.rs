@@ -69,7 +69,7 @@ fn unescaped(text: &str) -> Option<String> {
     for part in parts {
         let digits = part.get(..2).filter(|digits| !digits.starts_with('+'))?;
         bytes.push(u8::from_str_radix(digits, 16).ok()?);
-        bytes.extend(part[2..].as_bytes());
+        bytes.extend(&part.as_bytes()[2..]);
     }
     String::from_utf8(bytes).ok().filter(|text| !text.contains('\0'))
 }
