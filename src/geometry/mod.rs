@@ -7,6 +7,6 @@ pub mod hertz;
 pub mod profile;
 mod quintics;
 pub mod rail;
-pub mod unrolled;
 mod spline;
+pub mod unrolled;
 pub mod wheelset;

@@ -9,6 +9,7 @@ mod effects;
 mod falling_friction;
 mod lift_off;
 mod paper_mesh;
+mod profiles;
 mod random_sensitivity;
 mod robustness;
 mod sensitivity;

@@ -139,7 +139,9 @@ fn motions(contact_model: ContactModel) -> impl Strategy<Value = Inputs> {
         let speed = if reverse { -speed } else { speed };
         let inputs = match contact_model {
             ContactModel::Line => rolling_straight(speed, creepage),
-            ContactModel::Patch | ContactModel::Profiles => rolling(speed, [creepage.clamp(-0.05, 0.05), lateral, spin]),
+            ContactModel::Patch | ContactModel::Profiles => {
+                rolling(speed, [creepage.clamp(-0.05, 0.05), lateral, spin])
+            }
         };
         Inputs {
             normal_load,

@@ -4,11 +4,12 @@ use super::windows::{BREADTHS, LENGTHS, Place, Sizes};
 use crate::body::grid::Grid;
 use crate::body::half_space::HalfSpaces;
 use crate::contact::patch::operators::PatchOperators;
-use crate::error::{Error, ProfileError, Result};
+use crate::error::{Error, Result};
+use crate::geometry::profile::files::ReadOptions;
 use crate::geometry::profile::{Body, Profile};
 use crate::geometry::rail::PlacedRail;
 use crate::geometry::unrolled::{RailPoint, Wheel};
-use crate::parameters::{Parameters, Side};
+use crate::parameters::{Parameters, ProfileSource, Side};
 
 /// Distance of the points of the rail's profile at which contacts are sought, `m`: less than the breadth of the smallest that carries
 /// an appreciable load.
@@ -45,8 +46,7 @@ impl SurfaceOperators {
     /// # Errors
     /// A profile that does not serve, [`crate::error::Error::DepthBasis`].
     pub fn build(parameters: &Parameters) -> Result<SurfaceOperators> {
-        let (rail, wheel) = bodies(parameters).map_err(Error::Profile)?;
-        let own = parameters;
+        let (rail, wheel) = bodies(parameters)?;
         let (half_length, half_breadth) = parameters.patch_window();
         let sizes = Sizes {
             largest: Grid::new(
@@ -67,7 +67,7 @@ impl SurfaceOperators {
             scan: scan.collect(),
             rail,
             wheel,
-            side: if own.side == Side::Right { -1.0 } else { 1.0 },
+            side: if parameters.side == Side::Right { -1.0 } else { 1.0 },
             shapes: shapes
                 .map(|(length, breadth)| PatchOperators::on_grid(parameters, sizes.grid(length, breadth)))
                 .collect::<Result<_>>()?,
@@ -83,16 +83,35 @@ impl SurfaceOperators {
 }
 
 /// Rail and wheel in their shapes.
-fn bodies(parameters: &Parameters) -> std::result::Result<(PlacedRail, Wheel), ProfileError> {
-    let own = parameters;
-    let rail = Profile::built_in(&own.rail_profile)?;
-    let wheel = Profile::built_in(&own.wheel_profile)?;
-    wheel.require(Body::Wheel)?;
+fn bodies(parameters: &Parameters) -> Result<(PlacedRail, Wheel)> {
+    let rail = profile("rail_profile", &parameters.rail_profile, Body::Rail, parameters)?;
+    let wheel = profile("wheel_profile", &parameters.wheel_profile, Body::Wheel, parameters)?;
+    let inclined = rail
+        .inclined(parameters.rail_inclination.atan())
+        .map_err(Error::Profile)?;
+    let rail = PlacedRail::new(inclined, parameters.gauge, parameters.gauge_depth).map_err(Error::Profile)?;
     let wheel = Wheel {
-        profile: wheel.height_function()?,
+        profile: wheel.height_function().map_err(Error::Profile)?,
         radius: parameters.wheel_radius,
-        offset: 0.5 * own.flange_back_distance + own.flange_back_position,
+        offset: 0.5 * parameters.flange_back_distance + parameters.flange_back_position,
     };
-    let rail = PlacedRail::new(rail.inclined(own.rail_inclination.atan())?, own.gauge, own.gauge_depth)?;
     Ok((rail, wheel))
+}
+
+/// Profile that a parameter names: one that is built in, or a file.
+fn profile(parameter: &'static str, text: &str, body: Body, parameters: &Parameters) -> Result<Profile> {
+    let profile = match ProfileSource::of(parameter, text)? {
+        ProfileSource::BuiltIn(name) => Profile::built_in(name),
+        ProfileSource::File(path) => {
+            let options = ReadOptions {
+                body: Some(body),
+                smoothing: parameters.profile_smoothing,
+                ..ReadOptions::default()
+            };
+            Profile::read(&path, &options)
+        }
+    };
+    let profile = profile.map_err(Error::Profile)?;
+    profile.require(body).map_err(Error::Profile)?;
+    Ok(profile)
 }
