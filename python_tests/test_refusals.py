@@ -125,7 +125,7 @@ SIMULATE = {
     # Values by name.
     "typing error": (TABLE, {"frictio_law": 1}, "there is no variable frictio_law; did you mean friction_law"),
     "choice that is none": (TABLE, {"friction_law": "piecewise"}, "friction_law = 'piecewise': choose one of constant, piecewise_linear"),
-    "choice with a capital": (TABLE, {"contact_model": "Patch"}, "contact_model = 'Patch': choose one of line, patch; did you mean patch?"),
+    "choice with a capital": (TABLE, {"contact_model": "Patch"}, "contact_model = 'Patch': choose one of line, patch, profiles; did you mean patch?"),
     "plain number out of range": (TABLE, {"friction_hot": 1.5}, "friction_hot = 1.5: allowed is 0 to 1"),
     "value None": (TABLE, {"friction_hot": None}, "friction_hot = None: a finite number is needed"),
     "value of a mapping": (TABLE, {"friction_hot": {}}, "friction_hot = {}: a finite number is needed"),

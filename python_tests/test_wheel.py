@@ -247,7 +247,7 @@ def test_jump_and_profiles(fmu):
     [
         (TABLE, {"frictio_law": 1}, "there is no variable frictio_law; did you mean friction_law"),
         (TABLE, {"friction_law": "piecewise"}, "friction_law = 'piecewise': choose one of constant, piecewise_linear"),
-        (TABLE, {"contact_model": 3}, "contact_model = 3: choose one of line, patch"),
+        (TABLE, {"contact_model": 4}, "contact_model = 4: choose one of line, patch, profiles"),
         (TABLE, {"contact_nodes": True}, "contact_nodes = True: a number is needed"),
         (TABLE, {"contact_nodes": 20.5}, "contact_nodes = 20.5: a whole number is needed"),
         (TABLE, {"friction_hot": 1.5}, "friction_hot = 1.5: allowed is 0 to 1"),

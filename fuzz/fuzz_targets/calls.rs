@@ -303,7 +303,10 @@ impl Master {
             Call::String(pairs, first, second) => {
                 // Any bytes without a zero, ended by one, and null pointers.
                 let texts: Vec<Option<CString>> = pairs.iter().map(|(_, text)| string(text.as_deref())).collect();
-                let values: Vec<_> = texts.iter().map(|text| text.as_ref().map_or(null(), |text| text.as_ptr())).collect();
+                let values: Vec<_> = texts
+                    .iter()
+                    .map(|text| text.as_ref().map_or(null(), |text| text.as_ptr()))
+                    .collect();
                 let references: Vec<u32> = pairs.iter().map(|(known, _)| self.table.reference(*known)).collect();
                 let (n, references) = (references.len(), first.to(references.as_ptr()));
                 expect(fmi2SetString(c, references, n, second.to(values.as_ptr())));
