@@ -1,5 +1,6 @@
 //! Operators of a contact of profiles: wheel and rail in their shapes, and those of a patch for each size of a window.
 
+use super::geometry::Interpolation;
 use super::windows::{BREADTHS, LENGTHS, Place, Sizes};
 use crate::body::grid::Grid;
 use crate::body::half_space::HalfSpaces;
@@ -34,6 +35,8 @@ pub struct SurfaceOperators {
     pub scan: Vec<(f64, RailPoint)>,
     /// Sizes of the windows.
     pub sizes: Sizes,
+    /// Interpolation along the strips of a window.
+    pub along: Interpolation,
     /// Operators by the number of the shape.
     pub shapes: Vec<PatchOperators>,
     /// The bodies as half-spaces.
@@ -71,6 +74,7 @@ impl SurfaceOperators {
             shapes: shapes
                 .map(|(length, breadth)| PatchOperators::on_grid(parameters, sizes.grid(length, breadth)))
                 .collect::<Result<_>>()?,
+            along: Interpolation::new(sizes.largest.cells),
             sizes,
             pair: HalfSpaces::of_pair(parameters),
         })
