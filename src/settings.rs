@@ -294,7 +294,7 @@ impl Default for NormalSettings {
             round_off: 1e-13,
             set_exchanges: 4,
             exchanges: 40,
-            descents_per_node: 20,
+            descents_per_node: 4,
             linearisations: 200_000,
             linearisation_tolerance: 1e-12,
         }

@@ -157,11 +157,6 @@ pub trait Engine: Sized + 'static {
     /// Work of a sweep besides, about.
     fn sweep_work(&self) -> u64;
 
-    /// Budget of a step relative to that of the default number of nodes.
-    fn work_scale(&self) -> f64 {
-        1.0
-    }
-
     /// Sets the surface temperature of the fields to that of the interface vector. The heat march takes it as a first guess: where
     /// friction rises so fast with temperature that a node has several, it is the one that this one leads to.
     fn set_surface_temperature(&self, interface: &Interface, now: &mut Self::Fields);

@@ -39,7 +39,7 @@ impl<E: Engine> StepWorkspace<E> {
             solvers: operators.solvers(settings),
             trial: operators.fields(),
             anderson: Anderson::new(interface.values().len()),
-            work: Work::new((settings.step.work as f64 * operators.work_scale()) as u64),
+            work: Work::new(settings.step.work),
             newton: Newton::new(operators, settings),
             image: interface.clone(),
             iterate: interface,

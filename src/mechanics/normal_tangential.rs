@@ -51,6 +51,8 @@ pub struct Mechanics {
     pub(super) response: Response,
     /// Multiplications and additions for the response in this step.
     response_work: u64,
+    /// Whether the normal compliance was replaced since the last solve.
+    replaced: bool,
     /// Response ∂s/∂τ on the nodes under pressure, without the leading-edge correction, m × m, and the weights it was made with.
     pub(super) slip_response: Vec<f64>,
     slip_weights: Option<SlipWeights>,
@@ -95,6 +97,7 @@ impl Mechanics {
             tangential: Tangential::new(nodes, settings.tangential),
             response: Response::new(nodes),
             response_work: 0,
+            replaced: false,
             slip_response: vec![0.0; nodes * nodes],
             slip_weights: None,
             profile: vector(),
@@ -121,19 +124,20 @@ impl Mechanics {
     pub fn start_step(&mut self) {
         self.tangential.start_step();
         self.active_set.start_step();
-        self.response_work = 0;
+        (self.response_work, self.replaced) = (0, false);
     }
 
     /// Multiplications and additions in this step, about: a measure of time that is the same on every machine.
-    #[allow(dead_code, reason = "for the budget of a step")]
     pub fn work(&self) -> u64 {
         self.tangential.work() + self.active_set.work() + self.response_work
     }
 
-    /// Forgets all that was computed from the normal compliance: it has been replaced.
-    pub fn forget_normal_compliance(&mut self) {
+    /// Forgets all that was computed from the normal compliance: it has been replaced. Computing it anew counts as work where the step alone
+    /// has made the new one.
+    pub fn forget_normal_compliance(&mut self, counts: bool) {
         self.active_set.forget();
         self.response.forget();
+        self.replaced |= counts;
     }
 
     /// Solves from the given tractions until the shear changes by less than `tolerance`, relative to the peak pressure.
@@ -214,8 +218,11 @@ impl Mechanics {
         (self.gap, self.cut_off) = (gap, cut_off);
         // Not whether the response was computed anew: that depends on what was solved before this step.
         let set_changed = self.nodes != self.nodes_before;
-        if set_changed {
-            self.response_work += 2 * (self.nodes.len() as u64).pow(3);
+        let cube = (self.nodes.len() as u64).pow(3);
+        if std::mem::take(&mut self.replaced) {
+            self.response_work += 2 * cube + 4 * cube / 3;
+        } else if set_changed {
+            self.response_work += 2 * cube;
         }
         Ok(set_changed)
     }

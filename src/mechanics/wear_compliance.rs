@@ -118,7 +118,8 @@ impl WearCompliance {
         }
     }
 
-    fn is_soft(&self) -> bool {
+    /// Whether the compliance has the wear of the step in it.
+    pub fn is_soft(&self) -> bool {
         self.diagonal.iter().any(|diagonal| *diagonal > 0.0)
     }
 

@@ -149,16 +149,10 @@ impl Engine for LineOperators {
         solvers.mechanics.work()
     }
 
-    /// Products with the compliance, and some ten operations a mode.
+    /// Products with the compliance, and some thirty operations a mode, exponentials among them.
     fn sweep_work(&self) -> u64 {
         let nodes = self.mesh.contact_nodes;
-        (6 * nodes * nodes + 10 * self.mesh.columns() * self.heat.basis.len()) as u64
-    }
-
-    /// Factorisations take the third power of the nodes.
-    fn work_scale(&self) -> f64 {
-        let default = Parameters::default().contact_nodes;
-        (self.mesh.contact_nodes as f64 / default as f64).max(1.0).powi(3)
+        (6 * nodes * nodes + 30 * self.mesh.columns() * self.heat.basis.len()) as u64
     }
 
     fn set_surface_temperature(&self, interface: &Interface, now: &mut LineFields) {

@@ -117,7 +117,9 @@ pub fn update_wear_compliance(problem: &LineProblem, now: &LineFields, solvers: 
         transport.is_forward(),
     );
     if changed {
-        solvers.mechanics.forget_normal_compliance();
+        // That there is no wear compliance any more follows from the step before.
+        let counts = solvers.wear_compliance.is_soft();
+        solvers.mechanics.forget_normal_compliance(counts);
     }
 }
 
