@@ -10,6 +10,7 @@
 #   make test    formatting, lints, order of the modules, documentation, all Rust tests, `wheelrail verify`, all Python tests
 #   make test-debug  the Rust tests in the debug build: overflow and debug assertions are checked
 #   make soak [MINUTES=60] [SEED=7]  random tests drawn anew, round after round; a seed draws one of them again
+#   make derivatives [CASES=2000]  derivatives of random steps against differences, so many for each contact and law of friction
 #   make bits BEFORE=<revision>  what the component computes, to the bit, against that of another revision of git
 #   make description  the XML files in modelDescription/, after a change of a variable
 #   make docs    the generated tables and pictures of README.md and of the documentation
@@ -50,7 +51,7 @@ install = $(PY) -m uv pip install --quiet --python $(PY) -r $(1) \
 COUPLINGS := longitudinal stiff multibody train sweep hunting adhesion maintenance
 WHEELSET := target/Wheelset.fmu
 
-.PHONY: fmu fmu3 platforms wheel demo measurements measurements-docs test test-debug soak bits docs site bench clean lint rust-test verify python-test hosts library command couplings packages
+.PHONY: fmu fmu3 platforms wheel demo measurements measurements-docs test test-debug soak derivatives bits docs site bench clean lint rust-test verify python-test hosts library command couplings packages
 .PHONY: pytest couplings-set-up couplings-docs sweep-scaling description $(addprefix coupling-,$(COUPLINGS))
 
 # ---- set-up -------------------------------------------------------------------------------------------------------
@@ -217,6 +218,11 @@ test-debug:
 soak: fmu fmu3 $(VENV)/ready
 	$(call say,Random tests - new in every round)
 	@$(PY) tools/soak.py $(if $(MINUTES),--minutes $(MINUTES)) $(if $(SEED),--seed $(SEED)) -- --target $(PORTABLE) --glibc $(GLIBC)
+
+# Counts of what was compared, of what is at corners that the state names, and of what is at others; PROPTEST_RNG_SEED draws other cases.
+derivatives: $(VENV)/build
+	$(call say,Derivatives against differences of the step)
+	DERIVATIVE_CASES=$(or $(CASES),2000) $(CARGO) test --test model random_sensitivity -- --nocapture
 
 # After a change that is to leave the results as they are. LEAVE_OUT=state where what is saved has changed alone.
 bits: fmu $(VENV)/ready

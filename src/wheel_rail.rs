@@ -412,6 +412,13 @@ impl Model {
         self.operators.contact_nodes(&state.contact)
     }
 
+    /// Side of the corners of a layer's law that the nodes are on, for tests of the derivatives: whether its strength is less or more than what the
+    /// surfaces carry, or as much, which it hardens up to; none without a layer, and for a state of another contact model.
+    #[cfg(feature = "verification")]
+    pub fn layer_sides(&self, state: &State) -> Vec<Option<std::cmp::Ordering>> {
+        self.operators.layer_sides(&state.contact)
+    }
+
     /// Profiles for plotting.
     pub fn profiles(&self, state: &State) -> Profiles {
         self.operators.profiles(

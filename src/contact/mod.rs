@@ -31,6 +31,8 @@ use crate::settings::Settings;
 use crate::signals::Outputs;
 use engine::Engine;
 use fields::EngineState;
+#[cfg(feature = "verification")]
+use fields::Fields;
 use integrals::Integrals;
 use line::fields::LineFields;
 use line::operators::LineOperators;
@@ -39,6 +41,8 @@ use patch::operators::PatchOperators;
 use problem::{Convergence, Coupling, Problem, Task};
 use profiles::{ContactNode, Profiles};
 use serde::{Deserialize, Serialize};
+#[cfg(feature = "verification")]
+use std::cmp::Ordering;
 use step::StepWorkspace;
 use work::Iterations;
 
@@ -201,6 +205,13 @@ impl Operators {
     /// Fields at the nodes of the contact window; none for a state of another contact model.
     pub fn contact_nodes(&self, state: &ContactState) -> Vec<ContactNode> {
         with_model!(self, state, |operators, state| operators.contact_nodes(&state.fields)).unwrap_or_default()
+    }
+
+    /// Side of the corners of a layer's law that the nodes are on; none for a state of another contact model.
+    #[cfg(feature = "verification")]
+    pub fn layer_sides(&self, state: &ContactState) -> Vec<Option<Ordering>> {
+        let sides: Result<_> = with_model!(self, state, |_operators, state| state.fields.memory().layer_sides());
+        sides.unwrap_or_default()
     }
 
     /// Whether a state (of another source) has the sizes of these operators and finite content.

@@ -3,6 +3,8 @@
 use super::PointLaw;
 use crate::parameters::Parameters;
 use serde::{Deserialize, Serialize};
+#[cfg(feature = "verification")]
+use std::cmp::Ordering;
 
 /// History that the particles bring along, values at nodes, or a change of it.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
@@ -66,6 +68,24 @@ impl Memory {
     pub fn is_kept(parameters: &Parameters) -> bool {
         parameters.friction_memory_distance > 0.0
             || (parameters.layer_yield_stress > 0.0 && parameters.layer_hardening > 0.0)
+    }
+
+    /// Side of the corners of a layer's law that the nodes are on: whether its strength is less or more than what the surfaces carry, or, to
+    /// round-off, as much, which it hardens up to; none without a layer.
+    #[cfg(feature = "verification")]
+    pub fn layer_sides(&self) -> Vec<Option<Ordering>> {
+        let nodes = self.layer_bound.iter().zip(&self.now.friction);
+        nodes
+            .map(|(&bound, &surfaces)| {
+                let equal = (bound - surfaces).abs() <= 1e-9 * surfaces;
+                let side = if equal {
+                    Ordering::Equal
+                } else {
+                    bound.total_cmp(&surfaces)
+                };
+                (bound > 0.0).then_some(side)
+            })
+            .collect()
     }
 
     /// The vectors.

@@ -1,76 +1,16 @@
-//! Friction that falls with slip and remembers: its sensitivities against differences of the step.
+//! Friction that falls with slip and remembers: its sensitivities against differences of the step, in named cases.
 
-use crate::sensitivity::{
-    LEAST_OF_A_LINE, LEAST_OF_A_PATCH, check, check_where_it_rests, line, patch, rolling, rolling_straight,
-};
-use proptest::prelude::*;
+use crate::derivatives::check;
+use crate::random_sensitivity::check_where_it_rests;
+use crate::setups::{Falling, line, patch, rolling, rolling_straight};
 use wheelrail::parameters::{FrictionLaw, Parameters, SlipSource, Wheel};
 
-fn falling(parameters: Parameters, [share, decay, distance]: [f64; 3]) -> Parameters {
-    Parameters {
-        friction_slip_share: share,
-        friction_slip_decay: decay,
-        friction_memory_distance: distance,
-        ..parameters
-    }
-}
+/// Derivatives that are compared at least.
+const LEAST: usize = 64;
 
-fn laws() -> impl Strategy<Value = [f64; 3]> {
-    prop_oneof![
-        (0.3..0.9_f64, 0.1..2.0_f64, Just(0.0)),
-        (0.3..0.9_f64, 0.1..5.0_f64, 0.3e-6..1e-5),
-        (Just(1.0), Just(0.0), 0.1e-6..1e-5),
-    ]
-    .prop_map(|(share, decay, distance)| [share, decay, distance])
-}
-
-proptest! {
-    #![proptest_config(ProptestConfig { cases: 10, ..ProptestConfig::default() })]
-
-    #[test]
-    fn sensitivities_of_a_line(
-        law in laws(),
-        creepage in prop_oneof![0.0005..0.003, 0.005..0.2, -0.2..-0.005],
-        speed in prop_oneof![0.01..0.1_f64, 2.0..40.0],
-        reverse in any::<bool>(),
-        vehicle in any::<bool>(),
-        wheel in prop_oneof![Just(Wheel::Rigid), Just(Wheel::Elastic)],
-        regularisation in prop_oneof![3 => Just(0.0), 1 => Just(1e-3)],
-        long in any::<bool>(),
-        friction_law in prop_oneof![Just(FrictionLaw::Constant), Just(FrictionLaw::PiecewiseLinear), Just(FrictionLaw::FlowStress)],
-    ) {
-        let source = if vehicle { SlipSource::VehicleSpeed } else { SlipSource::Creepage };
-        let parameters = Parameters { friction_law, slip_regularisation: regularisation, ..line(source, wheel) };
-        let direction = if reverse { -1.0 } else { 1.0 };
-        let inputs = rolling_straight(direction * speed, creepage);
-        let step = if long { 0.05 } else { 1e-3 };
-        if let Some(compared) = check_where_it_rests(falling(parameters, law), inputs, step) {
-            prop_assert!(compared >= LEAST_OF_A_LINE, "{compared}");
-        }
-    }
-
-    #[test]
-    fn sensitivities_of_a_patch(
-        law in laws(),
-        creepage in prop_oneof![-0.003..-0.0003, 0.0003..0.003, 0.005..0.05],
-        lateral in -0.002..0.002,
-        spin in -0.8..0.8,
-        speed in 2.0..40.0,
-        reverse in any::<bool>(),
-        vehicle in any::<bool>(),
-        wheel in prop_oneof![Just(Wheel::Rigid), Just(Wheel::Elastic)],
-        regularisation in prop_oneof![3 => Just(0.0), 1 => Just(1e-3)],
-        long in any::<bool>(),
-    ) {
-        let source = if vehicle { SlipSource::VehicleSpeed } else { SlipSource::Creepage };
-        let parameters = Parameters { slip_regularisation: regularisation, ..patch(source, wheel) };
-        let direction = if reverse { -1.0 } else { 1.0 };
-        let inputs = rolling(direction * speed, [creepage, lateral, spin]);
-        let step = if long { 0.05 } else { 1e-3 };
-        if let Some(compared) = check_where_it_rests(falling(parameters, law), inputs, step) {
-            prop_assert!(compared >= LEAST_OF_A_PATCH, "{compared}");
-        }
-    }
+fn falling([share, decay, distance]: [f64; 3], parameters: Parameters) -> Parameters {
+    let falling = Falling { share, decay, distance };
+    falling.on(parameters)
 }
 
 /// What the rail ahead of the contact remembers is carried in by more of it at a higher speed.
@@ -83,7 +23,7 @@ fn sensitivities_of_a_line_to_what_the_rail_ahead_remembers() {
         ..Parameters::default()
     };
     let inputs = rolling_straight(2.0, -0.005);
-    assert!(check(falling(parameters, [0.3, 0.1, 3e-7]), inputs, 1e-3).unwrap() >= LEAST_OF_A_LINE);
+    assert!(check(falling([0.3, 0.1, 3e-7], parameters), inputs, 1e-3).unwrap() >= LEAST);
 }
 
 /// A wheel that creeps on rail that remembers. Many of its nodes are about to slide, and the totals were once judged smooth beside rates that
@@ -111,8 +51,8 @@ fn sensitivities_of_a_line_that_creeps() {
             ..line(source, wheel)
         };
         let inputs = rolling_straight(speed, creepage);
-        let compared = check(falling(parameters, [1.0, 0.0, distance]), inputs, 1e-3).unwrap();
-        assert!(compared >= LEAST_OF_A_LINE, "{compared}");
+        let compared = check(falling([1.0, 0.0, distance], parameters), inputs, 1e-3).unwrap();
+        assert!(compared >= LEAST, "{compared}");
     }
 }
 
@@ -146,7 +86,7 @@ fn patches_that_rest_at_the_default_settings_alone() {
             ..patch(SlipSource::Creepage, Wheel::Rigid)
         };
         check_where_it_rests(
-            falling(parameters, law),
+            falling(law, parameters),
             rolling(speed, [creepage, lateral, spin]),
             0.05,
         );
