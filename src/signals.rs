@@ -15,6 +15,7 @@
 mod motion;
 #[cfg(test)]
 mod tests;
+mod totals;
 
 use crate::error::{Error, Result};
 use crate::parameters::{ContactModel, Parameters, SlipSource, check_range};
@@ -22,6 +23,7 @@ use serde::{Deserialize, Serialize};
 
 use motion::LARGEST_SPEED;
 pub use motion::Motion;
+pub use totals::Totals;
 
 /// One row of the table of inputs.
 pub struct InputSignal {
@@ -62,7 +64,7 @@ pub enum OutputKind {
     Instantaneous,
     /// Output of the instant that is counted in nodes: constant between jumps, its derivative is 0.
     Counted,
-    /// A sum over the steps: it starts at 0, and at a communication point it depends on no input.
+    /// A sum over the steps, of [`Totals`]: it starts at 0, and at a communication point it depends on no input.
     Total,
 }
 

@@ -14,7 +14,7 @@ use crate::friction;
 use crate::numerics::dense;
 use crate::parameters::Parameters;
 use crate::settings::Settings;
-use crate::signals::{Inputs, Motion, OUTPUTS, Outputs};
+use crate::signals::{Inputs, Motion, OUTPUTS, Outputs, Totals};
 use serde::{Deserialize, Serialize};
 
 pub use crate::contact::problem::Convergence;
@@ -52,7 +52,9 @@ pub struct State {
     pub duration: f64,
     /// Temperature, wear, tractions.
     pub(crate) contact: ContactState,
-    /// Outputs at the last committed instant, totals included.
+    /// Sums over the steps until then.
+    pub totals: Totals,
+    /// Outputs at the last committed instant: of the fields, the inputs and the totals.
     pub outputs: Outputs,
     /// Rates of change of the outputs over the last committed sub-step, per second.
     pub output_rates: Outputs,
@@ -180,12 +182,14 @@ impl Model {
             _ if self.settings.step.staggered_substeps == 0 => Err(error),
             _ => first(Coupling::Staggered, workspace).map_err(|_| error),
         })?;
-        let outputs = integrals.outputs(&self.parameters, inputs);
+        let totals = Totals::default();
+        let outputs = integrals.outputs(&self.parameters, inputs, &totals);
         Ok(State {
             time: 0.0,
             inputs: *inputs,
             duration: 0.0,
             contact,
+            totals,
             outputs,
             output_rates: Outputs::default(),
             convergence,
@@ -196,6 +200,7 @@ impl Model {
     pub fn accepts(&self, state: &State) -> bool {
         self.operators.accepts(&state.contact)
             && OUTPUTS.iter().all(|signal| (signal.get)(&state.outputs).is_finite())
+            && state.totals.is_finite()
             && state.time.is_finite()
             && state.duration >= 0.0
             && state.inputs.check(&self.parameters).is_ok()
@@ -318,7 +323,8 @@ impl Model {
         let (convergence, integrals) =
             self.operators
                 .solve(&task, &mut workspace.contact, &state.contact, state.duration)?;
-        let outputs = integrals.outputs_after(&self.parameters, &task.conditions, &state.outputs);
+        let totals = integrals.totals_after(&self.parameters, &task.conditions, &state.totals);
+        let outputs = integrals.outputs(&self.parameters, inputs, &totals);
         for signal in OUTPUTS {
             let rate = ((signal.get)(&outputs) - (signal.get)(&state.outputs)) / duration;
             (signal.set)(&mut state.output_rates, rate);
@@ -326,6 +332,7 @@ impl Model {
         workspace.contact.commit(&mut state.contact, duration);
         state.inputs = *inputs;
         state.duration = duration;
+        state.totals = totals;
         state.outputs = outputs;
         Ok(convergence)
     }

@@ -5,7 +5,7 @@ use super::problem::StepConditions;
 use super::rim;
 use crate::friction;
 use crate::parameters::{ContactModel, Parameters};
-use crate::signals::{Inputs, Motion, Outputs};
+use crate::signals::{Inputs, Motion, Outputs, Totals};
 
 impl Integrals {
     /// Force of a scaled traction of 1 on a node, `N`.
@@ -51,8 +51,8 @@ impl Integrals {
             / motion.rolling_speed.abs().max(LEAST_CREEPAGE_SPEED);
     }
 
-    /// The outputs at one instant; the totals are 0.
-    pub fn outputs(&self, parameters: &Parameters, inputs: &Inputs) -> Outputs {
+    /// The outputs at one instant, with the totals until then.
+    pub fn outputs(&self, parameters: &Parameters, inputs: &Inputs, totals: &Totals) -> Outputs {
         let motion = inputs.motion(parameters);
         let sums = &self.sums;
         let force = self.unit_force();
@@ -91,6 +91,10 @@ impl Integrals {
             wheel_heat_flow: self.wheel_heat.flow(self.wheel_temperature - ambient),
             leaving_temperature: ambient + self.leaving_rise,
             leaving_wear_depth: self.leaving_wear_depth,
+            worn_volume: totals.worn_volume,
+            friction_energy: totals.friction_energy,
+            distance: totals.distance,
+            wheel_wear_depth: totals.wheel_wear_depth,
             ..Outputs::default()
         };
         if parameters.contact_model == ContactModel::Patch {
@@ -99,26 +103,19 @@ impl Integrals {
         outputs
     }
 
-    /// The totals' rates of growth per second, in the fields of the totals; the other outputs are 0.
-    pub fn total_rates(&self, parameters: &Parameters, inputs: &Inputs) -> Outputs {
-        Outputs {
+    /// Rates of growth of the totals per second.
+    pub fn total_rates(&self, parameters: &Parameters, inputs: &Inputs) -> Totals {
+        Totals {
             worn_volume: self.wear_rate(parameters),
             friction_energy: self.friction_power(),
             distance: inputs.motion(parameters).rolling_speed.abs(),
             wheel_wear_depth: rim::wear_rate(parameters, self.sliding_power(), self.width(parameters)),
-            ..Outputs::default()
         }
     }
 
-    /// The outputs at the end of a step that began with the totals of `before`.
-    pub fn outputs_after(&self, parameters: &Parameters, conditions: &StepConditions, before: &Outputs) -> Outputs {
-        let mut outputs = self.outputs(parameters, &conditions.inputs);
-        let rates = self.total_rates(parameters, &conditions.inputs);
-        for total in Outputs::totals() {
-            let grown = (total.get)(before) + (total.get)(&rates) * conditions.duration;
-            (total.set)(&mut outputs, grown);
-        }
-        outputs
+    /// Totals at the end of a step that began with those of `before`.
+    pub fn totals_after(&self, parameters: &Parameters, conditions: &StepConditions, before: &Totals) -> Totals {
+        before.grown(&self.total_rates(parameters, &conditions.inputs), conditions.duration)
     }
 }
 

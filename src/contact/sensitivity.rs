@@ -10,7 +10,7 @@ use super::fields::Fields;
 use super::problem::Problem;
 use super::step::StepWorkspace;
 use crate::error::Result;
-use crate::signals::{INPUTS, Inputs, OUTPUTS, OutputKind, Outputs};
+use crate::signals::{INPUTS, Inputs, OUTPUTS, OutputKind, Outputs, Totals};
 
 /// Computes the derivatives of all outputs with respect to each of the given rows of [`INPUTS`] at `fields`, the solution of the
 /// problem.
@@ -85,8 +85,11 @@ fn output_tangent<E: Engine>(
     let mut outputs = |step: f64| {
         moved.move_along(fields, change, step);
         let problem = problem.under(conditions.inputs.advanced(&direction.inputs, step));
+        let (parameters, conditions) = (problem.parameters, &problem.conditions);
+        let integrals = E::integrals(&problem, moved);
         // The totals before the step do not depend on the inputs of the step, so that the derivative is the same from 0.
-        E::integrals(&problem, moved).outputs_after(problem.parameters, &problem.conditions, &Outputs::default())
+        let totals = integrals.totals_after(parameters, conditions, &Totals::default());
+        integrals.outputs(parameters, &conditions.inputs, &totals)
     };
     let (ahead, behind) = (outputs(step), outputs(-step));
     let mut derivative = Outputs::default();
