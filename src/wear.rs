@@ -116,6 +116,7 @@ impl WearMarch<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::numerics::differences::assert_tangent;
     use proptest::prelude::*;
 
     /// Columns that widen to both sides, as those of a mesh do.
@@ -184,19 +185,15 @@ mod tests {
                 march.advance(&rate, &before, &mut after, &mut WearSteps::new(&X));
                 after
             };
-            let h = 1e-5;
-            let (here, ahead, behind) = (at(0.0), at(h), at(-h));
+            let (h, here) = (1e-5, at(0.0));
             let march = march(sign * speed, duration);
             let inflow = march.transport.inflow();
             let mut tangent = vec![0.0; X.len()];
             tangent[inflow] = incoming_change;
             let change = WearChange { rate: &rate_change, speed: speed_change };
             march.advance_tangent(change, before[inflow], &here, &mut tangent);
-            for column in 0..X.len() {
-                let difference = (ahead[column] - behind[column]) / (2.0 * h);
-                // Truncation h², round-off 1e-16/h.
-                prop_assert!((tangent[column] - difference).abs() < 1e-7, "{column}: {} {difference}", tangent[column]);
-            }
+            // Truncation h², round-off 1e-16/h.
+            assert_tangent("column", &tangent, [&at(h), &at(-h)], 2.0 * h, 1e-7);
         }
 
         /// The march is a weighted mean: it creates no extremes and keeps what it is given.

@@ -228,6 +228,7 @@ pub fn wear_rate(parameters: &Parameters, sliding: f64, width: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::numerics::differences::slope;
 
     fn parameters() -> Parameters {
         Parameters {
@@ -277,7 +278,6 @@ mod tests {
             let heat = ContactHeat::new(&parameters, 1e3, nodes(h).into_iter());
             temperature(&parameters, 310.0, 295.0 + 2.0 * h, 0.1, &heat)
         };
-        let h = 1e-6;
         let changes = nodes(1.0).into_iter().zip(nodes(0.0)).map(|(moved, node)| HeatedNode {
             pressure: moved.pressure - node.pressure,
             shear: [0, 1].map(|i| moved.shear[i] - node.shear[i]),
@@ -287,7 +287,7 @@ mod tests {
         let heat = ContactHeat::new(&parameters, 1e3, nodes(0.0).into_iter());
         let tangent = ContactHeat::tangent(&parameters, 1e3, nodes(0.0).into_iter().zip(changes));
         let exact = temperature_tangent(&parameters, at(0.0), 295.0, 2.0, 0.1, &heat, &tangent);
-        let difference = (at(h) - at(-h)) / (2.0 * h);
+        let difference = slope(at, 1e-6);
         // Round-off of 300 K over h.
         assert!(
             (exact - difference).abs() < 1e-6 * (1.0 + exact.abs()),

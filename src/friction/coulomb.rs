@@ -196,12 +196,12 @@ fn relative_slip(b: f64, c: f64, z: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::numerics::differences::slope;
 
     #[test]
     fn the_slope_is_the_derivative() {
         for slip in [-0.1, 0.0, 1e-4, 3e-3] {
-            let h = 1e-8;
-            let difference = (utilisation(slip + h, 1e-3) - utilisation(slip - h, 1e-3)) / (2.0 * h);
+            let difference = slope(|h| utilisation(slip + h, 1e-3), 1e-8);
             assert!((utilisation_slope(slip, 1e-3) / difference - 1.0).abs() < 1e-4);
         }
     }
@@ -218,11 +218,10 @@ mod tests {
                 let moved = |value: [f64; 2], change: [f64; 2]| [0, 1].map(|i| value[i] + h * change[i]);
                 Sliding::of_vectors(moved(slip, slip_change), moved(share, share_change))
             };
-            let (h, exact) = (1e-6, Sliding::vector_tangent(slip, share, slip_change, share_change));
-            let (ahead, behind) = (at(h), at(-h));
+            let exact = Sliding::vector_tangent(slip, share, slip_change, share_change);
             // Truncation h².
-            assert!((exact.speed - (ahead.speed - behind.speed) / (2.0 * h)).abs() < 1e-9);
-            assert!((exact.power - (ahead.power - behind.power) / (2.0 * h)).abs() < 1e-9);
+            assert!((exact.speed - slope(|h| at(h).speed, 1e-6)).abs() < 1e-9);
+            assert!((exact.power - slope(|h| at(h).power, 1e-6)).abs() < 1e-9);
         }
     }
 }

@@ -176,6 +176,7 @@ impl Default for PointLaw {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::numerics::differences;
 
     fn law(friction_law: FrictionLaw) -> Parameters {
         Parameters {
@@ -208,9 +209,7 @@ mod tests {
             let law = law(*kind);
             // Between the corners of the laws.
             for temperature in (0..60).map(|point| 110.0 + 25.0 * f64::from(point)) {
-                let h = 1e-3;
-                let difference =
-                    (coefficient(&law, temperature + h).0 - coefficient(&law, temperature - h).0) / (2.0 * h);
+                let difference = differences::slope(|h| coefficient(&law, temperature + h).0, 1e-3);
                 let (mu, slope) = coefficient(&law, temperature);
                 assert!(
                     (slope - difference).abs() < 1e-9,

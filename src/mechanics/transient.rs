@@ -68,6 +68,7 @@ fn growth_slope(z: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::numerics::differences::slope;
 
     const SPACING: f64 = 2e-4;
     const LENGTH: f64 = 0.02;
@@ -108,13 +109,14 @@ mod tests {
     #[test]
     fn the_tangent_is_the_derivative() {
         for (speed, duration) in [(1e-9, 1e-3), (0.1, 1e-3), (10.0, 1e-3), (10.0, 1e-2), (80.0, 1e-2)] {
-            let h = 1e-6 * f64::max(speed, 1e-3);
-            let (ahead, behind) = (at(speed + h, duration), at(speed - h, duration));
-            let tangent = at(speed, duration).tangent(duration, speed, SPACING, LENGTH);
-            let close =
-                |difference: f64, d: f64, size: f64| (difference / (2.0 * h) - d).abs() < 1e-6 * (d.abs() + size);
-            assert!(close(ahead.rate - behind.rate, tangent.rate, ahead.rate));
-            assert!(close(ahead.centring - behind.centring, tangent.centring, 1.0));
+            let here = at(speed, duration);
+            let tangent = here.tangent(duration, speed, SPACING, LENGTH);
+            let close = |value: fn(&Transient) -> f64, size: f64| {
+                let difference = slope(|h| value(&at(speed + h, duration)), 1e-6 * f64::max(speed, 1e-3));
+                (difference - value(&tangent)).abs() < 1e-6 * (value(&tangent).abs() + size)
+            };
+            assert!(close(|transient| transient.rate, here.rate));
+            assert!(close(|transient| transient.centring, 1.0));
         }
     }
 }

@@ -5,6 +5,8 @@ pub mod arctangent;
 pub mod band_cholesky;
 pub mod decay;
 pub mod dense;
+#[cfg(test)]
+pub mod differences;
 pub mod elliptic;
 pub mod fourier;
 pub mod gmres;

@@ -4,6 +4,7 @@ use super::*;
 use crate::friction::FrictionState;
 use crate::friction::coulomb::Sliding;
 use crate::heat::surface::ExchangeChange;
+use crate::numerics::differences::assert_tangent;
 use crate::parameters::{FrictionLaw, Parameters};
 use crate::settings::HeatSettings;
 
@@ -153,16 +154,11 @@ fn the_tangent_is_the_derivative() {
             ("surface", &tangent.surface, &ahead.surface, &behind.surface),
             ("flux", &tangent.flux, &ahead.flux, &behind.flux),
         ] {
+            // Truncation h², round-off and the tolerance of the surface condition over h; at standstill, h.
+            let (width, tolerance) = if still { (h, 1e-4) } else { (2.0 * h, 1e-6) };
+            let place = format!("{start} {duration} {name}");
             let size = dense::largest(exact);
-            for (k, exact) in exact.iter().enumerate() {
-                let difference = (ahead[k] - behind[k]) / if still { h } else { 2.0 * h };
-                // Truncation h², round-off and the tolerance of the surface condition over h; at standstill, h.
-                let tolerance = if still { 1e-4 } else { 1e-6 };
-                assert!(
-                    (exact - difference).abs() < tolerance * size,
-                    "{start} {duration} {name} {k}: {exact} {difference} of {size}"
-                );
-            }
+            assert_tangent(place, exact, [ahead, behind], width, tolerance * size);
             assert!(size > 0.0);
         }
         assert!(still || tangent.surface[outflow] != 0.0);

@@ -1,6 +1,7 @@
 //! The strips against the march of one, the balance of the whole, and the tangent.
 
 use super::*;
+use crate::numerics::differences::assert_tangent;
 use crate::transport::Upwind;
 use proptest::prelude::*;
 
@@ -147,11 +148,8 @@ proptest! {
         march.finalise_tangent(speed_change, breadth_change, &here, &mut tangent);
         let vectors = tangent.vectors().into_iter().zip(ahead.vectors()).zip(behind.vectors());
         for (number, ((exact, ahead), behind)) in vectors.enumerate().take(4) {
-            for (k, exact) in exact.iter().enumerate() {
-                let difference = (ahead[k] - behind[k]) / (2.0 * h);
-                // Truncation h², round-off 1e-16/h, of depths and their changes up to some 10.
-                prop_assert!((exact - difference).abs() < 1e-6, "{number} {k}: {exact} {difference}");
-            }
+            // Truncation h², round-off 1e-16/h, of depths and their changes up to some 10.
+            assert_tangent(number, exact, [ahead, behind], 2.0 * h, 1e-6);
         }
     }
 }

@@ -1,6 +1,7 @@
 //! The tangents of the three parts of a step against differences of the step.
 
 use super::*;
+use crate::numerics::differences::assert_tangent;
 
 /// Speed, breadth, ambient, friction scale, pressure, slip, wheel and what comes in all change at once: at speed, so slow that no cell
 /// is crossed in a step, after a turn, in the steady field, and at standstill, where the derivative is that to positive speeds.
@@ -120,17 +121,12 @@ fn the_tangent_is_the_derivative() {
         march.heat_tangent(&here, &change, &mut tangent, &mut scratch).unwrap();
         march.finalise_tangent(&here, &carriage, &mut tangent, &mut scratch);
         let vectors = tangent.vectors().into_iter().zip(ahead.vectors()).zip(behind.vectors());
+        // Truncation h², round-off and the tolerance of the surface condition over h; at standstill, h.
+        let (width, tolerance) = if still { (h, 1e-4) } else { (2.0 * h, 1e-6) };
         for (number, ((exact, ahead), behind)) in vectors.enumerate().take(6) {
+            let place = format!("{first} {start} {duration} {number}");
             let size = dense::largest(exact);
-            for (k, exact) in exact.iter().enumerate() {
-                let difference = (ahead[k] - behind[k]) / if still { h } else { 2.0 * h };
-                // Truncation h², round-off and the tolerance of the surface condition over h; at standstill, h.
-                let tolerance = if still { 1e-4 } else { 1e-6 };
-                assert!(
-                    (exact - difference).abs() <= tolerance * size,
-                    "{first} {start} {duration} {number} {k}: {exact} {difference} of {size}"
-                );
-            }
+            assert_tangent(place, exact, [ahead, behind], width, tolerance * size);
             // Without a change there, nothing changes ahead, on the right for V > 0.
             let still_ahead = speed_change == 0.0 && rise_change == 0.0 && number == 2;
             assert_eq!(size > 0.0, !still_ahead);
