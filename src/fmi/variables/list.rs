@@ -18,43 +18,65 @@ pub fn variables() -> Vec<Variable> {
         .collect()
 }
 
+/// A real number without bounds and start value, which the rows below add.
+const fn number(variable: RealVariable, unit: &'static str) -> RealKind {
+    RealKind {
+        variable,
+        shape: Shape::Number,
+        unit,
+        display_unit: None,
+        minimum: None,
+        maximum: None,
+        nominal: None,
+        start: &[],
+    }
+}
+
+/// A variable that may change at any time.
+fn continuous(name: &'static str, description: &'static str, causality: Causality, real: RealKind) -> Variable {
+    Variable {
+        name,
+        description,
+        causality,
+        variability: Variability::Continuous,
+        kind: Kind::Real(real),
+    }
+}
+
 /// Inputs of the model.
 fn inputs() -> impl Iterator<Item = Variable> {
-    INPUTS.iter().enumerate().map(|(row, signal)| Variable {
-        name: signal.name,
-        description: signal.description,
-        causality: Causality::Input,
-        variability: Variability::Continuous,
-        kind: Kind::Real(RealKind {
-            variable: RealVariable::Input(row),
-            shape: Shape::Number,
-            unit: signal.unit,
-            display_unit: signal.display_unit,
-            minimum: Some(signal.minimum),
-            maximum: Some(signal.maximum),
-            nominal: Some(signal.nominal),
-            start: std::slice::from_ref(&signal.default),
-        }),
+    INPUTS.iter().enumerate().map(|(row, signal)| {
+        continuous(
+            signal.name,
+            signal.description,
+            Causality::Input,
+            RealKind {
+                display_unit: signal.display_unit,
+                minimum: Some(signal.minimum),
+                maximum: Some(signal.maximum),
+                nominal: Some(signal.nominal),
+                start: std::slice::from_ref(&signal.default),
+                ..number(RealVariable::Input(row), signal.unit)
+            },
+        )
     })
 }
 
 /// Outputs of the model.
 fn outputs() -> impl Iterator<Item = Variable> {
-    OUTPUTS.iter().enumerate().map(|(row, signal)| Variable {
-        name: signal.name,
-        description: signal.description,
-        causality: Causality::Output,
-        variability: Variability::Continuous,
-        kind: Kind::Real(RealKind {
-            variable: RealVariable::Output(row),
-            shape: Shape::Number,
-            unit: signal.unit,
-            display_unit: signal.display_unit,
-            minimum: signal.minimum,
-            maximum: signal.maximum,
-            nominal: Some(signal.nominal),
-            start: &[],
-        }),
+    OUTPUTS.iter().enumerate().map(|(row, signal)| {
+        continuous(
+            signal.name,
+            signal.description,
+            Causality::Output,
+            RealKind {
+                display_unit: signal.display_unit,
+                minimum: signal.minimum,
+                maximum: signal.maximum,
+                nominal: Some(signal.nominal),
+                ..number(RealVariable::Output(row), signal.unit)
+            },
+        )
     })
 }
 
@@ -105,83 +127,56 @@ fn real_parameters() -> impl Iterator<Item = Variable> {
 
 /// Profiles that are plotted.
 fn profiles() -> impl Iterator<Item = Variable> {
-    PROFILES.iter().enumerate().map(|(row, column)| Variable {
-        name: column.name,
-        description: column.description,
-        causality: Causality::Local,
-        variability: Variability::Continuous,
-        kind: Kind::Real(RealKind {
-            variable: RealVariable::Profile(row),
-            shape: Shape::Array(column.points),
-            unit: column.unit,
-            display_unit: column.display_unit,
-            minimum: None,
-            maximum: None,
-            nominal: Some(column.nominal),
-            start: &[],
-        }),
+    PROFILES.iter().enumerate().map(|(row, column)| {
+        continuous(
+            column.name,
+            column.description,
+            Causality::Local,
+            RealKind {
+                shape: Shape::Array(column.points),
+                display_unit: column.display_unit,
+                nominal: Some(column.nominal),
+                ..number(RealVariable::Profile(row), column.unit)
+            },
+        )
     })
 }
 
 /// The fields of a patch, for versions of FMI that have arrays with lengths of their own.
 pub fn fields() -> impl Iterator<Item = Variable> {
-    FIELDS.iter().enumerate().map(|(row, column)| Variable {
-        name: column.name,
-        description: column.description,
-        causality: Causality::Local,
-        variability: Variability::Continuous,
-        kind: Kind::Real(RealKind {
-            variable: RealVariable::Field(row),
-            shape: Shape::Field(column.over),
-            unit: column.unit,
-            display_unit: column.display_unit,
-            minimum: None,
-            maximum: None,
-            nominal: Some(column.nominal),
-            start: &[],
-        }),
+    FIELDS.iter().enumerate().map(|(row, column)| {
+        continuous(
+            column.name,
+            column.description,
+            Causality::Local,
+            RealKind {
+                shape: Shape::Field(column.over),
+                display_unit: column.display_unit,
+                nominal: Some(column.nominal),
+                ..number(RealVariable::Field(row), column.unit)
+            },
+        )
     })
 }
 
 /// Time, for versions of FMI that have a variable for it.
 pub fn time() -> Variable {
-    Variable {
-        name: TIME,
-        description: "Time",
-        causality: Causality::Independent,
-        variability: Variability::Continuous,
-        kind: Kind::Real(RealKind {
-            variable: RealVariable::Time,
-            shape: Shape::Number,
-            unit: "s",
-            display_unit: None,
-            minimum: None,
-            maximum: None,
-            nominal: None,
-            start: &[],
-        }),
-    }
+    continuous(TIME, "Time", Causality::Independent, number(RealVariable::Time, "s"))
 }
 
 /// Variables that say how the last step converged.
 fn solver() -> [Variable; 2] {
     [
-        Variable {
-            name: RESIDUAL,
-            description: "Last relative change of the operator split in the last step",
-            causality: Causality::Local,
-            variability: Variability::Continuous,
-            kind: Kind::Real(RealKind {
-                variable: RealVariable::Residual,
-                shape: Shape::Number,
-                unit: "1",
-                display_unit: None,
+        continuous(
+            RESIDUAL,
+            "Last relative change of the operator split in the last step",
+            Causality::Local,
+            RealKind {
                 minimum: Some(0.0),
-                maximum: None,
                 nominal: Some(1e-9),
-                start: &[],
-            }),
-        },
+                ..number(RealVariable::Residual, "1")
+            },
+        ),
         Variable {
             name: ITERATIONS,
             description: "Iterations of the operator split in the last step",

@@ -6,7 +6,7 @@ use crate::body::half_plane::HalfPlanes;
 use crate::body::mesh::Mesh;
 use crate::body::pair;
 use crate::friction::coulomb::utilisation;
-use crate::mechanics::leading_edge::{EdgeValues, NearField};
+use crate::mechanics::leading_edge::{EdgeValues, LeadingEdge, NearField};
 use crate::mechanics::normal::normal_problem::Constraint;
 use crate::mechanics::traction_problem::TractionProblemTangent;
 use crate::mechanics::transient::Transient;

@@ -3,8 +3,8 @@
 use super::*;
 use crate::friction::coulomb::utilisation;
 use crate::friction::memory::ParticlePath;
-use crate::friction::path::PathStep;
-use crate::mechanics::leading_edge::NearField;
+use crate::friction::path::{PathLaw, PathStep};
+use crate::mechanics::leading_edge::{LeadingEdge, NearField};
 use crate::parameters::Parameters;
 use proptest::prelude::*;
 

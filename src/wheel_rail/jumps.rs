@@ -1,0 +1,38 @@
+//! Judgement of what the inputs do in a step: by how much they jump, and how long the transient after it is.
+
+use super::Model;
+use crate::friction;
+use crate::numerics::dense;
+use crate::signals::{Inputs, Motion};
+
+impl Model {
+    /// Largest change between two sets of inputs, each relative to what changes the contact appreciably.
+    pub(super) fn change(&self, from: &Inputs, to: &Inputs) -> f64 {
+        let (before, after) = (from.motion(&self.parameters), to.motion(&self.parameters));
+        let speed = before.rolling_speed.abs().max(after.rolling_speed.abs());
+        // Creepage at which the whole contact slides, μ a / r₀.
+        let load = from.normal_load.max(to.normal_load);
+        let (half_length, half_breadth) = self.parameters.contact_half_axes(load);
+        let saturation = friction::largest_coefficient(&self.parameters) * half_length / self.parameters.wheel_radius;
+        // Slip along and across the rail, and that of the spin at the contact's side.
+        let slips = |motion: &Motion| [motion.rigid_slip, motion.lateral_speed, half_breadth * motion.spin_rate];
+        let (slips_before, slips_after) = (slips(&before), slips(&after));
+        let slip = dense::largest(&slips_before).max(dense::largest(&slips_after));
+        let relative = |change: f64, scale: f64| dense::relative(change.abs(), scale);
+        relative(after.rolling_speed - before.rolling_speed, speed)
+            .max(relative(
+                dense::largest_change(&slips_after, &slips_before),
+                (saturation * speed).max(slip),
+            ))
+            .max(relative(to.normal_load - from.normal_load, load))
+            .max(relative(
+                to.friction_scale - from.friction_scale,
+                from.friction_scale.max(to.friction_scale),
+            ))
+    }
+
+    /// Time in which rail material crosses the contact window, `s`; infinite at rest.
+    pub(super) fn passage_time(&self, inputs: &Inputs) -> f64 {
+        self.operators.window_length() / inputs.motion(&self.parameters).rolling_speed.abs()
+    }
+}
