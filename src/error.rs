@@ -1,5 +1,8 @@
 //! Errors of the model, one enum, each variant carrying the values that made it.
 
+mod profile;
+
+pub use profile::ProfileError;
 use thiserror::Error;
 
 /// Errors of the physical model. Nothing is changed by a call that returns one.
@@ -67,6 +70,9 @@ pub enum Error {
         /// Name of the other parameter.
         other: &'static str,
     },
+    /// A profile of wheel or rail that does not serve.
+    #[error(transparent)]
+    Profile(ProfileError),
     /// State or workspace come from a model with another `contact_model`.
     #[error("the state or the workspace is not one of this contact_model")]
     OtherContactModel,

@@ -123,7 +123,8 @@ pub mod verification;
 mod wear;
 pub mod wheel_rail;
 
-pub use error::Error;
+pub use error::{Error, ProfileError};
+pub use geometry::profile::{Body, CurvePoint, HeightFunction, Profile};
 pub use parameters::{
     ContactModel, Control, FrictionLaw, INTEGER_PARAMETERS, MeshKind, NormalSolver, Parameters, REAL_PARAMETERS,
     SlipSource, Wheel, WheelHeating,

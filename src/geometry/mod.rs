@@ -1,4 +1,7 @@
-//! Undeformed surfaces of wheel and rail: the [`gap`] between them, and [`hertz`], the contact of bodies whose gap is quadratic.
+//! Undeformed surfaces of wheel and rail: the [`gap`] between them, [`hertz`], the contact of bodies whose gap is quadratic, and the
+//! [`profile`] of a wheel or rail as it is.
 
 pub mod gap;
 pub mod hertz;
+pub mod profile;
+mod quintics;

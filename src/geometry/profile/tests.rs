@@ -1,0 +1,208 @@
+use super::*;
+
+fn built_in(name: &str) -> Profile {
+    Profile::built_in(name).unwrap()
+}
+
+/// Height of S1002 in `mm`, downward, by the formulas of EN 13715 as they are printed.
+fn s1002(y: f64) -> f64 {
+    let root = |v: f64| v.max(0.0).sqrt();
+    match y {
+        y if y < -62.764705882 => 9.519259302 + root(20.5f64.powi(2) - (y + 49.5).powi(2)),
+        y if y < -49.662510381 => 16.0 + root(12f64.powi(2) - (y + 55.0).powi(2)),
+        y if y < -39.764473993 => 8.834924130 + root(20f64.powi(2) - (y + 58.558326413).powi(2)),
+        y if y < -38.426669071 => -93.576667419 - 2.747477419 * y,
+        y if y < -35.0 => 16.446 - root(13f64.powi(2) - (y + 26.210665).powi(2)),
+        y if y < -26.0 => {
+            let powers = [
+                -4.320221063e3,
+                -1.038384026e3,
+                -1.065501873e2,
+                -6.051367875,
+                -2.054332446e-1,
+                -4.169739389e-3,
+                -4.687195829e-5,
+                -2.252755540e-7,
+            ];
+            powers.iter().rev().fold(0.0, |sum, c| c + y * sum)
+        }
+        y if y < 32.15796 => {
+            let powers = [
+                0.0,
+                -3.358537058e-2,
+                1.565681624e-3,
+                -2.810427944e-5,
+                5.844240864e-8,
+                -1.562379023e-8,
+                5.309217349e-15,
+                -5.957839843e-12,
+                2.646656573e-13,
+            ];
+            powers.iter().rev().fold(0.0, |sum, c| c + y * sum)
+        }
+        y => 1.364323640 - 0.066666667 * y,
+    }
+}
+
+/// Formulas of the standard leave steps where their parts meet: of up to 6e-8 mm, by which the parts are shifted, and of 1.2e-4 and 3.7e-5 mm
+/// at the ends of the root, which a cubic closes.
+#[test]
+fn s1002_is_that_of_the_standard() {
+    let wheel = built_in("S1002");
+    let height = wheel.height_function().unwrap();
+    let [first, last] = height.range();
+    assert!(first < -69.87e-3 && (last - 60e-3).abs() < 1e-15, "{first} {last}");
+    for place in 0..=100_000 {
+        let y = first + (last - first) * f64::from(place) / 1e5;
+        let [z, slope, _] = height.value_slope_curvature(y);
+        let expected = -1e-3 * s1002(1e3 * y);
+        let allowed = if (-35e-3..-26e-3).contains(&y) { 1.2e-7 } else { 2e-10 };
+        assert!((z - expected).abs() < allowed, "{y}: {z} {expected}");
+        // Where the step lies within the difference, the standard has no slope.
+        if [-35e-3, -26e-3].iter().any(|joint: &f64| (y - joint).abs() < 2e-6) {
+            continue;
+        }
+        let step = 1e-6;
+        let difference = -1e-3 * (s1002(1e3 * (y + step)) - s1002(1e3 * (y - step))) / (2.0 * step);
+        // The jumps of curvature within the difference, and its round-off.
+        assert!(
+            (slope - difference).abs() < 2e-4 * (1.0 + slope * slope),
+            "{y}: {slope} {difference}"
+        );
+    }
+}
+
+/// Places, directions and curvatures belong together on every profile: differences over 2 µm, whose own error is below 1e-6 rad where the
+/// curvature is that of 8 mm. A cell with a jump of curvature at its end is left out.
+#[test]
+fn tangent_and_curvature_are_derivatives_of_the_place() {
+    for name in built_in::NAMES {
+        let profile = built_in(name);
+        let step = 1e-6;
+        let count = 5000;
+        for place in 1..count {
+            let arc = profile.length() * f64::from(place) / f64::from(count);
+            let [before, here, after] = [arc - step, arc, arc + step].map(|arc| profile.at(arc));
+            let [y, z] = [0, 1].map(|k| (after.place[k] - before.place[k]) / (2.0 * step));
+            let [ty, tz] = here.tangent;
+            assert!((ty.hypot(tz) - 1.0).abs() < 1e-14, "{name} {arc}");
+            assert!(
+                (y - ty).abs() + (z - tz).abs() < 2e-6,
+                "{name} {arc}: {y} {z} {ty} {tz}"
+            );
+            let turned = before.tangent[0] * after.tangent[1] - before.tangent[1] * after.tangent[0];
+            let difference = turned / (2.0 * step);
+            let jump = (after.curvature - before.curvature).abs();
+            assert!(
+                (difference - here.curvature).abs() < 1e-5 * here.curvature.abs() + jump + 1e-4,
+                "{name} {arc}: {difference} {}",
+                here.curvature
+            );
+        }
+    }
+}
+
+/// Widths of the heads 14 mm below their tops as the drawings of EN 13674-1 have them, and the radii on the way there. The joints of the
+/// standard are rounded to 1 µm; its widths follow from the arcs to 0.02 mm.
+#[test]
+fn heads_of_rails_have_their_widths_and_radii() {
+    for (name, width, radii) in [
+        ("60E1", 72.0, [(0.0, 300.0), (18.0, 80.0), (30.0, 13.0)]),
+        ("60E2", 72.0, [(0.0, 200.0), (18.0, 70.0), (30.0, 16.0)]),
+        ("54E1", 70.0, [(0.0, 300.0), (18.0, 80.0), (30.0, 13.0)]),
+        ("49E1", 67.0, [(0.0, 300.0), (18.0, 80.0), (30.0, 13.0)]),
+        ("UIC60", 72.0, [(0.0, 300.0), (18.0, 80.0), (30.0, 13.0)]),
+    ] {
+        let rail = built_in(name);
+        let gauge = rail.gauge_point(14e-3).unwrap();
+        assert!((gauge + 0.5e-3 * width).abs() < 0.025e-3, "{name}: {gauge}");
+        for (y, radius) in radii {
+            for side in [-1.0, 1.0] {
+                let point = rail.at(rail.arc_of(1e-3 * side * y).unwrap());
+                assert!((point.place[0] - 1e-3 * side * y).abs() < 1e-15);
+                let found = -1e3 / point.curvature;
+                assert!((found / radius - 1.0).abs() < 1e-6, "{name} {y}: {found}");
+            }
+        }
+        let point = rail.at(rail.length());
+        assert!(point.curvature.abs() < 1e-6 && point.place[1] < -30e-3, "{name}");
+        assert!((rail.at(0.0).place[0] + point.place[0]).abs() < 1e-16);
+    }
+}
+
+/// Arcs about the centres that reproduce the published points to 2e-4 mm, which do not quite touch each other, against arcs that join
+/// tangentially and follow these points, but for a shift of 2e-4 mm, to 2e-5 mm on the crown and the shoulders.
+#[test]
+fn uic60_is_that_of_the_benchmark() {
+    let rail = built_in("UIC60").height_function().unwrap();
+    for place in 0..=700 {
+        let y = 0.05 * f64::from(place);
+        let [centre, down, radius]: [f64; 3] = match y {
+            y if y <= 10.25 => [0.0, 300.0, 300.0],
+            y if y <= 26.04 => [7.7, 80.135, 80.0],
+            _ => [23.016, 14.909, 13.0],
+        };
+        let expected = 1e-3 * ((radius * radius - (y - centre).powi(2)).sqrt() - down);
+        for side in [-1.0, 1.0] {
+            let z = rail.value_slope_curvature(1e-3 * side * y)[0];
+            assert!((z - expected).abs() < 4e-7, "{y}: {z} {expected}");
+        }
+    }
+}
+
+/// Inclined by 1:40 the crown of 300 mm has its highest point 300 sin(atan(1/40)) mm to the field side.
+#[test]
+fn an_inclined_rail_has_its_origin_at_its_highest_point() {
+    let upright = built_in("60E1");
+    let angle = 0.025f64.atan();
+    let rail = upright.inclined(angle).unwrap();
+    let top = rail.at(rail.arc_of(0.0).unwrap());
+    assert!(top.place[1].abs() < 1e-15 && top.tangent[1].abs() < 1e-9);
+    assert!(rail.points().iter().all(|[_, z]| *z <= 1e-15));
+    let crown = upright.arc_of(0.0).unwrap();
+    let moved = rail.at(crown);
+    assert!((moved.place[0] + 0.3 * angle.sin()).abs() < 1e-12);
+    assert!((moved.tangent[1] - angle.sin()).abs() < 1e-12);
+    assert!((moved.curvature - upright.at(crown).curvature).abs() < 1e-8);
+    // Its side leans 1:20 − 1:40 from the vertical.
+    let start = rail.at(0.0);
+    assert!((start.tangent[0] / start.tangent[1] - (0.05f64.atan() - angle).tan()).abs() < 1e-9);
+}
+
+#[test]
+fn arc_length_and_lateral_position_belong_together() {
+    for name in built_in::NAMES {
+        let profile = built_in(name);
+        let [first, last] = profile.height_function().unwrap().range();
+        for place in 0..=1000 {
+            let y = first + (last - first) * f64::from(place) / 1e3;
+            let arc = profile.arc_of(y).unwrap();
+            assert!((profile.at(arc).place[0] - y).abs() < 1e-15, "{name} {y}");
+        }
+        assert_eq!(profile.arc_of(0.2), None);
+        assert_eq!(profile.arc_of(-0.2), None);
+        assert_eq!(profile.arc_of(f64::NAN), None);
+        let beyond = profile.at(profile.length() + 1e-3);
+        let end = profile.at(profile.length());
+        assert!((beyond.place[0] - end.place[0] - 1e-3 * end.tangent[0]).abs() < 1e-15);
+        assert_eq!(beyond.curvature, 0.0);
+    }
+}
+
+#[test]
+fn what_a_profile_has_not_is_refused() {
+    let (wheel, rail) = (built_in("S1002"), built_in("60E1"));
+    for error in [
+        Profile::built_in("60E9").unwrap_err(),
+        wheel.inclined(0.025).unwrap_err(),
+        wheel.gauge_point(14e-3).unwrap_err(),
+        rail.gauge_point(60e-3).unwrap_err(),
+        rail.gauge_point(0.0).unwrap_err(),
+        rail.gauge_point(f64::NAN).unwrap_err(),
+        rail.inclined(0.3).unwrap_err(),
+        rail.inclined(f64::NAN).unwrap_err(),
+    ] {
+        println!("{error}");
+    }
+    assert!(Profile::built_in("s1002").is_ok());
+}
