@@ -5,3 +5,4 @@ pub mod gap;
 pub mod hertz;
 pub mod profile;
 mod quintics;
+mod spline;

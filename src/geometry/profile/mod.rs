@@ -13,12 +13,14 @@
 pub mod built_in;
 mod curve;
 mod height;
+mod measured;
 mod outline;
 
 pub use height::HeightFunction;
 
 use crate::error::ProfileError;
 use curve::Curve;
+use measured::Weighted;
 use serde::{Deserialize, Serialize};
 
 /// Body that a profile belongs to.
@@ -92,6 +94,40 @@ impl Profile {
             curve,
             middle,
         })
+    }
+
+    /// Profile through points, or smoothed; `points` are in the profile's frame, in either order, in `m`.
+    ///
+    /// `smoothing` is a wavelength, `m`: waves of this length are damped to a half, longer ones less (1/(1 + (smoothing/length)⁴)). 0 goes
+    /// through the points. A turn of more than 30° at a single point stays a kink, and points that go back are averaged.
+    ///
+    /// # Errors
+    /// The points are too few, too many or not finite, their curve is not 5 to 500 mm long, has a gap, or does not reach the running
+    /// circle of a wheel.
+    pub fn from_points(
+        body: Body,
+        name: &str,
+        source: &str,
+        points: &[[f64; 2]],
+        smoothing: f64,
+    ) -> Result<Profile, ProfileError> {
+        let points: Vec<_> = points.iter().map(|&place| Weighted { place, weight: 1.0 }).collect();
+        Profile::from_weighted(body, name, source, points, smoothing)
+    }
+
+    fn from_weighted(
+        body: Body,
+        name: &str,
+        source: &str,
+        mut points: Vec<Weighted>,
+        smoothing: f64,
+    ) -> Result<Profile, ProfileError> {
+        let lateral = |point: Option<&Weighted>| point.map_or(0.0, |point| point.place[0]);
+        if lateral(points.first()) > lateral(points.last()) {
+            points.reverse();
+        }
+        let curve = measured::curve(name, &points, smoothing)?;
+        Profile::of_curve(body, name, source, curve)
     }
 
     /// Body that the profile belongs to.

@@ -127,15 +127,6 @@ pub fn bridge(coefficients: &[f64], [from, to]: [f64; 2], ends: [[f64; 2]; 2]) -
     sum
 }
 
-/// Abscissae and weights of Gauss and Legendre's rule with five points on (0, 1).
-const GAUSS: [[f64; 2]; 5] = [
-    [0.046_910_077_030_668_0, 0.118_463_442_528_094_5],
-    [0.230_765_344_947_158_5, 0.239_314_335_249_683_2],
-    [0.5, 0.284_444_444_444_444_4],
-    [0.769_234_655_052_841_5, 0.239_314_335_249_683_2],
-    [0.953_089_922_969_332, 0.118_463_442_528_094_5],
-];
-
 /// Nodes of a polynomial z(y), at equal steps of y: where it is no steeper than a wheel's tread, these are about equally long.
 fn graph(coefficients: &[f64], [from, to]: [f64; 2]) -> Piece {
     let speed = |y: f64| 1f64.hypot(polynomial(coefficients, y)[1]);
@@ -146,16 +137,13 @@ fn graph(coefficients: &[f64], [from, to]: [f64; 2]) -> Piece {
         let y = from + step * node as f64;
         let [value, slope, second] = polynomial(coefficients, y);
         let speed_here = 1f64.hypot(slope);
-        let length: f64 = GAUSS
-            .iter()
-            .map(|[place, weight]| weight * speed(y - step * place))
-            .sum();
+        let length = Curve::arc_length(y - step, y, speed);
         let point = CurvePoint {
             place: [y, value],
             tangent: [1.0 / speed_here, slope / speed_here],
             curvature: second / speed_here.powi(3),
         };
-        (step * length, point)
+        (length, point)
     });
     Piece { nodes: nodes.collect() }
 }
