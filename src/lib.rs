@@ -125,6 +125,7 @@ pub mod wheel_rail;
 
 pub use error::{Error, ProfileError};
 pub use geometry::profile::{Body, CurvePoint, HeightFunction, Profile};
+pub use geometry::wheelset as contact_geometry;
 pub use parameters::{
     ContactModel, Control, FrictionLaw, INTEGER_PARAMETERS, MeshKind, NormalSolver, Parameters, REAL_PARAMETERS,
     SlipSource, Wheel, WheelHeating,

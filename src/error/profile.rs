@@ -64,4 +64,16 @@ pub enum ProfileError {
         /// Unit of all three.
         unit: &'static str,
     },
+    /// A wheel that stands beside its rail, or on the edge of its profile.
+    #[error(
+        "at the lateral displacement {} mm and the yaw {} mrad a wheel touches beside its rail, or with the edge of a profile",
+        1e3 * lateral,
+        1e3 * yaw
+    )]
+    WheelBesideRail {
+        /// Lateral displacement of the wheelset, `m`.
+        lateral: f64,
+        /// Yaw of the wheelset, rad.
+        yaw: f64,
+    },
 }

@@ -1,0 +1,212 @@
+//! One wheel over its rail, seen with y outwards from the track's middle.
+
+use super::Dimensions;
+use crate::error::ProfileError;
+use crate::geometry::profile::{HeightFunction, Profile};
+
+/// Distance of the stations along the axle at which the distance is computed first, `m`.
+const STATION: f64 = 0.25e-3;
+/// Local minima this much above the lowest station may be the lowest ones, `m`: curvatures of 300 1/m, across half a station.
+const NEAR: f64 = 5e-6;
+
+/// Place where a rigid wheel touches its rail; lateral places are positive to the field side.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Touch {
+    /// Lateral place on the rail's profile as it is inclined, from its highest point, `m`.
+    pub on_rail: f64,
+    /// Lateral place on the wheel's profile, from its running circle, `m`.
+    pub on_wheel: f64,
+    /// Place along the track, ahead of the wheelset's centre, `m`.
+    pub ahead: f64,
+    /// Inclination of the common tangent across the track, from outwards to upwards, rad: positive where the contact's normal on the
+    /// wheel points towards the track's middle.
+    pub inclination: f64,
+    /// Distance from the axle, `m`.
+    pub rolling_radius: f64,
+}
+
+/// Position of the wheelset as one side sees it, with y outwards.
+#[derive(Debug, Clone, Copy)]
+pub struct Attitude {
+    lateral: f64,
+    /// Direction of the axle, outwards.
+    axle: [f64; 3],
+}
+
+impl Attitude {
+    pub fn new(lateral: f64, yaw: f64, roll: f64) -> Attitude {
+        Attitude {
+            lateral,
+            axle: [-yaw.sin() * roll.cos(), yaw.cos() * roll.cos(), roll.sin()],
+        }
+    }
+}
+
+/// A wheel and its rail.
+#[derive(Debug, Clone)]
+pub struct Pair {
+    rail: HeightFunction,
+    wheel: HeightFunction,
+    /// Place of the rail's highest point, from the track's middle, `m`.
+    rail_place: f64,
+    /// Place of the running circle, from the wheelset's middle, `m`.
+    wheel_place: f64,
+    radius: f64,
+}
+
+/// Point of the silhouette, from the wheelset's centre.
+#[derive(Debug, Clone, Copy)]
+struct Station {
+    /// Place along the wheel's profile, from its running circle.
+    along: f64,
+    place: [f64; 3],
+    /// Slope of the silhouette across the track.
+    slope: f64,
+    radius: f64,
+}
+
+/// A wheel's point over the rail.
+#[derive(Debug, Clone, Copy)]
+struct Above {
+    station: Station,
+    /// Height of the wheel's point over the rail's, where the wheelset's centre is at the height of the rail's top.
+    height: f64,
+    /// Slope of that height over the way across the track.
+    opening: f64,
+    rail_slope: f64,
+    on_rail: f64,
+}
+
+impl Pair {
+    pub fn new(rail: &Profile, wheel: &Profile, dimensions: &Dimensions, radius: f64) -> Result<Pair, ProfileError> {
+        Ok(Pair {
+            rail_place: 0.5 * dimensions.gauge - rail.gauge_point(dimensions.gauge_depth)?,
+            wheel_place: dimensions.running_circle(),
+            rail: rail.height_function()?,
+            wheel: wheel.height_function()?,
+            radius,
+        })
+    }
+
+    /// Silhouette at a place along the wheel's profile; `None` where the surface is turned so far that it has none.
+    ///
+    /// With the axle's direction e and the surface's outward normal u − R′e, u ⊥ e of length 1, the normal has no part along the track where
+    /// u_x = R′ e_x.
+    fn station(&self, attitude: &Attitude, along: f64) -> Option<Station> {
+        let [height, slope, _] = self.wheel.value_slope_curvature(along);
+        let (radius, growth) = (self.radius - height, -slope);
+        let [ex, ey, ez] = attitude.axle;
+        let across = ey.hypot(ez);
+        let ux = growth * ex;
+        let down = 1.0 - (ux / across).powi(2);
+        if down <= 0.0 {
+            return None;
+        }
+        let (parallel, normal) = (-ux * ex / across, -down.sqrt());
+        let uy = (parallel * ey - normal * ez) / across;
+        let uz = (parallel * ez + normal * ey) / across;
+        let station = self.wheel_place + along;
+        let (ny, nz) = (uy - growth * ey, uz - growth * ez);
+        Some(Station {
+            along,
+            place: [
+                station * ex + radius * ux,
+                attitude.lateral + station * ey + radius * uy,
+                station * ez + radius * uz,
+            ],
+            slope: -ny / nz,
+            radius,
+        })
+    }
+
+    fn above(&self, attitude: &Attitude, along: f64) -> Option<Above> {
+        let station = self.station(attitude, along)?;
+        let on_rail = station.place[1] - self.rail_place;
+        let [first, last] = self.rail.range();
+        if on_rail < first || on_rail > last {
+            return None;
+        }
+        let [height, rail_slope, _] = self.rail.value_slope_curvature(on_rail);
+        Some(Above {
+            station,
+            height: station.place[2] - height,
+            opening: station.slope - rail_slope,
+            rail_slope,
+            on_rail,
+        })
+    }
+
+    /// Lowest place of the wheel over the rail.
+    fn lowest(&self, attitude: &Attitude) -> Option<Above> {
+        let [first, last] = self.wheel.range();
+        let count = ((last - first) / STATION).ceil();
+        let at = |k: f64| self.above(attitude, first + (last - first) * k / count);
+        let mut window: [Option<Above>; 3] = [None; 3];
+        let mut minima: Vec<[Above; 3]> = Vec::new();
+        let mut lowest = f64::INFINITY;
+        for k in 0..=count as usize {
+            window = [window[1], window[2], at(k as f64)];
+            if let Some(here) = window[2] {
+                lowest = lowest.min(here.height);
+            }
+            if let [Some(before), Some(here), Some(after)] = window
+                && here.height <= before.height
+                && here.height <= after.height
+            {
+                minima.push([before, here, after]);
+            }
+        }
+        let near = minima.iter().filter(|[_, here, _]| here.height <= lowest + NEAR);
+        let found = near.filter_map(|[before, _, after]| self.refined(attitude, before, after));
+        found
+            .min_by(|a, b| a.height.total_cmp(&b.height))
+            .filter(|found| found.height <= lowest)
+    }
+
+    /// Place between two stations at which wheel and rail have the same slope, by bisection down to round-off.
+    fn refined(&self, attitude: &Attitude, before: &Above, after: &Above) -> Option<Above> {
+        let (mut low, mut high) = (before.station.along, after.station.along);
+        for _ in 0..44 {
+            let middle = 0.5 * (low + high);
+            if self.above(attitude, middle)?.opening < 0.0 {
+                low = middle;
+            } else {
+                high = middle;
+            }
+        }
+        self.above(attitude, 0.5 * (low + high))
+    }
+
+    /// Height of the wheel's lowest point over the rail, with the wheelset's centre at the height of the rail's top. `None` where the lowest
+    /// point is on an edge of a profile.
+    pub fn clearance(&self, attitude: &Attitude) -> Option<f64> {
+        self.lowest(attitude).map(|lowest| lowest.height)
+    }
+
+    /// Place where the wheel touches, and that height.
+    pub fn touch(&self, attitude: &Attitude) -> Option<(Touch, f64)> {
+        let lowest = self.lowest(attitude)?;
+        let touch = Touch {
+            on_rail: lowest.on_rail,
+            on_wheel: lowest.station.along,
+            ahead: lowest.station.place[0],
+            inclination: lowest.rail_slope.atan(),
+            rolling_radius: lowest.station.radius,
+        };
+        Some((touch, lowest.height))
+    }
+
+    /// Rail and silhouette of the wheel in the track's frame, with y outwards.
+    pub fn outlines(&self, attitude: &Attitude, centre: f64) -> [Vec<[f64; 2]>; 2] {
+        let along = |range: [f64; 2]| {
+            let count = ((range[1] - range[0]) / STATION).ceil();
+            (0..=count as usize).map(move |k| range[0] + (range[1] - range[0]) * k as f64 / count)
+        };
+        let rail = along(self.rail.range()).map(|y| [self.rail_place + y, self.rail.value_slope_curvature(y)[0]]);
+        let wheel = along(self.wheel.range()).filter_map(|y| {
+            let station = self.station(attitude, y)?;
+            Some([station.place[1], station.place[2] + centre])
+        });
+        [rail.collect(), wheel.collect()]
+    }
+}

@@ -1,0 +1,109 @@
+//! Contact geometry over the lateral displacement.
+
+use super::conicity::{Conicity, equivalent_conicity};
+use super::{Pose, Wheelset};
+use crate::error::ProfileError;
+
+/// Displacements at most.
+const MOST: usize = 100_000;
+/// Way of a contact on the wheel between two displacements above which a jump is looked for, `m`.
+const SUSPECT: f64 = 0.3e-3;
+/// Way that is a jump where the displacement changes by [`CLOSE`], `m`.
+const LEAP: f64 = 0.1e-3;
+/// Displacement down to which a jump is found, `m`.
+const CLOSE: f64 = 1e-8;
+
+/// Jump of a contact at a lateral displacement: there the wheel touches at two places.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Jump {
+    /// Lateral displacement, `m`.
+    pub lateral: f64,
+    /// Side: 0 left, 1 right.
+    pub side: usize,
+    /// Place on the wheel at smaller and at larger displacements, `m`.
+    pub on_wheel: [f64; 2],
+    /// Place on the rail at smaller and at larger displacements, `m`.
+    pub on_rail: [f64; 2],
+}
+
+/// Places of a wheelset over its lateral displacement, and what follows from them.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Sweep {
+    /// Places by ascending displacement.
+    pub poses: Vec<Pose>,
+    /// Jumps by ascending displacement.
+    pub jumps: Vec<Jump>,
+}
+
+impl Sweep {
+    /// Places at all multiples of a `step` within a `range` of displacements, `m`, at a yaw, rad.
+    ///
+    /// # Errors
+    /// The range or the step is none, or a wheel stands beside its rail.
+    pub fn new(wheelset: &Wheelset, range: [f64; 2], step: f64, yaw: f64) -> Result<Sweep, ProfileError> {
+        let refused = |name, value, minimum, maximum| ProfileError::OutOfRange {
+            name,
+            value,
+            minimum,
+            maximum,
+            unit: "m",
+        };
+        for (name, value) in [("first displacement", range[0]), ("last displacement", range[1])] {
+            if !(-0.2..=0.2).contains(&value) {
+                return Err(refused(name, value, -0.2, 0.2));
+            }
+        }
+        let span = (range[1] - range[0]).max(0.0);
+        let shortest = (span / MOST as f64).max(1e-7);
+        if !(shortest..=0.1).contains(&step) {
+            return Err(refused("step", step, shortest, 0.1));
+        }
+        // Rounding is not to lose the last one.
+        let [first, last] = [(range[0] / step - 1e-9).ceil(), (range[1] / step + 1e-9).floor()];
+        let count = (last - first).max(0.0) as usize;
+        let poses = (0..=count)
+            .map(|k| wheelset.at((first + k as f64) * step, yaw))
+            .collect::<Result<Vec<_>, _>>()?;
+        let mut jumps = Vec::new();
+        for pair in poses.windows(2) {
+            for side in 0..2 {
+                jumps.extend(jump(wheelset, &pair[0], &pair[1], side)?);
+            }
+        }
+        Ok(Sweep { poses, jumps })
+    }
+
+    /// Equivalent conicity of an amplitude, `m`; `None` where no motion of that amplitude lies within the displacements.
+    pub fn conicity(&self, amplitude: f64) -> Option<Conicity> {
+        let lateral: Vec<_> = self.poses.iter().map(|pose| pose.lateral).collect();
+        let difference: Vec<_> = self.poses.iter().map(Pose::radius_difference).collect();
+        equivalent_conicity(&lateral, &difference, amplitude)
+    }
+}
+
+/// Jump of a side's contact between two places, by bisection over the displacement; of several the largest one.
+fn jump(wheelset: &Wheelset, from: &Pose, to: &Pose, side: usize) -> Result<Option<Jump>, ProfileError> {
+    let way = |a: &Pose, b: &Pose| (b.touches[side].on_wheel - a.touches[side].on_wheel).abs();
+    let (mut from, mut to) = (*from, *to);
+    if way(&from, &to) < SUSPECT {
+        return Ok(None);
+    }
+    while to.lateral - from.lateral > CLOSE {
+        let middle = wheelset.at(0.5 * (from.lateral + to.lateral), from.yaw)?;
+        if way(&from, &middle) > way(&middle, &to) {
+            to = middle;
+        } else {
+            from = middle;
+        }
+        if way(&from, &to) < LEAP {
+            return Ok(None);
+        }
+    }
+    let touches = [from.touches[side], to.touches[side]];
+    Ok(Some(Jump {
+        lateral: 0.5 * (from.lateral + to.lateral),
+        side,
+        on_wheel: touches.map(|touch| touch.on_wheel),
+        on_rail: touches.map(|touch| touch.on_rail),
+    }))
+}
