@@ -157,24 +157,34 @@ impl Pair {
             }
         }
         let near = minima.iter().filter(|[_, here, _]| here.height <= lowest + NEAR);
-        let found = near.filter_map(|[before, _, after]| self.refined(attitude, before, after));
+        let found = near.map(|minimum| self.refined(attitude, minimum));
+        // Where the lowest station is the first or the last one, no minimum between stations is as low.
         found
             .min_by(|a, b| a.height.total_cmp(&b.height))
             .filter(|found| found.height <= lowest)
     }
 
-    /// Place between two stations at which wheel and rail have the same slope, by bisection down to round-off.
-    fn refined(&self, attitude: &Attitude, before: &Above, after: &Above) -> Option<Above> {
-        let (mut low, mut high) = (before.station.along, after.station.along);
+    /// Place about the lowest of three stations at which wheel and rail have the same slope, by bisection down to round-off. Between the
+    /// stations of a rough profile there may be none that is lower: then it is the station.
+    fn refined(&self, attitude: &Attitude, [before, here, after]: &[Above; 3]) -> Above {
+        let (low, high) = if here.opening < 0.0 {
+            (here, after)
+        } else {
+            (before, here)
+        };
+        let (mut low, mut high) = (low.station.along, high.station.along);
         for _ in 0..44 {
             let middle = 0.5 * (low + high);
-            if self.above(attitude, middle)?.opening < 0.0 {
+            if self.above(attitude, middle).is_some_and(|above| above.opening < 0.0) {
                 low = middle;
             } else {
                 high = middle;
             }
         }
-        self.above(attitude, 0.5 * (low + high))
+        match self.above(attitude, 0.5 * (low + high)) {
+            Some(found) if found.height < here.height => found,
+            _ => *here,
+        }
     }
 
     /// Height of the wheel's lowest point over the rail, with the wheelset's centre at the height of the rail's top. `None` where the lowest
