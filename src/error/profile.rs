@@ -50,6 +50,46 @@ pub enum ProfileError {
         /// Reason in words, with the values that made it.
         reason: String,
     },
+    /// A file that cannot be read or written.
+    #[error("{path}: {reason}")]
+    File {
+        /// The file.
+        path: String,
+        /// Reason that the system gives.
+        reason: String,
+    },
+    /// A file whose content is not that of its format.
+    #[error("{name}, {format}{}: {reason}", at_line(*line))]
+    Content {
+        /// Profile.
+        name: String,
+        /// Format of the file.
+        format: &'static str,
+        /// Line, counted from 1; 0 where no single line is meant.
+        line: usize,
+        /// Reason in words, with the values that made it.
+        reason: String,
+    },
+    /// A file that does not say what it must, and from which it cannot be told.
+    #[error("{name}: {seen}; {option} has to say it")]
+    NotSaid {
+        /// Profile.
+        name: String,
+        /// Findings in the file.
+        seen: String,
+        /// Option of the reader.
+        option: &'static str,
+    },
+    /// A profile that is not that of its body, as it is turned.
+    #[error("{name}: this is no {body} with y to the field side and z upward: {seen}")]
+    Orientation {
+        /// Profile.
+        name: String,
+        /// "rail" or "wheel".
+        body: &'static str,
+        /// Findings in the file.
+        seen: String,
+    },
     /// A quantity outside its range.
     #[error("{name} = {value}: allowed is {minimum} to {maximum} {unit}")]
     OutOfRange {
@@ -76,4 +116,13 @@ pub enum ProfileError {
         /// Yaw of the wheelset, rad.
         yaw: f64,
     },
+}
+
+/// Names a line of a file; nothing where none is meant.
+fn at_line(line: usize) -> String {
+    if line == 0 {
+        String::new()
+    } else {
+        format!(", line {line}")
+    }
 }

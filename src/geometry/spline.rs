@@ -153,7 +153,7 @@ mod tests {
         }
     }
 
-    /// What has no second derivative is left as it is by any smoothing.
+    /// Straight lines have no second derivative, and are left as they are by any smoothing.
     #[test]
     fn a_straight_line_stays_straight() {
         let knots = knots(30, 1.0);

@@ -12,6 +12,7 @@
 
 pub mod built_in;
 mod curve;
+pub mod files;
 mod height;
 mod measured;
 mod outline;
@@ -68,7 +69,7 @@ pub struct Profile {
 const STEEPEST_INCLINATION: f64 = 0.2;
 
 impl Profile {
-    /// Profile of a curve in its frame, except for a rail's origin, which is moved to its highest point.
+    /// Profile of a curve in its frame, except for the origin: a rail's is moved to its highest point, a wheel's to the height of its running circle.
     fn of_curve(body: Body, name: &str, source: &str, curve: Curve) -> Result<Profile, ProfileError> {
         let refused = |reason: &str| ProfileError::NoCurve {
             name: name.to_owned(),
@@ -84,7 +85,8 @@ impl Profile {
             Body::Wheel => {
                 let datum = rising(&curve, 0.0, None);
                 let datum = datum.ok_or_else(|| refused("it does not reach the running circle, y = 0"))?;
-                (curve, datum)
+                let height = curve.at(datum).place[1];
+                (curve.moved(0.0, [0.0, -height]).ok_or_else(whole)?, datum)
             }
         };
         Ok(Profile {

@@ -219,7 +219,7 @@ fn wheel_points() -> Vec<[f64; 2]> {
         .collect()
 }
 
-/// A spline through exact points against the formulas: within 2 µm of height where an arc of 13 mm ends on a slope of 70°, and 0.002 µm on the tread; its
+/// A spline through exact points against the formulas: within 3 µm of height where an arc of 13 mm ends on a slope of 70°, and 0.002 µm on the tread; its
 /// curvature is that of the formulas on the tread to 1e-3.
 #[test]
 fn points_of_a_formula_give_its_curve() {
@@ -237,7 +237,7 @@ fn points_of_a_formula_give_its_curve() {
             let (allowed, tread) = if (-20e-3..30e-3).contains(&y) {
                 (2e-9, true)
             } else {
-                (2e-6, false)
+                (3e-6, false)
             };
             assert!((z - expected).abs() < allowed, "{y}: {z} {expected}");
             assert!(

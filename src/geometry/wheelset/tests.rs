@@ -83,7 +83,7 @@ fn the_mirror_image_has_the_mirrored_contacts() {
     }
 }
 
-/// At a pose both wheels touch and neither is below its rail: the silhouettes' smallest height over the rails, between the points of a
+/// Both wheels of a pose touch and neither is below its rail: the silhouettes' smallest height over the rails, between the points of a
 /// picture, is 0 to what a curvature of 100 1/m makes of their distance.
 #[test]
 fn wheels_touch_and_do_not_penetrate() {
@@ -109,7 +109,7 @@ fn wheels_touch_and_do_not_penetrate() {
     }
 }
 
-/// At a jump both places are equally low: there the wheel rests on both. S1002 on 60E1 inclined 1:40 jumps from the tread to the flange's
+/// A wheel rests on both places of a jump. S1002 on 60E1 inclined 1:40 jumps from the tread to the flange's
 /// root at 5.0 mm; its conicity at 3 mm is that of this program, held as it is.
 #[test]
 fn s1002_on_60e1_has_its_jumps_and_its_conicity() {

@@ -1,0 +1,225 @@
+//! Profiles in files: SIMPACK, MiniProf, VAMPIRE, and columns of numbers.
+//!
+//! A reader gives the points as the file has them, and what the file says of them: the body, the unit, the directions of y and z. What it
+//! does not say is found out from the shape where that is possible (`orientation`), or has to be given; the profile's source names what
+//! was found.
+
+mod columns;
+mod miniprof;
+mod orientation;
+mod simpack;
+mod vampire;
+mod write;
+
+use super::measured::{MOST_POINTS, Weighted};
+use super::{Body, Profile};
+use crate::error::ProfileError;
+use std::path::Path;
+
+/// Length of a file at most, bytes: 200 for each of the points that a profile may have.
+const LONGEST: u64 = 200 * MOST_POINTS as u64;
+
+/// Unit of lengths in a file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum LengthUnit {
+    /// Metres.
+    Metre,
+    /// Millimetres.
+    Millimetre,
+    /// Inches of 25.4 mm.
+    Inch,
+}
+
+impl LengthUnit {
+    /// Unit in `m`.
+    pub fn metres(self) -> f64 {
+        match self {
+            LengthUnit::Metre => 1.0,
+            LengthUnit::Millimetre => 1e-3,
+            LengthUnit::Inch => 25.4e-3,
+        }
+    }
+
+    /// Unit of a name: `m`, `mm` or `in`.
+    pub fn named(name: &str) -> Option<LengthUnit> {
+        match name {
+            "m" => Some(LengthUnit::Metre),
+            "mm" => Some(LengthUnit::Millimetre),
+            "in" | "inch" => Some(LengthUnit::Inch),
+            _ => None,
+        }
+    }
+}
+
+/// Direction of the lateral coordinate in a file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Lateral {
+    /// y grows outwards from the track's middle.
+    ToField,
+    /// y grows towards the track's middle.
+    ToGauge,
+}
+
+/// Options for reading a profile. What is `None` is taken from the file, found out from its shape, or asked for by an error.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct ReadOptions {
+    /// Body that the profile must be of.
+    pub body: Option<Body>,
+    /// Unit of the coordinates.
+    pub unit: Option<LengthUnit>,
+    /// Direction of y.
+    pub y_to: Option<Lateral>,
+    /// Whether z points upward.
+    pub z_up: Option<bool>,
+    /// Number of the profile in a file with more than one: of MiniProf's `.mpt` that of its section, of VAMPIRE 1 for the left and 2 for the
+    /// right one. `None` is the right one of VAMPIRE, and the only one of `.mpt`.
+    pub part: Option<usize>,
+    /// Distance of a wheel's running circle from the back of its flange, `m`: moves the origin there. `None` keeps the file's y.
+    pub flange_back_position: Option<f64>,
+    /// Wavelength of the smoothing, `m`; 0 goes through the points.
+    pub smoothing: f64,
+}
+
+/// Format of a file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Format {
+    /// SIMPACK's `.prr` and `.prw`.
+    Simpack,
+    /// MiniProf's `.ban`, `.whl` and `.mpt`.
+    MiniProf,
+    /// VAMPIRE's `.rai` and `.whe`.
+    Vampire,
+    /// Two columns, y and z, of a table.
+    Columns,
+}
+
+impl Format {
+    /// Format of a file by the end of its name and its first lines.
+    fn of(path: &Path, text: &str) -> Format {
+        let ending = path
+            .extension()
+            .map(|ending| ending.to_string_lossy().to_ascii_lowercase());
+        match ending.as_deref() {
+            _ if text.trim_start().starts_with("WHEELPROFILE") || text.trim_start().starts_with("RAILPROFILE") => {
+                Format::Vampire
+            }
+            Some("prr" | "prw") => Format::Simpack,
+            Some("ban" | "whl" | "mpt") => Format::MiniProf,
+            _ => Format::Columns,
+        }
+    }
+
+    /// Name of the format.
+    pub fn name(self) -> &'static str {
+        match self {
+            Format::Simpack => "SIMPACK",
+            Format::MiniProf => "MiniProf",
+            Format::Vampire => "VAMPIRE",
+            Format::Columns => "columns",
+        }
+    }
+}
+
+/// Points as a file has them, with what it says of them.
+#[derive(Debug, Default)]
+struct Raw {
+    /// Coordinates y and z in the file's unit, with weights.
+    points: Vec<Weighted>,
+    body: Option<Body>,
+    /// Length of the unit, `m`.
+    unit: Option<f64>,
+    y_to: Option<Lateral>,
+    z_up: Option<bool>,
+}
+
+impl Profile {
+    /// Profile from a file. The end of its name says the format: `.prr`, `.prw` (SIMPACK), `.ban`, `.whl`, `.mpt` (MiniProf); a VAMPIRE file is
+    /// known by its first line; all else is a table of y and z, in columns.
+    ///
+    /// # Errors
+    /// The file cannot be read, is not of its format, does not say what it must, or is no profile of the body that is needed.
+    pub fn read(path: &Path, options: &ReadOptions) -> Result<Profile, ProfileError> {
+        let failed = |reason: String| ProfileError::File {
+            path: path.display().to_string(),
+            reason,
+        };
+        let length = std::fs::metadata(path)
+            .map_err(|error| failed(error.to_string()))?
+            .len();
+        if length > LONGEST {
+            return Err(failed(format!(
+                "{length} bytes, more than {LONGEST}: no profile is as long"
+            )));
+        }
+        let bytes = std::fs::read(path).map_err(|error| failed(error.to_string()))?;
+        // Titles of stations are in all kinds of alphabets; numbers are not.
+        let text = String::from_utf8_lossy(&bytes);
+        let name = path
+            .file_name()
+            .map_or_else(String::new, |name| name.to_string_lossy().into_owned());
+        Profile::parse(&text, &name, Format::of(path, &text), options)
+    }
+
+    /// Profile from the text of a file.
+    ///
+    /// # Errors
+    /// As [`Profile::read`].
+    pub fn parse(text: &str, name: &str, format: Format, options: &ReadOptions) -> Result<Profile, ProfileError> {
+        let raw = match format {
+            Format::Simpack => simpack::read(text, name)?,
+            Format::MiniProf => miniprof::read(text, name, options.part)?,
+            Format::Vampire => vampire::read(text, name, options.part)?,
+            Format::Columns => columns::read(text, name)?,
+        };
+        let ending = name.rsplit('.').next().unwrap_or_default().to_ascii_lowercase();
+        let by_name = match ending.as_str() {
+            "prr" | "ban" | "rai" => Some(Body::Rail),
+            "prw" | "whl" | "whe" => Some(Body::Wheel),
+            _ => None,
+        };
+        let body = match (raw.body.or(by_name), options.body) {
+            (Some(found), Some(needed)) if found != needed => {
+                return Err(ProfileError::OtherBody {
+                    name: name.to_owned(),
+                    found: found.name(),
+                    needed: needed.name(),
+                });
+            }
+            (Some(body), _) | (None, Some(body)) => body,
+            (None, None) => {
+                return Err(ProfileError::NotSaid {
+                    name: name.to_owned(),
+                    seen: "the file does not say whether it is a rail or a wheel".to_owned(),
+                    option: "body",
+                });
+            }
+        };
+        if raw.points.len() > MOST_POINTS {
+            return Err(ProfileError::NoCurve {
+                name: name.to_owned(),
+                reason: format!("{} points, more than {MOST_POINTS}", raw.points.len()),
+            });
+        }
+        let (points, found) = orientation::framed(name, body, raw, options)?;
+        let source = format!("{} file {name}{found}", format.name());
+        Profile::from_weighted(body, name, &source, points, options.smoothing)
+    }
+}
+
+/// Numbers of a line, separated by blanks, tabs, commas or semicolons; `None` where a part is no number. With semicolons or tabs a comma
+/// may stand for the decimal point.
+fn numbers(line: &str) -> Option<Vec<f64>> {
+    let parse = |part: &str| part.parse::<f64>().ok();
+    let decimal_comma = line.contains(',') && line.contains([';', '\t']);
+    let text = if decimal_comma {
+        line.replace(',', ".")
+    } else {
+        line.to_owned()
+    };
+    let parts = text.split(|letter: char| letter.is_whitespace() || letter == ';' || letter == ',');
+    let found: Option<Vec<f64>> = parts.filter(|part| !part.is_empty()).map(parse).collect();
+    found.filter(|numbers| !numbers.is_empty())
+}
+
+#[cfg(test)]
+mod tests;
