@@ -1,4 +1,4 @@
-//! From a file's coordinates to the profile's frame: unit, direction of y and z, origin of a wheel.
+//! The way from a file's coordinates to the profile's frame: unit, direction of y and z, origin of a wheel.
 //!
 //! What file and options do not say is tried: each way of turning the profile that is left is held against the shape of its body. One
 //! way that fits is taken, and named in the profile's source; none, or more than one, is an error that says what was seen.
@@ -12,8 +12,10 @@ use crate::geometry::profile::measured::cleaned;
 const EXTENTS: [f64; 2] = [0.02, 0.3];
 /// Distance of the points from which directions are taken, `m`: more than the roughness of a measurement.
 const CHORD: f64 = 1e-3;
-/// Turn to the left over the whole profile, degrees, from which on there is a flange, and up to which there is none.
+/// Turn to the left, degrees, of a flange's tip at least, and of a profile without a flange at most.
 const HOLLOW: [f64; 2] = [40.0, 30.0];
+/// Distance from the flange's tip within which it turns, `m`.
+const TIP: f64 = 20e-3;
 /// Height of a flange's tip below the tread, `m`.
 const FLANGE: [f64; 2] = [12e-3, 45e-3];
 /// Part of the profile, from the flange's tip, that is tread in any case, `m`.
@@ -26,8 +28,10 @@ const DATUM: [f64; 2] = [30e-3, 80e-3];
 const FLAT: f64 = 12e-3;
 /// Distance of a rail's highest point from its ends, at least, `m`.
 const SHOULDER: f64 = 3e-3;
-/// Depth below a rail's top down to which its shape is looked at, `m`.
-const HEAD: f64 = 30e-3;
+/// Depths below a rail's top between which a head has sides, and a flange that is turned upward the tread beside it, `m`.
+const SIDES: [f64; 2] = [12e-3, 45e-3];
+/// Breadth of what is flat there, at most, `m`, and the slope up to which it counts: a worn head has a ledge.
+const LEDGE: (f64, f64) = (25e-3, 0.3);
 /// Deviation up to which a rail is the same from both sides, `m`.
 const SYMMETRIC: f64 = 0.05e-3;
 
@@ -240,13 +244,21 @@ impl Shape {
         Shape { points: kept }
     }
 
-    /// Sum of the turns to the left between chords, degrees, at points that a predicate takes.
-    fn left_turns(&self, takes: impl Fn([f64; 2]) -> bool) -> f64 {
-        let turns = self.points.windows(3).filter(|three| takes(three[1])).map(|three| {
+    /// Largest turn to the left between two chords, degrees, over points that follow each other and that a predicate takes: of a rough
+    /// profile the turns back and forth do not count.
+    fn left_turn(&self, takes: impl Fn([f64; 2]) -> bool) -> f64 {
+        let (mut angle, mut lowest, mut largest) = (0.0f64, 0.0f64, 0.0f64);
+        for three in self.points.windows(3) {
             let [u, v] = [0, 1].map(|k| [0, 1].map(|c| three[k + 1][c] - three[k][c]));
-            (u[0] * v[1] - u[1] * v[0]).atan2(u[0] * v[0] + u[1] * v[1])
-        });
-        turns.filter(|turn| *turn > 0.0).sum::<f64>().to_degrees()
+            if takes(three[1]) {
+                angle += (u[0] * v[1] - u[1] * v[0]).atan2(u[0] * v[0] + u[1] * v[1]);
+            } else {
+                (angle, lowest) = (0.0, 0.0);
+            }
+            lowest = lowest.min(angle);
+            largest = largest.max(angle - lowest);
+        }
+        largest.to_degrees()
     }
 
     fn extreme(&self, highest: bool) -> Option<[f64; 2]> {
@@ -264,7 +276,7 @@ impl Shape {
             self.extreme(false).ok_or_else(few)?,
             self.extreme(true).ok_or_else(few)?,
         );
-        let hollow = self.left_turns(|_| true);
+        let hollow = self.left_turn(|point| (point[0] - y).abs() < TIP);
         if top - z < FLAT && hollow < HOLLOW[1] && known {
             return Ok(());
         }
@@ -316,11 +328,20 @@ impl Shape {
         if y - first < SHOULDER || last - y < SHOULDER {
             return Err(format!("{place}, within {} mm of its end", in_mm(SHOULDER)));
         }
-        let hollow = self.left_turns(|point| point[1] > z - HEAD);
-        if hollow > HOLLOW[1] {
+        let [from, to] = SIDES;
+        let ledges = self
+            .points
+            .windows(2)
+            .filter(|pair| (from..=to).contains(&(z - pair[0][1])));
+        let steps = ledges.map(|pair| [0, 1].map(|k| (pair[1][k] - pair[0][k]).abs()));
+        let flat: f64 = steps
+            .filter(|step| step[1] < LEDGE.1 * step[0])
+            .map(|step| step[0])
+            .sum();
+        if flat > LEDGE.0 {
+            let [from, to, flat] = [from, to, flat].map(in_mm);
             return Err(format!(
-                "{place}, and it is hollow, by {} degrees in all",
-                hollow.round()
+                "{place}, and it is flat over {flat} mm, {from} to {to} mm below"
             ));
         }
         Ok(())

@@ -58,7 +58,7 @@ fn what_is_written_is_read_back() {
     }
 }
 
-/// However a wheel's file is turned, its flange tells; the source says what was found.
+/// Flanges tell how the file of a wheel is turned; the source says what was found.
 #[test]
 fn a_wheel_is_turned_by_its_flange() {
     let profile = built_in("S1002");
@@ -362,5 +362,5 @@ fn mangled_files_do_no_harm() {
             let _ = found.gauge_point(14e-3);
         }
     }
-    assert!(read > 300, "{read}");
+    assert!(read > 200, "{read}");
 }
