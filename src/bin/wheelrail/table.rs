@@ -1,8 +1,7 @@
-//! Tables as CSV: what `wheelrail simulate` writes.
+//! Tables as CSV: what the commands write.
 
 use crate::files;
-use std::fs::File;
-use std::io;
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 /// A file that does not serve as a table.
@@ -52,19 +51,38 @@ pub fn heading(name: &str, unit: &str) -> String {
 /// A table that is written row by row.
 pub struct Table {
     path: PathBuf,
-    writer: csv::Writer<File>,
+    writer: csv::Writer<Box<dyn Write>>,
 }
 
 impl Table {
     /// A new file with its headings.
     pub fn create(path: &Path, headings: impl Iterator<Item = String>) -> Result<Table, Error> {
-        let file = files::create(path).map_err(Error::file(path))?;
+        Table::open(Some(path), headings)
+    }
+
+    /// A new file, or the standard output, with its headings.
+    pub fn open(path: Option<&Path>, headings: impl Iterator<Item = String>) -> Result<Table, Error> {
+        let (path, out): (_, Box<dyn Write>) = match path {
+            Some(path) => (path, Box::new(files::create(path).map_err(Error::file(path))?)),
+            None => (Path::new("standard output"), Box::new(io::stdout().lock())),
+        };
         let mut table = Table {
             path: path.to_owned(),
-            writer: csv::Writer::from_writer(file),
+            writer: csv::Writer::from_writer(out),
         };
         table.record(headings)?;
         Ok(table)
+    }
+
+    /// One row in which cells may be empty.
+    pub fn write_some(&mut self, values: impl Iterator<Item = Option<f64>>) -> Result<(), Error> {
+        self.record(values.map(|value| value.map_or_else(String::new, shortest)))
+    }
+
+    /// One row with names in its first cells.
+    pub fn write_named(&mut self, names: &[&str], values: impl Iterator<Item = f64>) -> Result<(), Error> {
+        let names = names.iter().map(|&name| name.to_owned());
+        self.record(names.chain(values.map(shortest)))
     }
 
     /// One row. Numbers are the shortest that read back to the same value.

@@ -162,6 +162,11 @@ impl Profile {
         self.curve.arcs().iter().map(|&arc| self.at(arc).place).collect()
     }
 
+    /// Arc lengths of the [points](Profile::points), ascending, `m`: among them are those at which the curvature jumps.
+    pub fn arc_lengths(&self) -> &[f64] {
+        self.curve.arcs()
+    }
+
     /// Arc length at which the running surface has a lateral position y, `m`: where more than one place has it, the one that is
     /// connected with a rail's highest point or a wheel's running circle without turning back. `None` where it does not reach y.
     pub fn arc_of(&self, y: f64) -> Option<f64> {

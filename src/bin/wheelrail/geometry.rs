@@ -1,0 +1,227 @@
+//! `wheelrail geometry`: where a wheelset's wheels touch the rails, over its lateral displacement, without forces.
+
+use crate::profile;
+use crate::table::{self, Table, heading};
+use clap::Args;
+use std::path::PathBuf;
+use wheelrail::contact_geometry::{Dimensions, Jump, Sweep, Touch, Wheelset};
+use wheelrail::{Body, Profile, ProfileError};
+
+/// Options of `geometry`.
+#[derive(Args)]
+pub struct Geometry {
+    /// Profile of the rails: a name of `wheelrail profile`, or a file.
+    #[arg(long, value_name = "NAME|FILE", default_value = "60E1")]
+    rail: String,
+    /// Profile of the wheels: a name of `wheelrail profile`, or a file.
+    #[arg(long, value_name = "NAME|FILE", default_value = "S1002")]
+    wheel: String,
+    /// Profile of the right rail, where it is another one.
+    #[arg(long, value_name = "NAME|FILE")]
+    rail_right: Option<String>,
+    /// Profile of the right wheel, where it is another one.
+    #[arg(long, value_name = "NAME|FILE")]
+    wheel_right: Option<String>,
+    /// Wavelength of the smoothing of profiles from files, `m`: waves of this length are halved.
+    #[arg(long, value_name = "METRES", default_value_t = 0.0)]
+    smoothing: f64,
+    /// First lateral displacement of the wheelset, `m`, to the left.
+    #[arg(long, value_name = "METRES", default_value_t = -8e-3, allow_negative_numbers = true)]
+    from: f64,
+    /// Last lateral displacement, `m`.
+    #[arg(long, value_name = "METRES", default_value_t = 8e-3, allow_negative_numbers = true)]
+    to: f64,
+    /// Step of the lateral displacement, `m`.
+    #[arg(long, value_name = "METRES", default_value_t = 1e-4)]
+    step: f64,
+    /// Yaw of the wheelset, rad, anticlockwise from above.
+    #[arg(long, value_name = "RADIANS", default_value_t = 0.0, allow_negative_numbers = true)]
+    yaw: f64,
+    /// Distance of the rails' running faces, `m`.
+    #[arg(long, value_name = "METRES", default_value_t = Dimensions::default().gauge)]
+    gauge: f64,
+    /// Depth below the rails' tops at which the gauge is measured, `m`.
+    #[arg(long, value_name = "METRES", default_value_t = Dimensions::default().gauge_depth)]
+    gauge_depth: f64,
+    /// Inclination of the rails as a slope: 0 for profiles that are inclined already.
+    #[arg(long, value_name = "SLOPE", default_value_t = 0.025, allow_negative_numbers = true)]
+    rail_inclination: f64,
+    /// Distance between the backs of the flanges, `m`.
+    #[arg(long, value_name = "METRES", default_value_t = Dimensions::default().flange_back_distance)]
+    flange_back_distance: f64,
+    /// Distance of the running circles from the backs of their flanges, `m`.
+    #[arg(long, value_name = "METRES", default_value_t = Dimensions::default().flange_back_position)]
+    flange_back_position: f64,
+    /// Radius of the running circles, `m`.
+    #[arg(long, value_name = "METRES", default_value_t = Dimensions::default().wheel_radii[0])]
+    wheel_radius: f64,
+    /// Radius of the right wheel, where it is another one, `m`.
+    #[arg(long, value_name = "METRES")]
+    wheel_radius_right: Option<f64>,
+    /// CSV file for the table; without it the table goes to the standard output.
+    #[arg(short, long, value_name = "OUT.csv")]
+    output: Option<PathBuf>,
+    /// CSV file for the jumps of the contacts.
+    #[arg(long, value_name = "JUMPS.csv")]
+    jumps: Option<PathBuf>,
+    /// CSV file for the outlines of rails and wheels where they touch, for pictures.
+    #[arg(long, value_name = "OUTLINES.csv")]
+    outlines: Option<PathBuf>,
+    /// Lateral displacement at which the outlines are, `m`.
+    #[arg(long, value_name = "METRES", default_value_t = 0.0, allow_negative_numbers = true)]
+    outlines_at: f64,
+}
+
+/// Reason why there is no table.
+#[derive(Debug, thiserror::Error)]
+pub enum Error {
+    /// A profile or a dimension that does not serve.
+    #[error(transparent)]
+    Profile(#[from] ProfileError),
+    /// A profile that is neither built in nor a file.
+    #[error(transparent)]
+    Named(#[from] profile::Error),
+    /// A table that cannot be written.
+    #[error(transparent)]
+    Table(#[from] table::Error),
+}
+
+/// Sides in the order of the library, as columns are called by them.
+const SIDES: [&str; 2] = ["left", "right"];
+/// Amplitude at which EN 15302 has the conicity, `m`.
+const AMPLITUDE: f64 = 3e-3;
+
+impl Geometry {
+    /// Runs the command.
+    pub fn run(&self) -> Result<(), Error> {
+        let wheelset = self.wheelset()?;
+        let sweep = Sweep::new(&wheelset, [self.from, self.to], self.step, self.yaw)?;
+        // Each amplitude serves two displacements.
+        let conicities = sweep.poses.iter().map(|pose| sweep.conicity(pose.lateral.abs()));
+        let conicities: Vec<_> = conicities.map(|found| found.map(|found| found.conicity)).collect();
+        let mut out = Table::open(self.output.as_deref(), headings())?;
+        for (pose, conicity) in sweep.poses.iter().zip(conicities) {
+            let touches = pose.touches.iter().flat_map(|touch| {
+                let Touch {
+                    on_rail,
+                    on_wheel,
+                    ahead,
+                    inclination,
+                    rolling_radius,
+                } = *touch;
+                [on_rail, on_wheel, ahead, inclination, rolling_radius]
+            });
+            let place = [pose.lateral, pose.yaw, pose.roll, pose.vertical];
+            let row = place.into_iter().chain(touches).chain([pose.radius_difference()]);
+            out.write_some(row.map(Some).chain([conicity]))?;
+        }
+        out.finish()?;
+        if let Some(path) = &self.jumps {
+            jumps(path, &sweep.jumps)?;
+        }
+        if let Some(path) = &self.outlines {
+            self.write_outlines(path, &wheelset)?;
+        }
+        self.summary(&sweep);
+        Ok(())
+    }
+
+    fn wheelset(&self) -> Result<Wheelset, Error> {
+        let named = |name: &str, body: Body| profile::named(name, body, self.smoothing);
+        let rail = named(&self.rail, Body::Rail)?;
+        let wheel = named(&self.wheel, Body::Wheel)?;
+        let other = |name: &Option<String>, body, same: &Profile| {
+            name.as_deref()
+                .map_or_else(|| Ok(same.clone()), |name| named(name, body))
+        };
+        let rail_right = other(&self.rail_right, Body::Rail, &rail)?;
+        let wheel_right = other(&self.wheel_right, Body::Wheel, &wheel)?;
+        let radius = self.wheel_radius;
+        let dimensions = Dimensions {
+            gauge: self.gauge,
+            gauge_depth: self.gauge_depth,
+            rail_inclination: self.rail_inclination.atan(),
+            flange_back_distance: self.flange_back_distance,
+            flange_back_position: self.flange_back_position,
+            wheel_radii: [radius, self.wheel_radius_right.unwrap_or(radius)],
+        };
+        Ok(Wheelset::new(
+            [&rail, &rail_right],
+            [&wheel, &wheel_right],
+            &dimensions,
+        )?)
+    }
+
+    fn write_outlines(&self, path: &std::path::Path, wheelset: &Wheelset) -> Result<(), Error> {
+        let pose = wheelset.at(self.outlines_at, self.yaw)?;
+        let names = ["side", "body"].map(str::to_owned).into_iter();
+        let columns = names.chain(["y", "z"].map(|name| heading(name, "m")));
+        let mut table = Table::open(Some(path), columns)?;
+        for (side, name) in SIDES.iter().enumerate() {
+            for (body, points) in ["rail", "wheel"].iter().zip(wheelset.outlines(&pose, side)) {
+                for point in points {
+                    table.write_named(&[name, body], point.into_iter())?;
+                }
+            }
+        }
+        Ok(table.finish()?)
+    }
+
+    /// Says the conicity and the jumps, beside the table.
+    fn summary(&self, sweep: &Sweep) {
+        match sweep.conicity(AMPLITUDE) {
+            Some(found) => eprintln!("equivalent conicity at {} mm: {:.4}", 1e3 * AMPLITUDE, found.conicity),
+            None => eprintln!(
+                "no equivalent conicity at {} mm: the wheels do not steer back, or the displacements end before",
+                1e3 * AMPLITUDE
+            ),
+        }
+        for jump in &sweep.jumps {
+            let [from, to] = jump.on_wheel.map(|place| 1e3 * place);
+            eprintln!(
+                "the {} contact jumps at {:.3} mm from {from:.2} to {to:.2} mm on the wheel",
+                SIDES[jump.side],
+                1e3 * jump.lateral
+            );
+        }
+    }
+}
+
+/// Headings of the table.
+fn headings() -> impl Iterator<Item = String> {
+    let place = [
+        ("lateral_displacement", "m"),
+        ("yaw_angle", "rad"),
+        ("roll_angle", "rad"),
+        ("vertical_displacement", "m"),
+    ];
+    let contact = [
+        ("on_rail", "m"),
+        ("on_wheel", "m"),
+        ("ahead", "m"),
+        ("inclination", "rad"),
+        ("rolling_radius", "m"),
+    ];
+    let contacts = SIDES
+        .iter()
+        .flat_map(move |side| contact.map(|(name, unit)| heading(&format!("{side}_{name}"), unit)));
+    let rest = [("rolling_radius_difference", "m"), ("equivalent_conicity", "1")];
+    let named = |(name, unit)| heading(name, unit);
+    place
+        .into_iter()
+        .map(named)
+        .chain(contacts)
+        .chain(rest.into_iter().map(named))
+}
+
+/// Table of the jumps.
+fn jumps(path: &std::path::Path, jumps: &[Jump]) -> Result<(), Error> {
+    let columns = ["lateral_displacement", "wheel_from", "wheel_to", "rail_from", "rail_to"];
+    let columns = std::iter::once("side".to_owned()).chain(columns.map(|name| heading(name, "m")));
+    let mut table = Table::open(Some(path), columns)?;
+    for jump in jumps {
+        let places = jump.on_wheel.into_iter().chain(jump.on_rail);
+        table.write_named(&[SIDES[jump.side]], std::iter::once(jump.lateral).chain(places))?;
+    }
+    Ok(table.finish()?)
+}

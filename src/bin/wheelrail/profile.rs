@@ -1,0 +1,193 @@
+//! `wheelrail profile`: the profiles that are built in, and those of files, looked at or converted.
+
+use crate::names::did_you_mean;
+use crate::table::{self, Table, heading};
+use clap::{Args, ValueEnum};
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+use wheelrail::profile_files::{Lateral, LengthUnit, ReadOptions};
+use wheelrail::{Body, Profile, ProfileError, built_in_profiles};
+
+/// Options of `profile`.
+#[derive(Args)]
+pub struct Options {
+    /// A name that is built in, or a file: SIMPACK (.prr, .prw), MiniProf (.ban, .whl, .mpt), VAMPIRE, or columns y z. Without one the
+    /// built-in ones are listed.
+    #[arg(value_name = "NAME|FILE")]
+    profile: Option<String>,
+    /// Body that the profile is of, where the file does not say it.
+    #[arg(long)]
+    body: Option<BodyName>,
+    /// Unit of the file's coordinates: m, mm or in.
+    #[arg(long, value_parser = unit)]
+    unit: Option<LengthUnit>,
+    /// Direction of the file's y.
+    #[arg(long)]
+    y_to: Option<Direction>,
+    /// Direction of the file's z.
+    #[arg(long)]
+    z: Option<Vertical>,
+    /// Number of the profile in a file with more than one: of a section of .mpt; 1 left, 2 right of VAMPIRE.
+    #[arg(long)]
+    part: Option<usize>,
+    /// Distance of a wheel's running circle from the back of its flange, `m`, where the file has another origin.
+    #[arg(long, value_name = "METRES")]
+    flange_back_position: Option<f64>,
+    /// Wavelength of the smoothing, `m`: waves of this length are halved.
+    #[arg(long, value_name = "METRES", default_value_t = 0.0)]
+    smoothing: f64,
+    /// Inclination that a rail is given, as a slope.
+    #[arg(long, value_name = "SLOPE", allow_negative_numbers = true)]
+    inclination: Option<f64>,
+    /// File for the profile: SIMPACK's (.prr, .prw), MiniProf's (.ban, .whl), or CSV with arc length, inclination and curvature; without
+    /// it the CSV goes to the standard output.
+    #[arg(short, long, value_name = "OUT")]
+    output: Option<PathBuf>,
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum BodyName {
+    Rail,
+    Wheel,
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum Direction {
+    Field,
+    Gauge,
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum Vertical {
+    Up,
+    Down,
+}
+
+/// Reason why there is no profile.
+#[derive(Debug, thiserror::Error)]
+pub enum Error {
+    /// A profile that does not serve.
+    #[error("{0}{hint}", hint = hint(.0))]
+    Profile(#[from] ProfileError),
+    /// Neither a name nor a file.
+    #[error("{name}: neither a file nor a built-in profile; these are {}{hint}", built_in_profiles::NAMES.join(", "))]
+    Neither {
+        /// Name that was given.
+        name: String,
+        /// Names that may be meant.
+        hint: String,
+    },
+    /// A table that cannot be written.
+    #[error(transparent)]
+    Table(#[from] table::Error),
+    /// Standard output.
+    #[error("standard output: {0}")]
+    Output(#[from] io::Error),
+}
+
+/// Returns how a file is made readable whose directions are not known.
+fn hint(error: &ProfileError) -> &'static str {
+    match error {
+        ProfileError::NotSaid { .. } => {
+            "; `wheelrail profile FILE --y-to …` has an option for it, and writes a file that says it itself"
+        }
+        _ => "",
+    }
+}
+
+fn unit(text: &str) -> Result<LengthUnit, String> {
+    LengthUnit::named(text).ok_or_else(|| "allowed is m, mm or in".to_owned())
+}
+
+/// Profile that is built in or in a file, of a body.
+pub fn named(name: &str, body: Body, smoothing: f64) -> Result<Profile, Error> {
+    let options = ReadOptions {
+        body: Some(body),
+        smoothing,
+        ..ReadOptions::default()
+    };
+    let profile = either(name, &options)?;
+    profile.require(body)?;
+    Ok(profile)
+}
+
+fn either(name: &str, options: &ReadOptions) -> Result<Profile, Error> {
+    if let Ok(profile) = Profile::built_in(name) {
+        return Ok(profile);
+    }
+    let path = Path::new(name);
+    if !path.exists() && path.extension().is_none() {
+        return Err(Error::Neither {
+            name: name.to_owned(),
+            hint: did_you_mean(name, built_in_profiles::NAMES),
+        });
+    }
+    Ok(Profile::read(path, options)?)
+}
+
+impl Options {
+    /// Runs the command.
+    pub fn run(&self) -> Result<(), Error> {
+        let Some(name) = &self.profile else {
+            let mut out = io::stdout().lock();
+            for name in built_in_profiles::NAMES {
+                let profile = Profile::built_in(name)?;
+                writeln!(out, "{name:8}{:8}{}", profile.body().name(), profile.source())?;
+            }
+            return Ok(());
+        };
+        let body = self.body.map(|body| match body {
+            BodyName::Rail => Body::Rail,
+            BodyName::Wheel => Body::Wheel,
+        });
+        let options = ReadOptions {
+            body,
+            unit: self.unit,
+            y_to: self.y_to.map(|y_to| match y_to {
+                Direction::Field => Lateral::ToField,
+                Direction::Gauge => Lateral::ToGauge,
+            }),
+            z_up: self.z.map(|z| matches!(z, Vertical::Up)),
+            part: self.part,
+            flange_back_position: self.flange_back_position,
+            smoothing: self.smoothing,
+        };
+        let mut profile = either(name, &options)?;
+        if let Some(body) = body {
+            profile.require(body)?;
+        }
+        if let Some(slope) = self.inclination {
+            profile = profile.inclined(slope.atan())?;
+        }
+        eprintln!("{}: {}, {}", profile.name(), profile.body().name(), profile.source());
+        let ending = self.output.as_deref().and_then(Path::extension);
+        match (
+            &self.output,
+            ending.map(|ending| ending.to_string_lossy().to_ascii_lowercase()),
+        ) {
+            (Some(path), Some(ending)) if ["prr", "prw", "ban", "whl"].contains(&ending.as_str()) => {
+                Ok(profile.write(path)?)
+            }
+            (path, _) => write(path.as_deref(), &profile),
+        }
+    }
+}
+
+/// Writes a table of a profile, of which the first two columns are read as a file of columns.
+fn write(path: Option<&Path>, profile: &Profile) -> Result<(), Error> {
+    let columns = [
+        ("y", "m"),
+        ("z", "m"),
+        ("arc_length", "m"),
+        ("inclination", "rad"),
+        ("curvature", "1/m"),
+    ];
+    let mut table = Table::open(path, columns.into_iter().map(|(name, unit)| heading(name, unit)))?;
+    for arc in profile.arc_lengths() {
+        let point = profile.at(*arc);
+        let inclination = point.tangent[1].atan2(point.tangent[0]);
+        let [y, z] = point.place;
+        table.write([y, z, *arc, inclination, point.curvature].into_iter())?;
+    }
+    Ok(table.finish()?)
+}
