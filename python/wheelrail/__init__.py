@@ -5,8 +5,10 @@
 - `creep_curves`: steady forces over longitudinal, lateral and spin creepage.
 - `preset`: a named set of parameters, for a wet rail for example.
 - `Instance`: the component step by step, for a master written by hand; `SavedState`: what it can go back to.
+- `Profile`, `contact_geometry`: profiles of wheels and rails, and where a wheelset touches its track.
 - `variables`: what there is to set and to read.
-- `wheelrail.plots`: pictures of a braking manoeuvre, of the patch in plan view, of creep curves.
+- `wheelrail.plots`: pictures of a braking manoeuvre, of the patch in plan view, of creep curves, of profiles
+  in contact.
 
 All quantities are in SI units, angles in radians, temperatures absolute.
 """
@@ -17,6 +19,7 @@ from typing import TYPE_CHECKING, Any
 from .archive import example, fmu_path, preset
 from .creep import creep_curves
 from .errors import InstanceClosedError, SimulationError, SimulationWarning
+from .geometry import Profile, contact_geometry
 from .instance import Instance
 from .simulation import simulate
 from .states import SavedState
@@ -29,9 +32,11 @@ if TYPE_CHECKING:
 __all__ = [
     "Instance",
     "InstanceClosedError",
+    "Profile",
     "SavedState",
     "SimulationError",
     "SimulationWarning",
+    "contact_geometry",
     "creep_curves",
     "example",
     "fmu_path",

@@ -1,6 +1,7 @@
 //! The command line `wheelrail`, and the archive that it packs in an importer written by others.
 
 mod fmu_runner;
+mod geometry;
 mod images;
 mod pack;
 mod presets;

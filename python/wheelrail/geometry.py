@@ -1,0 +1,285 @@
+"""Profiles of wheels and rails, and where a wheelset touches its track, by the command line `wheelrail`."""
+
+import os
+import re
+import shutil
+import subprocess
+import sysconfig
+import tempfile
+from collections.abc import Mapping, Sequence
+from os import PathLike, fspath
+from pathlib import Path
+from typing import Any, TypeAlias
+
+import numpy as np
+import pandas as pd
+
+from .archive import PACKAGE, AnyPath
+from .units import heading
+
+NAME = "wheelrail.exe" if os.name == "nt" else "wheelrail"
+# Names of a file, by which the command knows what a profile is: with y to the field side and z as the format has it.
+ENDINGS = {"rail": ".prr", "wheel": ".prw"}
+
+# Numbers that `contact_geometry` takes by name.
+DIMENSIONS = ["gauge", "gauge_depth", "rail_inclination", "flange_back_distance", "flange_back_position"]
+DIMENSIONS += ["wheel_radius", "wheel_radius_right", "smoothing"]
+
+
+def command_path() -> Path:
+    """Path of the command line: in a clone its own, else that which was installed with the package.
+
+    Raises
+    ------
+    FileNotFoundError
+        There is none: the package is that for platforms without a command.
+    """
+    clone = PACKAGE.parent.parent
+    places = [clone / "target" / "release" / NAME] if (clone / "Cargo.toml").exists() else []
+    schemes = [scheme for scheme in sysconfig.get_scheme_names() if scheme == f"{os.name}_user"]
+    places += [Path(sysconfig.get_path("scripts")) / NAME]
+    places += [Path(sysconfig.get_path("scripts", scheme)) / NAME for scheme in schemes]
+    found = next((path for path in places if path.exists()), None) or shutil.which(NAME)
+    if found is None:
+        raise FileNotFoundError(
+            f"the command {NAME} is neither in {' nor in '.join(str(path.parent) for path in places)}: profiles need a"
+            " package with it, or a clone in which `make command` was run"
+        )
+    return Path(found)
+
+
+def run(*arguments: str) -> str:
+    """Call the command; what it says beside its result.
+
+    Raises
+    ------
+    ValueError
+        It refused, in its words.
+    """
+    done = subprocess.run([command_path(), *arguments], capture_output=True, text=True, encoding="utf-8", check=False)
+    if done.returncode != 0:
+        raise ValueError(done.stderr.strip().removeprefix("wheelrail: ") or f"{arguments[0]}: {done.returncode}")
+    return done.stderr
+
+
+def options(values: Mapping[str, Any]) -> list[str]:
+    """Options of the command from names and values, those that are None left out."""
+    given = {name: value for name, value in values.items() if value is not None}
+    texts = {name: str(value) if isinstance(value, str | int) else repr(float(value)) for name, value in given.items()}
+    return [f"--{name.replace('_', '-')}={text}" for name, text in texts.items()]
+
+
+def table_of(path: Path) -> pd.DataFrame:
+    """A table that the command wrote, with names as headings and the units in `attrs`."""
+    table = pd.read_csv(path)
+    heads = [heading(str(column)) for column in table]
+    table.columns = pd.Index([head.name for head in heads])
+    table.attrs["units"] = {head.name: head.unit for head in heads if head.unit is not None}
+    return table
+
+
+class Profile:
+    """Profile of a wheel or a rail, built in or from a file.
+
+    y points to the field side, outwards from the track's middle, and z upward, in metres. A rail's origin is its
+    highest point, a wheel's its running circle. Where the file does not say how it is turned and in which unit it is,
+    the shape may show it; else the error says what has to be given.
+
+    Parameters
+    ----------
+    profile
+        A name of `Profile.built_in()`, or the path of a file: SIMPACK (.prr, .prw), MiniProf (.ban, .whl, .mpt),
+        VAMPIRE, or columns y and z.
+    body
+        "rail" or "wheel", where the file does not say it.
+    unit
+        Unit of the file's coordinates: "m", "mm" or "in".
+    y_to
+        Direction of the file's y: "field" or "gauge".
+    z
+        Direction of the file's z: "up" or "down".
+    part
+        Number of the profile in a file with more than one.
+    flange_back_position
+        Distance of a wheel's running circle from the back of its flange, where the file has another origin [m].
+    smoothing
+        Wavelength of the smoothing: waves of this length are halved [m].
+    inclination
+        Inclination that a rail is given, as a slope: 1/40.
+
+    Attributes
+    ----------
+    name, body, source
+        What it is called, of which body it is, and where it comes from.
+    points
+        Data frame: y, z, arc_length, inclination, curvature; `attrs["units"]` has their units.
+
+    Raises
+    ------
+    ValueError
+        It is no profile, or that of the other body.
+
+    Examples
+    --------
+    >>> rail = Profile("60E1", inclination=1 / 40)
+    >>> rail.points["z"].max()
+    0.0
+    """
+
+    def __init__(
+        self,
+        profile: AnyPath,
+        *,
+        body: str | None = None,
+        unit: str | None = None,
+        y_to: str | None = None,
+        z: str | None = None,
+        part: int | None = None,
+        flange_back_position: float | None = None,
+        smoothing: float | None = None,
+        inclination: float | None = None,
+    ) -> None:
+        """Read it."""
+        given = {"body": body, "unit": unit, "y_to": y_to, "z": z, "part": part, "smoothing": smoothing}
+        given |= {"flange_back_position": flange_back_position, "inclination": inclination}
+        self._arguments = ["profile", fspath(profile), *options(given)]
+        with tempfile.TemporaryDirectory() as folder:
+            table = Path(folder) / "profile.csv"
+            said = run(*self._arguments, "--output", str(table)).strip()
+            self.points = table_of(table)
+            # As a file that says itself how it is turned, for `contact_geometry` and `write`.
+            found = re.fullmatch(r"(.*): (rail|wheel), (.*)", said)
+            if found is None:
+                raise ValueError(f"{profile}: {said}")
+            self.name, self.body, self.source = found.groups()
+            own = Path(folder) / f"profile{ENDINGS[self.body]}"
+            run(*self._arguments, "--output", str(own))
+            self._text = own.read_text(encoding="utf-8")
+        self._built_in = self.name if inclination is None and self.name in self.built_in() else None
+
+    @classmethod
+    def from_points(cls, y: Any, z: Any, *, body: str, smoothing: float | None = None) -> "Profile":
+        """Profile through points, or smoothed.
+
+        Parameters
+        ----------
+        y, z
+            Places, y to the field side and z upward, in either order along the profile [m].
+        body
+            "rail" or "wheel".
+        smoothing
+            Wavelength of the smoothing: waves of this length are halved [m].
+        """
+        rows = np.column_stack([np.asarray(y, dtype=float), np.asarray(z, dtype=float)])
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder) / "points.csv"
+            np.savetxt(path, rows, delimiter=",", header="y [m],z [m]", comments="")
+            return cls(path, body=body, y_to="field", z="up", smoothing=smoothing)
+
+    @staticmethod
+    def built_in() -> list[str]:
+        """Names of the profiles that are built in."""
+        done = subprocess.run([command_path(), "profile"], capture_output=True, text=True, encoding="utf-8", check=True)
+        return [line.split()[0] for line in done.stdout.splitlines()]
+
+    def write(self, path: AnyPath) -> None:
+        """Write a file: SIMPACK (.prr, .prw), MiniProf (.ban, .whl), or CSV with arc length and curvature."""
+        with tempfile.TemporaryDirectory() as folder:
+            run("profile", self.argument(Path(folder), "profile"), "--output", fspath(path))
+
+    def argument(self, folder: Path, name: str) -> str:
+        """What the command is given for this profile: its name, or a file of the given name in a folder."""
+        if self._built_in is not None:
+            return self._built_in
+        path = folder / f"{name}{ENDINGS[self.body]}"
+        path.write_text(self._text, encoding="utf-8")
+        return str(path)
+
+    def __repr__(self) -> str:
+        """Name and body."""
+        return f"<Profile {self.name}: {self.body}, {self.source}>"
+
+
+AnyProfile: TypeAlias = "Profile | str | PathLike[str]"
+
+
+def contact_geometry(
+    rail: AnyProfile = "60E1",
+    wheel: AnyProfile = "S1002",
+    *,
+    rail_right: AnyProfile | None = None,
+    wheel_right: AnyProfile | None = None,
+    lateral: Sequence[float] = (-8e-3, 8e-3),
+    step: float = 1e-4,
+    yaw: float = 0.0,
+    outlines_at: float | None = None,
+    **dimensions: float,
+) -> pd.DataFrame:
+    """Where the wheels of a wheelset touch the rails, over its lateral displacement, without forces.
+
+    Both wheels touch: roll and height follow. Places on rail and wheel are positive to the field side, from the rail's
+    highest point and the wheel's running circle.
+
+    Parameters
+    ----------
+    rail, wheel
+        Profiles: names, paths of files that say how they are turned, or a `Profile`.
+    rail_right, wheel_right
+        Those of the right side, where they are others.
+    lateral
+        First and last lateral displacement, to the left [m].
+    step
+        Step of the displacement [m].
+    yaw
+        Yaw, anticlockwise from above [rad].
+    outlines_at
+        Displacement at which `attrs["outlines"]` has the outlines of rails and wheels, which
+        `plots.contact_geometry` draws [m].
+    **dimensions
+        `gauge` (1.435), `gauge_depth` (0.014), `rail_inclination` (a slope, 0.025; 0 for profiles that are inclined
+        already), `flange_back_distance` (1.36), `flange_back_position` (0.07), `wheel_radius` (0.46),
+        `wheel_radius_right`, `smoothing` of profiles from files (0) [m].
+
+    Returns
+    -------
+    pandas.DataFrame
+        A row for each displacement. `attrs["units"]` has the units, `attrs["jumps"]` the displacements at which a
+        contact jumps and from where to where, `attrs["conicity"]` the equivalent conicity at 3 mm, or None.
+
+    Raises
+    ------
+    ValueError
+        A profile or a dimension does not serve; a wheel stands beside its rail.
+
+    Examples
+    --------
+    >>> table = contact_geometry("60E1", "S1002", lateral=(-4e-3, 4e-3))
+    >>> round(table.attrs["conicity"], 3)
+    0.177
+    """
+    if others := [name for name in dimensions if name not in DIMENSIONS]:
+        raise TypeError(f"there is no dimension {others[0]}; there are {', '.join(DIMENSIONS)}")
+    first, last = lateral
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        given = {"rail": rail, "wheel": wheel, "rail_right": rail_right, "wheel_right": wheel_right}
+        profiles = {
+            key: value.argument(folder, key) if isinstance(value, Profile) else fspath(value)
+            for key, value in given.items()
+            if value is not None
+        }
+        places = {key: folder / f"{key}.csv" for key in ("output", "jumps", "outlines")}
+        if outlines_at is None:
+            del places["outlines"]
+        numbers = {"from": first, "to": last, "step": step, "yaw": yaw, "outlines_at": outlines_at, **dimensions}
+        files = {key: str(path) for key, path in places.items()}
+        said = run("geometry", *options(profiles | numbers | files))
+        table = table_of(places["output"])
+        table.attrs["jumps"] = table_of(places["jumps"]).to_dict("records")
+        if outlines_at is not None:
+            table.attrs["outlines"] = table_of(places["outlines"]).to_dict("list")
+    marker = "equivalent conicity at 3 mm: "
+    table.attrs["conicity"] = next(
+        (float(line.removeprefix(marker)) for line in said.splitlines() if line.startswith(marker)), None
+    )
+    return table

@@ -1,0 +1,75 @@
+"""Profiles and the contact geometry from Python: the command line's results as tables and a picture."""
+
+import sys
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+
+REPOSITORY = Path(__file__).resolve().parent.parent
+sys.path.insert(0, str(REPOSITORY / "python"))
+
+import wheelrail as package  # noqa: E402
+
+# The fixture that says, with a reason, where the command line is not built.
+pytestmark = pytest.mark.usefixtures("wheelrail")
+
+
+def test_profiles_that_are_built_in():
+    """A rail's highest point and a wheel's running circle are the origins, and curvatures those of the drawings."""
+    rail, wheel = package.Profile("60E1"), package.Profile("S1002")
+    assert (rail.body, wheel.body, wheel.source) == ("rail", "wheel", "EN 13715")
+    assert {"S1002", "60E1", "cone40"} <= set(package.Profile.built_in())
+    assert rail.points["z"].max() == pytest.approx(0.0, abs=1e-12)
+    crown = rail.points.loc[rail.points["y"].abs().idxmin()]
+    assert crown["curvature"] == pytest.approx(-1 / 0.3, rel=1e-6)
+    assert np.interp(0.0, wheel.points["y"], wheel.points["z"]) == pytest.approx(0.0, abs=1e-9)
+    assert rail.points.attrs["units"]["curvature"] == "1/m"
+    assert "60E1" in repr(rail)
+
+
+def test_points_and_files(tmp_path):
+    """Points give the profile that they are of, files what was written, and errors the words of the command."""
+    exact = package.Profile("S1002").points
+    profile = package.Profile.from_points(exact["y"], exact["z"], body="wheel", smoothing=1e-3)
+    at = np.linspace(-0.02, 0.05, 100)
+    np.testing.assert_allclose(
+        np.interp(at, profile.points["y"], profile.points["z"]), np.interp(at, exact["y"], exact["z"]), atol=1e-6
+    )
+    profile.write(tmp_path / "wheel.whl")
+    again = package.Profile(tmp_path / "wheel.whl")
+    assert again.body == "wheel"
+    assert "y to the field side by its shape" in again.source
+    with pytest.raises(ValueError, match="did you mean 60E1"):
+        package.Profile("61E1")
+    with pytest.raises(ValueError, match="no rail"):
+        package.Profile.from_points(exact["y"], exact["z"], body="rail")
+
+
+def test_contact_geometry_is_a_table():
+    """A profile of one's own, inclined and smoothed, gives what the names give."""
+    named = package.contact_geometry("60E1", "S1002", lateral=(-4e-3, 4e-3), step=5e-4)
+    own = package.contact_geometry(
+        package.Profile("60E1", inclination=0.025), "S1002", lateral=(-4e-3, 4e-3), step=5e-4, rail_inclination=0.0
+    )
+    assert named.attrs["units"]["left_on_rail"] == "m"
+    assert named.attrs["conicity"] == pytest.approx(0.177, abs=2e-3)
+    assert own.attrs["conicity"] == pytest.approx(named.attrs["conicity"], rel=0.02)
+    pd.testing.assert_series_equal(named["rolling_radius_difference"], own["rolling_radius_difference"], atol=2e-5)
+    assert any(abs(jump["lateral_displacement"]) < 1e-3 for jump in named.attrs["jumps"])
+    for wrong, words in [({"gauge": 5.0}, "gauge = 5"), ({"wheel": "60E1"}, "a wheel is needed")]:
+        with pytest.raises(ValueError, match=words):
+            package.contact_geometry(**wrong)
+    with pytest.raises(TypeError, match="no dimension height"):
+        package.contact_geometry(height=1.0)
+
+
+def test_the_picture_has_profiles_and_curves():
+    """Two panels of profiles where outlines were asked for, and three of curves."""
+    table = package.contact_geometry(step=5e-4, outlines_at=3e-3)
+    assert len(package.plots.contact_geometry(table).axes) == 5
+    del table.attrs["outlines"]
+    assert len(package.plots.contact_geometry(table, title="S1002 on 60E1").axes) == 3
+    with pytest.raises(ValueError, match="rolling_radius_difference"):
+        package.plots.contact_geometry(pd.DataFrame({"lateral_displacement": [0.0]}))

@@ -1,0 +1,124 @@
+//! `wheelrail geometry` and `wheelrail profile`: tables of the contact geometry, and profiles that go through files.
+
+use std::fs::{self, create_dir_all};
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+fn wheelrail(arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_wheelrail"))
+        .args(arguments)
+        .output()
+        .unwrap()
+}
+
+fn file(name: &str) -> PathBuf {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("geometry");
+    create_dir_all(&folder).unwrap();
+    folder.join(name)
+}
+
+/// Runs the command; what it writes to its standard output and beside.
+fn said(arguments: &[&str]) -> (String, String) {
+    let done = wheelrail(arguments);
+    let [out, beside] = [done.stdout, done.stderr].map(|bytes| String::from_utf8(bytes).unwrap());
+    assert!(done.status.success(), "{arguments:?}: {beside}");
+    (out, beside)
+}
+
+/// Column of a table, empty cells as what is not a number.
+fn column(table: &str, name: &str) -> Vec<f64> {
+    let mut lines = table.lines();
+    let place = lines.next().unwrap().split(',').position(|head| head == name);
+    let place = place.unwrap_or_else(|| panic!("no column {name}"));
+    let cell = |line: &str| line.split(',').nth(place).unwrap().parse().unwrap_or(f64::NAN);
+    lines.map(cell).collect()
+}
+
+/// S1002 on 60E1 as the documentation has it: the conicity at 3 mm in the table and beside it, and the jumps in their file.
+#[test]
+fn the_table_has_contacts_and_conicities() {
+    let (jumps, outlines) = (file("jumps.csv"), file("outlines.csv"));
+    let files = [&jumps, &outlines].map(|path| path.to_str().unwrap());
+    let (table, beside) = said(&[
+        "geometry",
+        "--step",
+        "5e-4",
+        "--jumps",
+        files[0],
+        "--outlines",
+        files[1],
+    ]);
+    let lateral = column(&table, "lateral_displacement [m]");
+    assert_eq!(lateral.len(), 33);
+    let at = lateral.iter().position(|&y| (y - 3e-3).abs() < 1e-9).unwrap();
+    let conicity = column(&table, "equivalent_conicity [1]");
+    assert!((conicity[at] - 0.177).abs() < 3e-3, "{}", conicity[at]);
+    assert!(conicity[16].is_nan(), "there is no amplitude at 0");
+    assert!(beside.contains("equivalent conicity at 3 mm: 0.17"), "{beside}");
+    let [left, right] = ["left", "right"].map(|side| column(&table, &format!("{side}_rolling_radius [m]")));
+    for k in 0..33 {
+        assert!((left[k] - right[32 - k]).abs() < 1e-12);
+    }
+    let jumps = fs::read_to_string(jumps).unwrap();
+    assert!(jumps.lines().any(|line| line.starts_with("left,0.00499")), "{jumps}");
+    let outlines = fs::read_to_string(outlines).unwrap();
+    for begin in ["left,rail,", "left,wheel,", "right,rail,", "right,wheel,"] {
+        assert!(outlines.lines().filter(|line| line.starts_with(begin)).count() > 200);
+    }
+}
+
+/// A profile that is written and read again gives the same contacts.
+#[test]
+fn profiles_go_through_files() {
+    let (rail, wheel) = (file("rail.prr"), file("wheel.csv"));
+    let [rail, wheel] = [&rail, &wheel].map(|path| path.to_str().unwrap());
+    said(&["profile", "60E1", "--inclination", "0.025", "-o", rail]);
+    said(&["profile", "S1002", "-o", wheel]);
+    let range = ["--from", "-0.002", "--to", "0.002", "--step", "1e-3"];
+    let (own, _) = said(&[&["geometry"][..], &range].concat());
+    let files = ["geometry", "--rail", rail, "--rail-inclination", "0", "--wheel", wheel];
+    let (read, _) = said(&[&files[..], &range].concat());
+    for name in ["left_on_wheel [m]", "right_on_rail [m]", "roll_angle [rad]"] {
+        for (own, read) in column(&own, name).into_iter().zip(column(&read, name)) {
+            // Splines round the jumps of the curvature off, over 0.25 mm.
+            assert!((own - read).abs() < 5e-5, "{name}: {own} {read}");
+        }
+    }
+    let (table, beside) = said(&["profile", wheel, "--body", "wheel"]);
+    assert!(table.starts_with("y [m],z [m],arc_length [m],inclination [rad],curvature [1/m]"));
+    assert!(
+        beside.contains("wheel, columns file wheel.csv, y to the field side by its shape"),
+        "{beside}"
+    );
+    let (list, _) = said(&["profile"]);
+    assert!(list.lines().any(|line| line.starts_with("49E1    rail")), "{list}");
+}
+
+#[test]
+fn what_cannot_be_is_refused() {
+    let rough = file("rough.csv");
+    fs::write(&rough, "y [mm],z [mm]\n-70,-20\n-60,-28\n").unwrap();
+    let rough = rough.to_str().unwrap();
+    for (arguments, words) in [
+        (&["geometry", "--rail", "61E1"][..], "did you mean 60E1"),
+        (
+            &["geometry", "--rail", "S1002"],
+            "S1002 is the profile of a wheel; a rail is needed",
+        ),
+        (&["geometry", "--wheel", "missing.whl"], "missing.whl"),
+        (&["geometry", "--wheel", rough], "rough.csv"),
+        (&["geometry", "--to", "0.05"], "beside its rail"),
+        (&["geometry", "--gauge", "5"], "gauge = 5"),
+        (&["geometry", "--step", "0"], "step = 0"),
+        (&["profile", rough], "--y-to"),
+        (&["profile", "S1002", "--inclination", "0.025"], "a rail is needed"),
+    ] {
+        let done = wheelrail(arguments);
+        let beside = String::from_utf8_lossy(&done.stderr).into_owned();
+        assert!(
+            !done.status.success() && beside.contains(words),
+            "{arguments:?}: {beside}"
+        );
+        assert!(done.stdout.is_empty());
+    }
+}
