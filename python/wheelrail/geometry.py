@@ -200,7 +200,7 @@ class Profile:
         return f"<Profile {self.name}: {self.body}, {self.source}>"
 
 
-AnyProfile: TypeAlias = "Profile | str | PathLike[str]"
+AnyProfile: TypeAlias = Profile | str | PathLike[str]
 
 
 def contact_geometry(

@@ -16,7 +16,8 @@ const MOST: usize = 3;
 
 fn likeness(name: &str, known: &str) -> f64 {
     let name = name.to_lowercase().replace(['-', ' '], "_");
-    let whole = strsim::normalized_damerau_levenshtein(&name, known);
+    let known = known.to_lowercase();
+    let whole = strsim::normalized_damerau_levenshtein(&name, &known);
     if name.len() >= SHORTEST_PART && known.contains(&name) {
         whole.max(PART)
     } else {

@@ -69,7 +69,7 @@ pub enum Error {
     /// A profile that does not serve.
     #[error("{0}{hint}", hint = hint(.0))]
     Profile(#[from] ProfileError),
-    /// Neither a name nor a file.
+    /// A profile that is neither built in nor a file.
     #[error("{name}: neither a file nor a built-in profile; these are {}{hint}", built_in_profiles::NAMES.join(", "))]
     Neither {
         /// Name that was given.

@@ -4,17 +4,21 @@
 //! |---|---|---|
 //! | `S1002` | wheel | EN 13715:2020, profile 1/40 of UIC 510-2 (formerly S1002), flange of 28 mm |
 //! | `cone20`, `cone40` | wheel without a flange, 1:20 and 1:40 | |
+//! | `UIC519A`, `UIC519B`, `UIC519H`, `UIC519I` | wheels A, B, H, I for the comparison of equivalent conicities | UIC 519, EN 15302:2008, annex D; see `norm` |
 //! | `60E1`, `60E2`, `54E1`, `49E1` | rail | EN 13674-1:2017 |
 //! | `UIC60` | rail 60 of the Manchester contact benchmark, upright | P. Shackleton, S. Iwnicki, *Vehicle System Dynamics* 46 (2008) |
 //!
 //! Rails stand upright, by their drawings; they are inclined by [`Profile::inclined`].
 
+use super::norm;
 use super::outline::{self, Part, bend};
 use super::{Body, Profile};
 use crate::error::ProfileError;
 
 /// Names of the profiles that are built in.
-pub const NAMES: [&str; 8] = ["S1002", "cone20", "cone40", "60E1", "60E2", "54E1", "49E1", "UIC60"];
+pub const NAMES: [&str; 12] = [
+    "S1002", "cone20", "cone40", "UIC519A", "UIC519B", "UIC519H", "UIC519I", "60E1", "60E2", "54E1", "49E1", "UIC60",
+];
 
 const STANDARD_RAIL: &str = "EN 13674-1";
 
@@ -28,6 +32,12 @@ impl Profile {
             "S1002" => s1002(),
             "CONE20" => cone("cone20", 1.0 / 20.0),
             "CONE40" => cone("cone40", 1.0 / 40.0),
+            name @ ("UIC519A" | "UIC519B" | "UIC519H" | "UIC519I") => profile(
+                Body::Wheel,
+                name,
+                "EN 15302 (UIC 519)",
+                &norm::wheel(name.chars().next_back().unwrap_or_default()),
+            ),
             "60E1" => rail("60E1", STANDARD_RAIL, &head_of_60e1()),
             "60E2" => rail("60E2", STANDARD_RAIL, &head_of_60e2()),
             "54E1" => rail("54E1", STANDARD_RAIL, &head_of_54e1()),

@@ -15,6 +15,7 @@ mod curve;
 pub mod files;
 mod height;
 mod measured;
+mod norm;
 mod outline;
 
 pub use height::HeightFunction;
