@@ -251,6 +251,7 @@ docs: demo verify
 	@$(PY) tools/update_docs.py
 	@$(PY) tools/verification_figures.py
 	@$(PY) tools/patch_axes.py
+	@$(PY) tools/profiles_figure.py
 	@cp results/paper_temperature.png results/braking.png results/braking_stop.png results/patch_fields.png results/patch_creep_curves.png docs/
 	@cp results/verification/*.png docs/verification/
 

@@ -175,7 +175,7 @@ def test_documentation_runs_where_there_is_only_pip(documented):
     assert answer["rows"] == 11001
     assert answer["force"][0] == pytest.approx(0.0, abs=1.0)
     assert answer["force"][-1] == pytest.approx(0.3 * 80e3, rel=0.01)
-    for picture in ("braking.png", "creep_curves.png", "over_time.png", "patch.png"):
+    for picture in ("braking.png", "creep_curves.png", "geometry.png", "over_time.png", "patch.png"):
         assert (folder / picture).stat().st_size > 20_000
 
 

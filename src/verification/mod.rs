@@ -12,6 +12,7 @@ pub mod creep_curve;
 pub mod creepage_jump;
 pub mod elastic_wheel;
 pub mod energy;
+pub mod equivalent_conicity;
 pub mod explicit_master;
 pub mod falling_friction;
 pub mod flash_temperature;
@@ -221,6 +222,10 @@ pub const CHECKS: &[Check] = &[
     Check {
         name: "Layer that flows",
         rows: yielding_layer::rows,
+    },
+    Check {
+        name: "Equivalent conicity",
+        rows: equivalent_conicity::rows,
     },
 ];
 
