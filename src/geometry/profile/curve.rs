@@ -110,9 +110,9 @@ impl Curve {
         self.cells.knots()
     }
 
-    /// Cells with the curve at both ends, each as it is within the cell.
-    pub fn spans(&self) -> impl DoubleEndedIterator<Item = ([f64; 2], [CurvePoint; 2])> + '_ {
-        self.cells.spans().map(|span| (span.ends, span.jets.map(point)))
+    /// Curve in a cell at an arc length, at the cell's ends as it is within the cell.
+    pub fn within(&self, cell: usize, arc: f64) -> CurvePoint {
+        point(self.cells.within(cell, arc))
     }
 
     /// Curve turned about the origin by an angle, from y towards z, and then shifted.

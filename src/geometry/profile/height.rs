@@ -1,11 +1,17 @@
 //! Height of a profile as a function of the lateral position.
 
+use super::CurvePoint;
 use super::curve::Curve;
 use crate::geometry::quintics::{Quintics, Span};
 
 /// Slope up to which the height counts as a function of the lateral position: 84.3° from the horizontal. Flanges are up to 75° steep
 /// where they carry.
 const STEEPEST: f64 = 10.0;
+
+/// Parts of a curve's cell for the height, over the square of the slope, and at most: towards the vertical the height's derivatives over y grow
+/// with the power of the slope. So the height is right to 1e-10 m up to 80°.
+const STEEP_PARTS: f64 = 0.5;
+const MOST_PARTS: f64 = 12.0;
 
 /// Height z(y) of a profile over the lateral position, in cells that are found in constant time; nothing is allocated to evaluate it.
 ///
@@ -15,22 +21,41 @@ pub struct HeightFunction {
     cells: Quintics<1>,
 }
 
+fn slope(point: &CurvePoint) -> f64 {
+    point.tangent[1] / point.tangent[0]
+}
+
+/// Cell between two points: the second derivative over y is κ (1 + (dz/dy)²)^(3/2).
+fn span(points: &[CurvePoint]) -> Span<1> {
+    let [from, to] = [points[0], points[1]];
+    let jet = |point: CurvePoint| {
+        [[
+            point.place[1],
+            slope(&point),
+            point.curvature / point.tangent[0].powi(3),
+        ]]
+    };
+    Span {
+        ends: [from.place[0], to.place[0]],
+        jets: [jet(from), jet(to)],
+    }
+}
+
 impl HeightFunction {
     /// Function of that part of a curve which holds an arc length and where y rises with the arc length, no steeper than 84°.
     pub(super) fn of_curve(curve: &Curve, within: f64) -> Option<HeightFunction> {
-        let flat = |tangent: [f64; 2]| tangent[0] > 0.0 && tangent[1].abs() <= STEEPEST * tangent[0];
+        let flat = |point: &CurvePoint| point.tangent[0] > 0.0 && slope(point).abs() <= STEEPEST;
         let mut spans: Vec<Span<1>> = Vec::new();
         let mut holds = false;
-        for (arcs, points) in curve.spans() {
-            if points.iter().all(|point| flat(point.tangent)) {
+        for (cell, arcs) in curve.arcs().windows(2).enumerate() {
+            let ends = [arcs[0], arcs[1]].map(|arc| curve.within(cell, arc));
+            if ends.iter().all(flat) {
                 holds |= arcs[0] <= within && within <= arcs[1];
-                spans.push(Span {
-                    ends: points.map(|point| point.place[0]),
-                    jets: points.map(|point| {
-                        let [ty, tz] = point.tangent;
-                        [[point.place[1], tz / ty, point.curvature / (ty * ty * ty)]]
-                    }),
-                });
+                let steepest = ends.iter().map(|point| slope(point).abs()).fold(0.0, f64::max);
+                let parts = (steepest.powi(2) * STEEP_PARTS).ceil().clamp(1.0, MOST_PARTS);
+                let place = |part: f64| curve.within(cell, arcs[0] + (arcs[1] - arcs[0]) * part / parts);
+                let nodes: Vec<_> = (0..=parts as usize).map(|part| place(part as f64)).collect();
+                spans.extend(nodes.windows(2).map(span));
             } else if holds {
                 break;
             } else {

@@ -393,3 +393,33 @@ fn wheels_of_the_norm_are_those_of_its_points() {
         }
     }
 }
+
+/// Height, slope and second derivative over y are those of the curve over its arc length, up to 80°: the second derivative to 1e-4 of it, but
+/// in the cells beside a jump of the curvature.
+#[test]
+fn the_height_is_that_of_the_curve() {
+    for name in built_in::NAMES {
+        let profile = built_in(name);
+        let height = profile.height_function().unwrap();
+        let [first, last] = height.range();
+        for place in 1..5000 {
+            let arc = profile.length() * f64::from(place) / 5e3;
+            let here = profile.at(arc);
+            let ([y, z], [ty, tz]) = (here.place, here.tangent);
+            let near = [-0.26e-3, 0.26e-3].map(|step| profile.at(arc + step).curvature);
+            if ty < 0.17 || y <= first || y >= last || (near[0] - near[1]).abs() > 2.0 {
+                continue;
+            }
+            let [value, slope, second] = height.value_slope_curvature(y);
+            assert!(
+                (value - z).abs() < 1e-10 && (slope - tz / ty).abs() < 1e-6 * (1.0 + slope * slope),
+                "{name} {y}"
+            );
+            let expected = here.curvature / ty.powi(3);
+            assert!(
+                (second - expected).abs() < 1e-4 * expected.abs() + 1e-4,
+                "{name} {y}: {second} {expected}"
+            );
+        }
+    }
+}

@@ -146,3 +146,64 @@ fn what_is_no_wheelset_is_refused() {
         assert!(error.to_string().contains(said), "{error}");
     }
 }
+
+/// Worn and rough profiles at random displacements and yaws, with a fixed seed: a place where both wheels touch and neither is lower, to the
+/// roughness between stations, or an error, and no panic.
+#[test]
+fn rough_profiles_do_no_harm() {
+    let mut state = 0x9e37_79b9_7f4a_7c15u64;
+    let mut draw = move |from: f64, to: f64| {
+        // Marsaglia's xorshift.
+        state ^= state << 13;
+        state ^= state >> 7;
+        state ^= state << 17;
+        from + (to - from) * (state >> 11) as f64 / (1u64 << 53) as f64
+    };
+    let mut touched = 0;
+    for round in 0..40 {
+        let mut worn = |name: &str| {
+            let profile = built_in(name);
+            let (depth, rough) = (draw(0.0, 2e-3), draw(0.0, 2e-5));
+            let (place, breadth) = (draw(-40e-3, 20e-3), draw(3e-3, 20e-3));
+            let sign = if profile.body() == Body::Rail { -1.0 } else { 1.0 };
+            let points: Vec<_> = profile
+                .points()
+                .into_iter()
+                .map(|[y, z]| {
+                    [
+                        y,
+                        z + sign * depth * (-((y - place) / breadth).powi(2)).exp() + draw(-rough, rough),
+                    ]
+                })
+                .collect();
+            let smoothing = if round % 2 == 0 { 0.0 } else { 3e-3 };
+            Profile::from_points(profile.body(), name, "a test", &points, smoothing)
+        };
+        let (Ok(rail), Ok(wheel)) = (worn("60E1"), worn("S1002")) else {
+            continue;
+        };
+        let Ok(wheelset) = Wheelset::new([&rail; 2], [&wheel; 2], &Dimensions::default()) else {
+            continue;
+        };
+        for _ in 0..5 {
+            let (lateral, yaw) = (draw(-12e-3, 12e-3), draw(-60e-3, 60e-3));
+            let Ok(pose) = wheelset.at(lateral, yaw) else {
+                continue;
+            };
+            touched += 1;
+            for touch in pose.touches {
+                let values = [
+                    touch.on_rail,
+                    touch.on_wheel,
+                    touch.ahead,
+                    touch.inclination,
+                    touch.rolling_radius,
+                ];
+                assert!(values.iter().all(|value| value.is_finite()));
+                assert!((touch.rolling_radius - 0.46).abs() < 0.05);
+            }
+            assert!(pose.roll.abs() < LARGEST_ROLL && pose.vertical.abs() < 0.05);
+        }
+    }
+    assert!(touched > 80, "{touched}");
+}
