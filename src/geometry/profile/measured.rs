@@ -221,3 +221,6 @@ fn piece(points: &[Weighted], inner: [bool; 2], smoothing: f64, cell: f64) -> Op
     let regular = |(_, point): &(f64, CurvePoint)| point.tangent[0].is_finite() && point.curvature.is_finite();
     nodes.iter().all(regular).then_some(Piece { nodes })
 }
+
+#[cfg(test)]
+mod tests;
