@@ -78,7 +78,8 @@
 //!
 //! 1. `parameters` and `signals`: every quantity that goes in and out, with unit, default, range and source. `settings`: limits and
 //!    tolerances of the methods, each with its reason.
-//! 2. `body`: compliance of rail and wheel, the near field in closed form and the rest by finite elements. What is computed once;
+//! 2. `geometry`: undeformed surfaces; `geometry::profile`, wheels and rails as they are ([`Profile`]), and `geometry::wheelset`
+//!    ([`contact_geometry`]), where they touch. `body`: compliance of rail and wheel, the near field in closed form and the rest by finite elements. What is computed once;
 //!    after it, no sparse system is solved.
 //! 3. `friction`: the laws of μ(θ), and Coulomb's law. `mechanics`: tractions for given temperature and wear.
 //! 4. `transport`, `heat`, `wear`: temperature and wear of the rail for given tractions; `heat::incoming`: the rail that the

@@ -183,7 +183,7 @@ class Profile:
         return [line.split()[0] for line in done.stdout.splitlines()]
 
     def write(self, path: AnyPath) -> None:
-        """Write a file: SIMPACK (.prr, .prw), MiniProf (.ban, .whl), or CSV with arc length and curvature."""
+        """Write a file: SIMPACK (.prr, .prw), MiniProf (.ban, .whl, .mpt), VAMPIRE (.rai, .whe), or CSV of `points`."""
         with tempfile.TemporaryDirectory() as folder:
             run("profile", self.argument(Path(folder), "profile"), "--output", fspath(path))
 

@@ -16,7 +16,7 @@ const CLOSED_FORM: &str = "closed form, second order in the cone's angle";
 const NORM: &str = "EN 15302:2008, annexes E and F";
 /// Tolerance of the closed form: what its order leaves out is (r₀ γ/b)², 1e-3 of the conicity.
 const SECOND_ORDER: f64 = 1e-3;
-/// Wheels, diameter of the right wheel less that of the left one [m], conicity at 3 mm.
+/// Wheels, diameter of the right wheel less that of the left one, `m`, conicity at 3 mm.
 const RESULTS: [(&str, f64, f64); 8] = [
     ("A", 0.0, 0.188),
     ("B", 0.0, 0.058),

@@ -39,8 +39,8 @@ pub struct Options {
     /// Inclination that a rail is given, as a slope.
     #[arg(long, value_name = "SLOPE", allow_negative_numbers = true)]
     inclination: Option<f64>,
-    /// File for the profile: SIMPACK's (.prr, .prw), MiniProf's (.ban, .whl), or CSV with arc length, inclination and curvature; without
-    /// it the CSV goes to the standard output.
+    /// File for the profile: SIMPACK's (.prr, .prw), MiniProf's (.ban, .whl, .mpt), VAMPIRE's (.rai, .whe), or CSV with arc length,
+    /// inclination and curvature; without it the CSV goes to the standard output.
     #[arg(short, long, value_name = "OUT")]
     output: Option<PathBuf>,
 }
@@ -165,7 +165,9 @@ impl Options {
             &self.output,
             ending.map(|ending| ending.to_string_lossy().to_ascii_lowercase()),
         ) {
-            (Some(path), Some(ending)) if ["prr", "prw", "ban", "whl"].contains(&ending.as_str()) => {
+            (Some(path), Some(ending))
+                if ["prr", "prw", "ban", "whl", "mpt", "rai", "whe"].contains(&ending.as_str()) =>
+            {
                 Ok(profile.write(path)?)
             }
             (path, _) => write(path.as_deref(), &profile),

@@ -49,7 +49,7 @@ fn point([[y, dy, ddy], [z, dz, ddz]]: Jet<2>) -> CurvePoint {
 
 impl Curve {
     /// A curve of pieces that follow each other. Each is shifted to where the one before ends, by what their sources have rounded; at the
-    /// joint both take the mean of their directions, unless these differ by more than `kink` [rad].
+    /// joint both take the mean of their directions, unless these differ by more than `kink`, rad.
     ///
     /// `None` where there is no piece of two nodes.
     pub fn of_pieces(mut pieces: Vec<Piece>, kink: f64) -> Option<Curve> {

@@ -72,7 +72,7 @@ impl HeightFunction {
         self.cells.range()
     }
 
-    /// Height z [m], slope dz/dy and second derivative d²z/dy² [1/m] at a lateral position, `m`; beyond the range on the straight
+    /// Height z, `m`, slope dz/dy and second derivative d²z/dy², `1/m`, at a lateral position, `m`; beyond the range on the straight
     /// lines that begin at its ends.
     pub fn value_slope_curvature(&self, y: f64) -> [f64; 3] {
         self.cells.at(y)[0]

@@ -26,7 +26,7 @@ const ALONE: f64 = 2e-3;
 const GAP: (f64, f64) = (15e-3, 10.0);
 /// Weight of a kink against that of other points: both sides of it meet there.
 const KINK_WEIGHT: f64 = 1e6;
-/// Shortest cell of the curve, `m`, unless the points are closer: 10,000 of them for the longest profile.
+/// Shortest cell of the curve, `m`, however close the points are: 10,000 of them for the longest profile.
 const SHORTEST_CELL: f64 = 0.05e-3;
 
 /// A point with its weight in the smoothing.

@@ -47,7 +47,7 @@ fn assert_same(found: &Profile, expected: &Profile) {
 fn what_is_written_is_read_back() {
     for name in ["S1002", "60E1", "60E2", "54E1", "49E1", "UIC60"] {
         let profile = built_in(name);
-        for format in [Format::Simpack, Format::MiniProf, Format::Columns] {
+        for format in [Format::Simpack, Format::MiniProf, Format::Columns, Format::Vampire] {
             let options = ReadOptions {
                 body: Some(profile.body()),
                 ..ReadOptions::default()
@@ -56,6 +56,30 @@ fn what_is_written_is_read_back() {
             assert_same(&found, &profile);
         }
     }
+}
+
+/// Each end of a name has its format, which reads back what was written.
+#[test]
+fn files_are_written_by_the_end_of_their_names() {
+    let folder = std::env::temp_dir().join(format!("wheelrail-profiles-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).unwrap();
+    let wheel = built_in("S1002");
+    let options = ReadOptions {
+        body: Some(Body::Wheel),
+        ..ReadOptions::default()
+    };
+    for ending in ["prw", "whl", "mpt", "whe", "csv", "txt"] {
+        let path = folder.join(format!("wheel.{ending}"));
+        wheel.write(&path).unwrap();
+        assert_same(&Profile::read(&path, &options).unwrap(), &wheel);
+    }
+    std::fs::remove_dir_all(&folder).unwrap();
+    let error = wheel.write(&folder.join("wheel.prw")).unwrap_err().to_string();
+    assert!(error.contains("wheel.prw"), "{error}");
+    let error = Profile::read(&folder.join("wheel.prw"), &options)
+        .unwrap_err()
+        .to_string();
+    assert!(error.contains("wheel.prw"), "{error}");
 }
 
 /// Flanges tell how the file of a wheel is turned; the source says what was found.
