@@ -2,7 +2,7 @@
 
 use std::fs::{self, create_dir_all};
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::process::{Command, Output, Stdio};
 
 fn wheelrail(arguments: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_wheelrail"))
@@ -121,4 +121,19 @@ fn what_cannot_be_is_refused() {
         );
         assert!(done.stdout.is_empty());
     }
+}
+
+/// Whoever reads a few lines has seen enough, as in `wheelrail profile S1002 | head`.
+#[test]
+fn output_that_nobody_reads_any_more_is_no_error() {
+    let mut child = Command::new(env!("CARGO_BIN_EXE_wheelrail"))
+        .args(["profile", "S1002"])
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    drop(child.stdout.take());
+    let done = child.wait_with_output().unwrap();
+    let beside = String::from_utf8_lossy(&done.stderr).into_owned();
+    assert!(done.status.success() && !beside.contains("wheelrail:"), "{beside}");
 }

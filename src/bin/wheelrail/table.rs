@@ -36,9 +36,17 @@ impl Error {
 
     /// Wraps an error of the content of the file at the given path.
     pub fn csv(path: &Path) -> impl Fn(csv::Error) -> Error {
-        |source| Error::Csv {
-            path: path.to_owned(),
-            source,
+        |source| {
+            let path = path.to_owned();
+            if !source.is_io_error() {
+                return Error::Csv { path, source };
+            }
+            // An error of the system that is known as one: of output that nobody reads any more, for example.
+            let source = match source.into_kind() {
+                csv::ErrorKind::Io(source) => source,
+                kind => io::Error::other(format!("{kind:?}")),
+            };
+            Error::File { path, source }
         }
     }
 }

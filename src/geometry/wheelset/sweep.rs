@@ -24,6 +24,8 @@ pub struct Jump {
     pub on_wheel: [f64; 2],
     /// Place on the rail at smaller and at larger displacements, `m`.
     pub on_rail: [f64; 2],
+    /// Difference of the rolling radii, left less right, at smaller and at larger displacements, `m`.
+    pub radius_difference: [f64; 2],
 }
 
 /// Places of a wheelset over its lateral displacement, and what follows from them.
@@ -73,10 +75,27 @@ impl Sweep {
         Ok(Sweep { poses, jumps })
     }
 
+    /// Difference of the rolling radii, left less right, over the displacement, `m`: with both values at each jump, a displacement of 1e-8 m
+    /// apart, so that lines between the points are as good between the jumps as beside them.
+    pub fn radius_differences(&self) -> (Vec<f64>, Vec<f64>) {
+        let poses = self.poses.iter().map(|pose| (pose.lateral, pose.radius_difference()));
+        let jumps = self.jumps.iter().flat_map(|jump| {
+            let [before, after] = jump.radius_difference;
+            [
+                (jump.lateral - 0.5 * CLOSE, before),
+                (jump.lateral + 0.5 * CLOSE, after),
+            ]
+        });
+        let mut points: Vec<_> = poses.chain(jumps).collect();
+        points.sort_by(|a, b| a.0.total_cmp(&b.0));
+        // Jumps of both sides at one displacement are one, and one at a displacement of the table is between it and the next one.
+        points.dedup_by(|next, last| next.0 - last.0 < 0.1 * CLOSE);
+        points.into_iter().unzip()
+    }
+
     /// Equivalent conicity of an amplitude, `m`; `None` where no motion of that amplitude lies within the displacements.
     pub fn conicity(&self, amplitude: f64) -> Option<Conicity> {
-        let lateral: Vec<_> = self.poses.iter().map(|pose| pose.lateral).collect();
-        let difference: Vec<_> = self.poses.iter().map(Pose::radius_difference).collect();
+        let (lateral, difference) = self.radius_differences();
         equivalent_conicity(&lateral, &difference, amplitude)
     }
 }
@@ -105,5 +124,6 @@ fn jump(wheelset: &Wheelset, from: &Pose, to: &Pose, side: usize) -> Result<Opti
         side,
         on_wheel: touches.map(|touch| touch.on_wheel),
         on_rail: touches.map(|touch| touch.on_rail),
+        radius_difference: [from, to].map(|pose| pose.radius_difference()),
     }))
 }
