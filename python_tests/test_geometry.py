@@ -58,6 +58,9 @@ def test_contact_geometry_is_a_table():
     assert own.attrs["conicity"] == pytest.approx(named.attrs["conicity"], rel=0.02)
     pd.testing.assert_series_equal(named["rolling_radius_difference"], own["rolling_radius_difference"], atol=2e-5)
     assert any(abs(jump["lateral_displacement"]) < 1e-3 for jump in named.attrs["jumps"])
+    level = package.contact_geometry("60E1", "S1002", lateral=(-4e-3, 4e-3), step=5e-4, level=True)
+    assert (level["roll_angle"] == 0.0).all()
+    assert 0.9 < level.attrs["conicity"] / named.attrs["conicity"] < 1.0
     for wrong, words in [({"gauge": 5.0}, "gauge = 5"), ({"wheel": "60E1"}, "a wheel is needed")]:
         with pytest.raises(ValueError, match=words):
             package.contact_geometry(**wrong)

@@ -212,6 +212,7 @@ def contact_geometry(
     lateral: Sequence[float] = (-8e-3, 8e-3),
     step: float = 1e-4,
     yaw: float = 0.0,
+    level: bool = False,
     outlines_at: float | None = None,
     **dimensions: float,
 ) -> pd.DataFrame:
@@ -232,6 +233,8 @@ def contact_geometry(
         Step of the displacement [m].
     yaw
         Yaw, anticlockwise from above [rad].
+    level
+        Whether the axle stays level, each wheel touching by itself: the reference results of EN 15302 are without roll.
     outlines_at
         Displacement at which `attrs["outlines"]` has the outlines of rails and wheels, which
         `plots.contact_geometry` draws [m].
@@ -273,7 +276,7 @@ def contact_geometry(
             del places["outlines"]
         numbers = {"from": first, "to": last, "step": step, "yaw": yaw, "outlines_at": outlines_at, **dimensions}
         files = {key: str(path) for key, path in places.items()}
-        said = run("geometry", *options(profiles | numbers | files))
+        said = run("geometry", *options(profiles | numbers | files), *(["--level"] if level else []))
         table = table_of(places["output"])
         table.attrs["jumps"] = table_of(places["jumps"]).to_dict("records")
         if outlines_at is not None:

@@ -58,6 +58,9 @@ pub struct Geometry {
     /// Radius of the right wheel, where it is another one, `m`.
     #[arg(long, value_name = "METRES")]
     wheel_radius_right: Option<f64>,
+    /// Keep the axle level, each wheel touching by itself: the reference results of EN 15302 are without roll.
+    #[arg(long)]
+    level: bool,
     /// CSV file for the table; without it the table goes to the standard output.
     #[arg(short, long, value_name = "OUT.csv")]
     output: Option<PathBuf>,

@@ -88,7 +88,7 @@ pub struct Pose {
     pub lateral: f64,
     /// Yaw, anticlockwise seen from above, rad.
     pub yaw: f64,
-    /// Roll about the direction of travel, the left wheel upward, rad.
+    /// Roll about the direction of travel, the left wheel upward, rad; 0 of a wheelset that stays level.
     pub roll: f64,
     /// Height of the wheelset's centre above the nominal radius, the mean of both wheels', `m`.
     pub vertical: f64,
@@ -108,6 +108,8 @@ impl Pose {
 pub struct Wheelset {
     sides: [Pair; 2],
     radius: f64,
+    /// Whether the axle stays level.
+    level: bool,
 }
 
 /// Largest yaw, rad.
@@ -135,7 +137,14 @@ impl Wheelset {
         Ok(Wheelset {
             sides: [pair(0)?, pair(1)?],
             radius: 0.5 * (dimensions.wheel_radii[0] + dimensions.wheel_radii[1]),
+            level: false,
         })
+    }
+
+    /// Wheelset whose axle stays level: each wheel touches by itself, at a height of its own. The reference results of EN 15302 are those
+    /// without roll.
+    pub fn level(self) -> Wheelset {
+        Wheelset { level: true, ..self }
     }
 
     /// Attitudes of both sides as each sees them: the right one in the mirror.
@@ -163,7 +172,8 @@ impl Wheelset {
             let [left, right] = Self::attitudes(lateral, yaw, roll);
             Some(self.sides[0].clearance(&left)? - self.sides[1].clearance(&right)?)
         };
-        let roll = level(tilt).ok_or_else(beside)?;
+        let roll = if self.level { Some(0.0) } else { root(tilt) };
+        let roll = roll.ok_or_else(beside)?;
         let attitudes = Self::attitudes(lateral, yaw, roll);
         let left = self.sides[0].touch(&attitudes[0]).ok_or_else(beside)?;
         let right = self.sides[1].touch(&attitudes[1]).ok_or_else(beside)?;
@@ -188,7 +198,7 @@ impl Wheelset {
 
 /// Root of a function that rises through 0: bracketed from 0 on, then by Ridders' method, which needs no derivative and halves its bracket
 /// in any case. `None` where there is none within the largest roll.
-fn level(tilt: impl Fn(f64) -> Option<f64>) -> Option<f64> {
+fn root(tilt: impl Fn(f64) -> Option<f64>) -> Option<f64> {
     let here = tilt(0.0)?;
     if here.abs() <= LEVEL {
         return Some(0.0);
