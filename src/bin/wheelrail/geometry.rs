@@ -4,7 +4,7 @@ use crate::profile;
 use crate::table::{self, Table, heading};
 use clap::Args;
 use std::path::PathBuf;
-use wheelrail::contact_geometry::{Dimensions, Jump, Sweep, Touch, Wheelset};
+use wheelrail::contact_geometry::{Dimensions, Jump, Sweep, Touch, Wheelset, equivalent_conicity};
 use wheelrail::{Body, Profile, ProfileError};
 
 /// Options of `geometry`.
@@ -99,11 +99,10 @@ impl Geometry {
     pub fn run(&self) -> Result<(), Error> {
         let wheelset = self.wheelset()?;
         let sweep = Sweep::new(&wheelset, [self.from, self.to], self.step, self.yaw)?;
-        // Each amplitude serves two displacements.
-        let conicities = sweep.poses.iter().map(|pose| sweep.conicity(pose.lateral.abs()));
-        let conicities: Vec<_> = conicities.map(|found| found.map(|found| found.conicity)).collect();
+        let (lateral, difference) = sweep.radius_differences();
         let mut out = Table::open(self.output.as_deref(), headings())?;
-        for (pose, conicity) in sweep.poses.iter().zip(conicities) {
+        for pose in &sweep.poses {
+            let conicity = equivalent_conicity(&lateral, &difference, pose.lateral.abs());
             let touches = pose.touches.iter().flat_map(|touch| {
                 let Touch {
                     on_rail,
@@ -116,7 +115,7 @@ impl Geometry {
             });
             let place = [pose.lateral, pose.yaw, pose.roll, pose.vertical];
             let row = place.into_iter().chain(touches).chain([pose.radius_difference()]);
-            out.write_some(row.map(Some).chain([conicity]))?;
+            out.write_some(row.map(Some).chain([conicity.map(|found| found.conicity)]))?;
         }
         out.finish()?;
         if let Some(path) = &self.jumps {

@@ -4,8 +4,8 @@ use super::conicity::{Conicity, equivalent_conicity};
 use super::{Pose, Wheelset};
 use crate::error::ProfileError;
 
-/// Displacements at most.
-const MOST: usize = 100_000;
+/// Displacements at most: a conicity for each takes as many additions as there are displacements.
+const MOST: usize = 20_000;
 /// Way of a contact on the wheel between two displacements above which a jump is looked for, `m`.
 const SUSPECT: f64 = 0.3e-3;
 /// Way that is a jump where the displacement changes by [`CLOSE`], `m`.
