@@ -147,11 +147,8 @@ impl Geometry {
             flange_back_position: self.flange_back_position,
             wheel_radii: [radius, self.wheel_radius_right.unwrap_or(radius)],
         };
-        Ok(Wheelset::new(
-            [&rail, &rail_right],
-            [&wheel, &wheel_right],
-            &dimensions,
-        )?)
+        let wheelset = Wheelset::new([&rail, &rail_right], [&wheel, &wheel_right], &dimensions)?;
+        Ok(if self.level { wheelset.level() } else { wheelset })
     }
 
     fn write_outlines(&self, path: &std::path::Path, wheelset: &Wheelset) -> Result<(), Error> {
