@@ -58,6 +58,8 @@ pub struct StepSettings {
     /// Number of sub-steps in which the rest of a step is taken staggered whose coupled equations are not solved; 0 refuses such a
     /// step.
     pub staggered_substeps: usize,
+    /// Number of times in one step that a staggered sub-step that fails is tried again with a quarter of its length.
+    pub staggered_retries: usize,
     /// Budget of a step in multiplications and additions, about: counted, not timed.
     pub work: u64,
 }
@@ -244,6 +246,7 @@ impl Default for StepSettings {
             retries: 12,
             substeps_at_limit: 4,
             staggered_substeps: 4,
+            staggered_retries: 6,
             work: 100_000_000,
         }
     }

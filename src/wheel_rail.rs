@@ -247,8 +247,8 @@ impl Model {
             substep = substep.min(settings.first_substep * self.passage_time(inputs));
         }
         let mut convergence = Convergence::default();
-        let (mut retries, mut at_limit) = (0, 0);
-        let mut failure = None;
+        let (mut retries, mut staggered_retries, mut at_limit) = (0, 0, 0);
+        let mut failure: Option<Error> = None;
         while committed < duration {
             // The last sub-step takes the rest, so that no sliver is left over by rounding.
             let remaining = duration - committed;
@@ -270,11 +270,15 @@ impl Model {
                     return Err(interrupted(committed, error));
                 }
                 Err(error) => {
-                    // Of two failures the first says why.
-                    if let Some(first) = failure {
-                        return Err(interrupted(committed, first));
-                    }
-                    if retries < settings.retries && !matches!(error, Error::TooMuchWork { .. }) {
+                    if let Some(first) = &failure {
+                        // Of two failures the first says why.
+                        if staggered_retries == settings.staggered_retries {
+                            return Err(interrupted(committed, first.clone()));
+                        }
+                        staggered_retries += 1;
+                        substep = 0.25 * length;
+                        largest_substep = 0.5 * length;
+                    } else if retries < settings.retries && !matches!(error, Error::TooMuchWork { .. }) {
                         // A shorter sub-step starts closer to its solution.
                         retries += 1;
                         substep = 0.25 * length;
