@@ -217,6 +217,7 @@ pub fn normal_problem<'a>(
         grid: &problem.operators.grid,
         transform: &problem.operators.transform,
         normal_influence: &problem.operators.normal_influence,
+        narrow: &[],
         gap,
         wear_compliance,
         constraint,

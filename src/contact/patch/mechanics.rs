@@ -119,6 +119,7 @@ pub fn solve_normal(
             grid,
             transform: &operators.transform,
             normal_influence: &operators.normal_influence,
+            narrow: &operators.narrow_normal,
             gap: &solvers.gap,
             wear_compliance: &solvers.wear_compliance,
             constraint,

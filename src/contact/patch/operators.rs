@@ -43,6 +43,8 @@ pub struct PatchOperators {
     /// Transforms that serve fewer strips, ascending, with the tables of u by shear for them: a product costs as much as it serves
     /// strips.
     pub narrow: Vec<(Transform, Tables<f64>)>,
+    /// The same with the tables of the normal influence, for windows whose contact is known to be within a part of them; none else.
+    pub narrow_normal: Vec<(Transform, Tables<f64>)>,
     /// The kernels of u_x by τ_x and of u_y by τ_y of a strip on itself, by the lag along x, as the tables have it.
     pub strip_kernels: [Vec<f64>; 2],
     /// Displacement u by pressure, and with the same tables the upward displacement by shear, scaled; none where the bodies are alike.
@@ -78,14 +80,14 @@ impl PatchOperators {
             half_length,
             half_breadth,
         );
-        PatchOperators::on_grid(parameters, grid)
+        PatchOperators::on_grid(parameters, grid, &[])
     }
 
-    /// Computes influence and depth modes for a grid.
+    /// Computes influence and depth modes for a grid, with transforms of the normal influence for so many strips, ascending.
     ///
     /// # Errors
     /// [`crate::error::Error::DepthBasis`].
-    pub fn on_grid(parameters: &Parameters, grid: Grid) -> Result<PatchOperators> {
+    pub fn on_grid(parameters: &Parameters, grid: Grid, narrow_normal: &[usize]) -> Result<PatchOperators> {
         let ellipse = parameters.hertz_ellipse(parameters.largest_load);
         let scales = Scales {
             pressure: ellipse.peak_pressure,
@@ -111,6 +113,14 @@ impl PatchOperators {
                 .map(|narrow| {
                     let tables = shear_tables(&kernels, &narrow);
                     (narrow, tables)
+                })
+                .collect(),
+            narrow_normal: narrow_normal
+                .iter()
+                .map(|&strips| Transform::new(&grid, strips))
+                .map(|transform| {
+                    let tables = transform.scalar_tables(|lag| kernels.normal(lag));
+                    (transform, tables)
                 })
                 .collect(),
             strip_kernels: strip_kernels(&kernels),

@@ -59,6 +59,8 @@ impl SurfaceOperators {
                 BROADEST * half_breadth,
             ),
         };
+        let strips = sizes.largest.strips;
+        let narrow = [strips / 3, strips / 2, 2 * strips / 3].map(|strips| strips.max(2));
         let [first, last] = rail.range();
         let points = ((last - first) / SCAN_STEP) as usize;
         let scan = (0..=points).map(|point| {
@@ -72,7 +74,7 @@ impl SurfaceOperators {
             wheel,
             side: if parameters.side == Side::Right { -1.0 } else { 1.0 },
             shapes: shapes
-                .map(|(length, breadth)| PatchOperators::on_grid(parameters, sizes.grid(length, breadth)))
+                .map(|(length, breadth)| PatchOperators::on_grid(parameters, sizes.grid(length, breadth), &narrow))
                 .collect::<Result<_>>()?,
             along: Interpolation::new(sizes.largest.cells),
             sizes,

@@ -15,6 +15,7 @@ use crate::mechanics::normal::normal_problem::Constraint;
 use crate::numerics::dense;
 use crate::settings::PatchSettings;
 use nalgebra::DMatrix;
+use std::ops::Range;
 
 /// Normal influence of the cells on one another, with the factors of the preconditioner.
 #[derive(Debug, Clone)]
@@ -82,6 +83,9 @@ pub struct PatchNormalProblem<'a> {
     pub transform: &'a Transform,
     /// A.
     pub normal_influence: &'a NormalInfluence,
+    /// Transforms that serve fewer strips, ascending, with the tables of A for them: where a penetration is given, contact is only where the
+    /// undeformed bodies overlap, and nothing else need be looked at. None looks at the whole grid.
+    pub narrow: &'a [(Transform, Tables<f64>)],
     /// g on the grid.
     pub gap: &'a [f64],
     /// D on the grid.
@@ -115,6 +119,10 @@ pub struct Normal {
     wear_compliance: Vec<f64>,
     /// Separation w of all cells.
     pub separation: Vec<f64>,
+    /// Part of the grid that is looked at.
+    window: Window,
+    /// Part of the grid on which the displacement is known.
+    displaced: Window,
     /// Multiplications and additions in this step.
     work_done: u64,
     /// Conjugate gradients since the solver was made.
@@ -147,6 +155,8 @@ impl Normal {
             pressure: on_grid(),
             wear_compliance: on_grid(),
             separation: on_grid(),
+            window: Window::whole(grid),
+            displaced: Window::whole(grid),
             work_done: 0,
             iterations: 0,
         }
@@ -174,6 +184,7 @@ impl Normal {
     /// [`Error::NormalNotConverged`].
     pub fn solve(&mut self, problem: &PatchNormalProblem, contact: &mut Contact, pressure: &mut [f64]) -> Result<f64> {
         let grid = problem.grid;
+        self.look_at(problem);
         start(problem, &self.settings, pressure);
         let mut settled = false;
         let mut left = f64::INFINITY;
@@ -209,16 +220,76 @@ impl Normal {
         })
     }
 
+    /// Sets the part of the grid that is looked at: where the undeformed bodies overlap, as there is no contact elsewhere, and two
+    /// cells around.
+    fn look_at(&mut self, problem: &PatchNormalProblem) {
+        const AROUND: usize = 2;
+        let grid = problem.grid;
+        self.window = Window::whole(grid);
+        let Constraint::Penetration(penetration) = problem.constraint else {
+            return;
+        };
+        if problem.narrow.is_empty() {
+            return;
+        }
+        let (mut strips, mut cells) = (grid.strips..0, grid.cells..0);
+        for strip in 0..grid.strips {
+            let row = &problem.gap[grid.row(strip)];
+            let overlaps = |gap: &f64| *gap < penetration;
+            if let (Some(first), Some(last)) = (row.iter().position(overlaps), row.iter().rposition(overlaps)) {
+                strips = strips.start.min(strip)..strip + 1;
+                cells = cells.start.min(first)..cells.end.max(last + 1);
+            }
+        }
+        if strips.start < strips.end {
+            let around = |range: &Range<usize>, count: usize| {
+                range.start.saturating_sub(AROUND)..(range.end + AROUND).min(count)
+            };
+            self.window.strips = around(&strips, grid.strips);
+            self.window.read = around(&cells, grid.cells);
+        }
+    }
+
+    /// Part of the grid that a product reads for loads on the contact, with the transform and the tables that serve it.
+    fn frame<'p>(
+        &self,
+        problem: &PatchNormalProblem<'p>,
+        contact: &Contact,
+    ) -> (&'p Transform, &'p Tables<f64>, Window) {
+        let loaded = contact.window(problem.grid, 0);
+        let hull = |a: &Range<usize>, b: &Range<usize>| {
+            if b.is_empty() {
+                a.clone()
+            } else {
+                a.start.min(b.start)..a.end.max(b.end)
+            }
+        };
+        let window = Window {
+            strips: hull(&self.window.strips, &loaded.strips),
+            read: hull(&self.window.read, &loaded.loaded),
+            loaded: loaded.loaded,
+        };
+        let serves = |transform: &Transform| transform.strips() >= window.strips.len();
+        match problem.narrow.iter().find(|(transform, _)| serves(transform)) {
+            Some((transform, tables)) => (transform, tables, window),
+            None => (problem.transform, &problem.normal_influence.tables, window),
+        }
+    }
+
     /// The displacement by a pressure, unless it is known.
-    fn displace(&mut self, problem: &PatchNormalProblem, window: &Window, pressure: &[f64]) {
-        if self.displaced_by == pressure {
+    fn displace(&mut self, problem: &PatchNormalProblem, contact: &Contact, pressure: &[f64]) {
+        let (transform, tables, window) = self.frame(problem, contact);
+        let holds = |outer: &Range<usize>, inner: &Range<usize>| outer.start <= inner.start && inner.end <= outer.end;
+        let known = holds(&self.displaced.strips, &window.strips) && holds(&self.displaced.read, &window.read);
+        if known && self.displaced_by == pressure {
             return;
         }
         self.displaced_by.copy_from_slice(pressure);
-        self.work_done += work_of_product(problem.transform, window);
-        problem.transform.apply(
-            &problem.normal_influence.tables,
-            window,
+        self.displaced = window.clone();
+        self.work_done += work_of_product(transform, &window);
+        transform.apply(
+            tables,
+            &window,
             [pressure, &self.nothing],
             [&mut self.displacement, &mut self.ignored],
             &mut self.scratch,
@@ -227,11 +298,29 @@ impl Normal {
 
     /// The separation of all cells.
     fn separate(&mut self, problem: &PatchNormalProblem, contact: &Contact, pressure: &[f64], penetration: f64) {
-        self.displace(problem, &whole(problem.grid, contact), pressure);
-        let cells = pressure.iter().zip(problem.wear_compliance).zip(problem.gap);
-        let separations = self.separation.iter_mut().zip(&self.displacement);
-        for ((separation, displacement), ((pressure, wear_compliance), gap)) in separations.zip(cells) {
-            *separation = displacement + wear_compliance * pressure + gap - penetration;
+        self.displace(problem, contact, pressure);
+        let grid = problem.grid;
+        let Window { strips, read, .. } = &self.displaced;
+        let all = strips.len() == grid.strips && read.len() == grid.cells;
+        for strip in 0..grid.strips {
+            let row = grid.row(strip);
+            let looked_at = if all {
+                row.start..row.start + grid.stride()
+            } else if strips.contains(&strip) {
+                row.start + read.start..row.start + read.end
+            } else {
+                row.start..row.start
+            };
+            if !all {
+                // Without the displacement, which opens it further.
+                for at in row {
+                    self.separation[at] = problem.gap[at] - penetration;
+                }
+            }
+            for at in looked_at {
+                self.separation[at] =
+                    self.displacement[at] + problem.wear_compliance[at] * pressure[at] + problem.gap[at] - penetration;
+            }
         }
     }
 
@@ -244,10 +333,11 @@ impl Normal {
         tolerance: f64,
     ) -> (f64, f64) {
         let (grid, n) = (problem.grid, contact.cells());
-        let window = whole(grid, contact);
+        let (transform, tables, window) = self.frame(problem, contact);
         let preconditioner: usize = contact.runs().iter().map(|run| run.cells * run.cells).sum();
-        let work = work_of_product(problem.transform, &window) + preconditioner as u64;
-        self.displace(problem, &window, pressure);
+        let work = work_of_product(transform, &window) + preconditioner as u64;
+        self.displace(problem, contact, pressure);
+        self.displaced = window.clone();
         contact.gather(grid, pressure, &mut self.pressure);
         contact.gather(grid, problem.wear_compliance, &mut self.wear_compliance);
         contact.gather(grid, problem.gap, &mut self.residual);
@@ -297,9 +387,9 @@ impl Normal {
             contact.scatter(grid, &self.direction, &mut self.direction_grid);
             self.work_done += work;
             self.iterations += 1;
-            // Of all cells: what lies beside the contact must be known to see whether it overlaps.
-            problem.transform.apply(
-                &problem.normal_influence.tables,
+            // Of all cells that may come into contact: what lies beside it must be known to see whether it overlaps.
+            transform.apply(
+                tables,
                 &window,
                 [&self.direction_grid, &self.nothing],
                 [&mut self.direction_image, &mut self.ignored],
@@ -359,14 +449,6 @@ impl Normal {
     }
 }
 
-/// Loads on the contact, displacements of all cells.
-fn whole(grid: &Grid, contact: &Contact) -> Window {
-    Window {
-        loaded: contact.window(grid, 0).loaded,
-        ..Window::whole(grid)
-    }
-}
-
 /// A start from the cells that overlap, where there is no pressure to start from: the deepest one and those that come close to it.
 fn start(problem: &PatchNormalProblem, settings: &PatchSettings, pressure: &mut [f64]) {
     if pressure.iter().any(|&p| p > 0.0) {
@@ -417,6 +499,7 @@ mod tests {
                 grid,
                 transform: &rail.transform,
                 normal_influence: &rail.normal_influence,
+                narrow: &[],
                 gap: &rail.gap,
                 wear_compliance: &vec![0.0; grid.len()],
                 constraint: Constraint::Total(load / rail.unit_force()),
@@ -458,6 +541,7 @@ mod tests {
             grid,
             transform: &rail.transform,
             normal_influence: &rail.normal_influence,
+            narrow: &[],
             gap: &rail.gap,
             wear_compliance: &vec![0.0; grid.len()],
             constraint: Constraint::Total(1.0),

@@ -2,6 +2,7 @@
 //! infinitesimal change leaves the set as it is.
 
 use super::{Normal, PatchNormalProblem};
+use crate::body::influence::Window;
 use crate::error::{Error, Result};
 use crate::mechanics::normal::normal_problem::Constraint;
 use crate::mechanics::patch::contact::Contact;
@@ -21,6 +22,8 @@ impl Normal {
             let mean = missing / contact.cells() as f64;
             places().for_each(|place| pressure[place] += mean);
         }
+        // The gap is a change: it does not say where the bodies overlap.
+        self.window = Window::whole(problem.grid);
         let (penetration, left) = self.solve_on(problem, contact, pressure, problem.tolerance);
         if left.is_nan() || left > problem.tolerance {
             return Err(Error::NormalNotConverged {
@@ -42,6 +45,7 @@ impl Normal {
         pressure: &[f64],
         penetration: f64,
     ) {
+        self.window = Window::whole(problem.grid);
         self.separate(problem, contact, pressure, penetration);
     }
 }
