@@ -1,10 +1,10 @@
 //! Contact geometry over the lateral displacement.
 
-use super::conicity::{Conicity, equivalent_conicity};
+use super::conicity::{Conicity, KinematicMotion};
 use super::{Pose, Wheelset};
 use crate::error::ProfileError;
 
-/// Displacements at most: a conicity for each takes as many additions as there are displacements.
+/// Displacements at most: each takes some milliseconds.
 const MOST: usize = 20_000;
 /// Way of a contact on the wheel between two displacements above which a jump is looked for, `m`.
 const SUSPECT: f64 = 0.3e-3;
@@ -75,9 +75,9 @@ impl Sweep {
         Ok(Sweep { poses, jumps })
     }
 
-    /// Difference of the rolling radii, left less right, over the displacement, `m`: with both values at each jump, a displacement of 1e-8 m
-    /// apart, so that lines between the points are as good between the jumps as beside them.
-    pub fn radius_differences(&self) -> (Vec<f64>, Vec<f64>) {
+    /// Kinematic motion with the difference of the rolling radii over the displacement: with both values at each jump, a displacement of
+    /// 1e-8 m apart, so that lines between the points are as good between the jumps as beside them. `None` of a single displacement.
+    pub fn motion(&self) -> Option<KinematicMotion> {
         let poses = self.poses.iter().map(|pose| (pose.lateral, pose.radius_difference()));
         let jumps = self.jumps.iter().flat_map(|jump| {
             let [before, after] = jump.radius_difference;
@@ -90,13 +90,13 @@ impl Sweep {
         points.sort_by(|a, b| a.0.total_cmp(&b.0));
         // Jumps of both sides at one displacement are one, and one at a displacement of the table is between it and the next one.
         points.dedup_by(|next, last| next.0 - last.0 < 0.1 * CLOSE);
-        points.into_iter().unzip()
+        let (lateral, difference) = points.into_iter().unzip();
+        KinematicMotion::new(lateral, difference)
     }
 
     /// Equivalent conicity of an amplitude, `m`; `None` where no motion of that amplitude lies within the displacements.
     pub fn conicity(&self, amplitude: f64) -> Option<Conicity> {
-        let (lateral, difference) = self.radius_differences();
-        equivalent_conicity(&lateral, &difference, amplitude)
+        self.motion()?.conicity(amplitude)
     }
 }
 
