@@ -113,6 +113,10 @@ fn what_cannot_be_is_refused() {
         (&["geometry", "--to", "0.05"], "beside its rail"),
         (&["geometry", "--gauge", "5"], "gauge = 5"),
         (&["geometry", "--step", "0"], "step = 0"),
+        (
+            &["geometry", "--from", "0.004", "--to", "-0.004"],
+            "last displacement = -0.004: allowed is 0.004 to 0.2 m",
+        ),
         (&["profile", rough], "--y-to"),
         (&["profile", "S1002", "--inclination", "0.025"], "a rail is needed"),
         (

@@ -50,18 +50,19 @@ impl Sweep {
             maximum,
             unit: "m",
         };
-        for (name, value) in [("first displacement", range[0]), ("last displacement", range[1])] {
-            if !(-0.2..=0.2).contains(&value) {
-                return Err(refused(name, value, -0.2, 0.2));
-            }
+        let [first, last] = range;
+        if !(-0.2..=0.2).contains(&first) {
+            return Err(refused("first displacement", first, -0.2, 0.2));
         }
-        let span = (range[1] - range[0]).max(0.0);
-        let shortest = (span / MOST as f64).max(1e-7);
+        if !(first..=0.2).contains(&last) {
+            return Err(refused("last displacement", last, first, 0.2));
+        }
+        let shortest = ((last - first) / MOST as f64).max(1e-7);
         if !(shortest..=0.1).contains(&step) {
             return Err(refused("step", step, shortest, 0.1));
         }
         // Rounding is not to lose the last one.
-        let [first, last] = [(range[0] / step - 1e-9).ceil(), (range[1] / step + 1e-9).floor()];
+        let [first, last] = [(first / step - 1e-9).ceil(), (last / step + 1e-9).floor()];
         let count = (last - first).max(0.0) as usize;
         let poses = (0..=count)
             .map(|k| wheelset.at((first + k as f64) * step, yaw))
