@@ -7,6 +7,7 @@ import subprocess
 import sysconfig
 import tempfile
 from collections.abc import Mapping, Sequence
+from functools import cache
 from os import PathLike, fspath
 from pathlib import Path
 from typing import Any, TypeAlias
@@ -48,8 +49,8 @@ def command_path() -> Path:
     return Path(found)
 
 
-def run(*arguments: str) -> str:
-    """Call the command; what it says beside its result.
+def run(*arguments: str) -> "subprocess.CompletedProcess[str]":
+    """Call the command: its result on the standard output, and what it says beside on the standard error.
 
     Raises
     ------
@@ -59,7 +60,13 @@ def run(*arguments: str) -> str:
     done = subprocess.run([command_path(), *arguments], capture_output=True, text=True, encoding="utf-8", check=False)
     if done.returncode != 0:
         raise ValueError(done.stderr.strip().removeprefix("wheelrail: ") or f"{arguments[0]}: {done.returncode}")
-    return done.stderr
+    return done
+
+
+@cache
+def built_in_names() -> tuple[str, ...]:
+    """Names of the profiles that are built in."""
+    return tuple(line.split()[0] for line in run("profile").stdout.splitlines())
 
 
 def options(values: Mapping[str, Any]) -> list[str]:
@@ -145,7 +152,7 @@ class Profile:
         self._arguments = ["profile", fspath(profile), *options(given)]
         with tempfile.TemporaryDirectory() as folder:
             table = Path(folder) / "profile.csv"
-            said = run(*self._arguments, "--output", str(table)).strip()
+            said = run(*self._arguments, "--output", str(table)).stderr.strip()
             self.points = table_of(table)
             # As a file that says itself how it is turned, for `contact_geometry` and `write`.
             found = re.fullmatch(r"(.*): (rail|wheel), (.*)", said)
@@ -155,7 +162,7 @@ class Profile:
             own = Path(folder) / f"profile{ENDINGS[self.body]}"
             run(*self._arguments, "--output", str(own))
             self._text = own.read_text(encoding="utf-8")
-        self._built_in = self.name if inclination is None and self.name in self.built_in() else None
+        self._built_in = self.name if inclination is None and self.name in built_in_names() else None
 
     @classmethod
     def from_points(cls, y: Any, z: Any, *, body: str, smoothing: float | None = None) -> "Profile":
@@ -179,8 +186,7 @@ class Profile:
     @staticmethod
     def built_in() -> list[str]:
         """Names of the profiles that are built in."""
-        done = subprocess.run([command_path(), "profile"], capture_output=True, text=True, encoding="utf-8", check=True)
-        return [line.split()[0] for line in done.stdout.splitlines()]
+        return list(built_in_names())
 
     def write(self, path: AnyPath) -> None:
         """Write a file: SIMPACK (.prr, .prw), MiniProf (.ban, .whl, .mpt), VAMPIRE (.rai, .whe), or CSV of `points`."""
@@ -276,7 +282,7 @@ def contact_geometry(
             del places["outlines"]
         numbers = {"from": first, "to": last, "step": step, "yaw": yaw, "outlines_at": outlines_at, **dimensions}
         files = {key: str(path) for key, path in places.items()}
-        said = run("geometry", *options(profiles | numbers | files), *(["--level"] if level else []))
+        said = run("geometry", *options(profiles | numbers | files), *(["--level"] if level else [])).stderr
         table = table_of(places["output"])
         table.attrs["jumps"] = table_of(places["jumps"]).to_dict("records")
         if outlines_at is not None:

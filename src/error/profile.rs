@@ -80,6 +80,16 @@ pub enum ProfileError {
         /// Option of the reader.
         option: &'static str,
     },
+    /// An option without a use for this profile.
+    #[error("{name}: {option} has no use: {reason}")]
+    NotUsed {
+        /// Profile.
+        name: String,
+        /// Option of the reader.
+        option: &'static str,
+        /// Reason in words.
+        reason: &'static str,
+    },
     /// A profile that is not that of its body, as it is turned.
     #[error("{name}: this is no {body} with y to the field side and z upward: {seen}")]
     Orientation {

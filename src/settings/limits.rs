@@ -5,6 +5,15 @@ use super::Settings;
 /// A solver by what its error says, and how its limit is set.
 pub type Limit = (&'static str, fn(&mut Settings, usize));
 
+/// Iteration on the interface vector.
+const SPLIT: Limit = ("thermo-mechanical operator split", |settings, limit| {
+    settings.split.iterations = limit;
+});
+/// Fixed point of the heat of rail and rim.
+const RIM: Limit = ("temperature of the wheel", |settings, limit| {
+    settings.heat.rim_iterations = limit;
+});
+
 /// Every solver of the line engine.
 pub const LIMITS: [Limit; 7] = [
     ("normal contact solver (active set)", |settings, limit| {
@@ -20,15 +29,11 @@ pub const LIMITS: [Limit; 7] = [
     ("coupling of normal and tangential contact", |settings, limit| {
         settings.split.iterations = limit;
     }),
-    ("thermo-mechanical operator split", |settings, limit| {
-        settings.split.iterations = limit;
-    }),
+    SPLIT,
     ("surface heat condition", |settings, limit| {
         settings.heat.surface_newton_steps = limit;
     }),
-    ("temperature of the wheel", |settings, limit| {
-        settings.heat.rim_iterations = limit;
-    }),
+    RIM,
 ];
 
 /// Every solver of a step of the patch engine.
@@ -40,10 +45,6 @@ pub const PATCH_LIMITS: [Limit; 4] = [
         settings.patch.newton_steps = limit;
         settings.patch.continuation = 0;
     }),
-    ("thermo-mechanical operator split", |settings, limit| {
-        settings.split.iterations = limit;
-    }),
-    ("temperature of the wheel", |settings, limit| {
-        settings.heat.rim_iterations = limit;
-    }),
+    SPLIT,
+    RIM,
 ];

@@ -99,6 +99,9 @@ fn what_cannot_be_is_refused() {
     let rough = file("rough.csv");
     fs::write(&rough, "y [mm],z [mm]\n-70,-20\n-60,-28\n").unwrap();
     let rough = rough.to_str().unwrap();
+    let two = file("two.csv");
+    fs::write(&two, "y [mm],z [mm]\n-36,-14\n0,0\n36,-14\n").unwrap();
+    let two = two.to_str().unwrap();
     for (arguments, words) in [
         (&["geometry", "--rail", "61E1"][..], "did you mean 60E1"),
         (
@@ -110,8 +113,28 @@ fn what_cannot_be_is_refused() {
         (&["geometry", "--to", "0.05"], "beside its rail"),
         (&["geometry", "--gauge", "5"], "gauge = 5"),
         (&["geometry", "--step", "0"], "step = 0"),
+        (
+            &["geometry", "--from", "0.004", "--to", "-0.004"],
+            "last displacement = -0.004: allowed is 0.004 to 0.2 m",
+        ),
         (&["profile", rough], "--y-to"),
         (&["profile", "S1002", "--inclination", "0.025"], "a rail is needed"),
+        (
+            &["profile", "S1002", "--unit", "mm"],
+            "S1002: unit has no use: the profile is built in",
+        ),
+        (&["profile", "60e1", "--smoothing", "0.002"], "smoothing has no use"),
+        (&["profile", "--smoothing", "0.002"], "required"),
+        (
+            &["profile", two, "--body", "rail", "--part", "1"],
+            "part has no use: the file holds one profile",
+        ),
+        (
+            &["profile", two, "--body", "rail", "--flange-back-position", "0.07"],
+            "flange_back_position has no use: a rail has no flange",
+        ),
+        (&["geometry", "--smoothing", "0.002"], "all profiles are built in"),
+        (&["geometry", "--outlines-at", "0.002"], "--outlines"),
     ] {
         let done = wheelrail(arguments);
         let beside = String::from_utf8_lossy(&done.stderr).into_owned();

@@ -4,7 +4,7 @@ use crate::profile;
 use crate::table::{self, Table, heading};
 use clap::Args;
 use std::path::PathBuf;
-use wheelrail::contact_geometry::{Dimensions, Jump, Sweep, Touch, Wheelset, equivalent_conicity};
+use wheelrail::contact_geometry::{Conicity, Dimensions, Jump, Sweep, Touch, Wheelset};
 use wheelrail::{Body, Profile, ProfileError};
 
 /// Options of `geometry`.
@@ -71,7 +71,13 @@ pub struct Geometry {
     #[arg(long, value_name = "OUTLINES.csv")]
     outlines: Option<PathBuf>,
     /// Lateral displacement at which the outlines are, `m`.
-    #[arg(long, value_name = "METRES", default_value_t = 0.0, allow_negative_numbers = true)]
+    #[arg(
+        long,
+        value_name = "METRES",
+        default_value_t = 0.0,
+        allow_negative_numbers = true,
+        requires = "outlines"
+    )]
     outlines_at: f64,
 }
 
@@ -99,10 +105,11 @@ impl Geometry {
     pub fn run(&self) -> Result<(), Error> {
         let wheelset = self.wheelset()?;
         let sweep = Sweep::new(&wheelset, [self.from, self.to], self.step, self.yaw)?;
-        let (lateral, difference) = sweep.radius_differences();
+        let motion = sweep.motion();
+        let conicity = |amplitude: f64| motion.as_ref().and_then(|motion| motion.conicity(amplitude));
         let mut out = Table::open(self.output.as_deref(), headings())?;
         for pose in &sweep.poses {
-            let conicity = equivalent_conicity(&lateral, &difference, pose.lateral.abs());
+            let conicity = conicity(pose.lateral.abs());
             let touches = pose.touches.iter().flat_map(|touch| {
                 let Touch {
                     on_rail,
@@ -124,12 +131,21 @@ impl Geometry {
         if let Some(path) = &self.outlines {
             self.write_outlines(path, &wheelset)?;
         }
-        self.summary(&sweep);
+        summary(conicity(AMPLITUDE), &sweep.jumps);
         Ok(())
     }
 
     fn wheelset(&self) -> Result<Wheelset, Error> {
         let named = |name: &str, body: Body| profile::named(name, body, self.smoothing);
+        let names = [&self.rail, &self.wheel].into_iter();
+        let mut names = names.chain(&self.rail_right).chain(&self.wheel_right);
+        if self.smoothing != 0.0 && names.all(|name| profile::is_built_in(name)) {
+            return Err(Error::Profile(ProfileError::NotUsed {
+                name: format!("{}, {}", self.rail, self.wheel),
+                option: "smoothing",
+                reason: "all profiles are built in",
+            }));
+        }
         let rail = named(&self.rail, Body::Rail)?;
         let wheel = named(&self.wheel, Body::Wheel)?;
         let other = |name: &Option<String>, body, same: &Profile| {
@@ -165,24 +181,24 @@ impl Geometry {
         }
         Ok(table.finish()?)
     }
+}
 
-    /// Says the conicity and the jumps, beside the table.
-    fn summary(&self, sweep: &Sweep) {
-        match sweep.conicity(AMPLITUDE) {
-            Some(found) => eprintln!("equivalent conicity at {} mm: {:.4}", 1e3 * AMPLITUDE, found.conicity),
-            None => eprintln!(
-                "no equivalent conicity at {} mm: the wheels do not steer back, or the displacements end before",
-                1e3 * AMPLITUDE
-            ),
-        }
-        for jump in &sweep.jumps {
-            let [from, to] = jump.on_wheel.map(|place| 1e3 * place);
-            eprintln!(
-                "the {} contact jumps at {:.3} mm from {from:.2} to {to:.2} mm on the wheel",
-                SIDES[jump.side],
-                1e3 * jump.lateral
-            );
-        }
+/// Says the conicity and the jumps, beside the table.
+fn summary(conicity: Option<Conicity>, jumps: &[Jump]) {
+    match conicity {
+        Some(found) => eprintln!("equivalent conicity at {} mm: {:.4}", 1e3 * AMPLITUDE, found.conicity),
+        None => eprintln!(
+            "no equivalent conicity at {} mm: the wheels do not steer back, or the displacements end before",
+            1e3 * AMPLITUDE
+        ),
+    }
+    for jump in jumps {
+        let [from, to] = jump.on_wheel.map(|place| 1e3 * place);
+        eprintln!(
+            "the {} contact jumps at {:.3} mm from {from:.2} to {to:.2} mm on the wheel",
+            SIDES[jump.side],
+            1e3 * jump.lateral
+        );
     }
 }
 

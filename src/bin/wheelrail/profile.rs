@@ -16,32 +16,32 @@ pub struct Options {
     #[arg(value_name = "NAME|FILE")]
     profile: Option<String>,
     /// Body that the profile is of, where the file does not say it.
-    #[arg(long)]
+    #[arg(long, requires = "profile")]
     body: Option<BodyName>,
     /// Unit of the file's coordinates: m, mm or in.
-    #[arg(long, value_parser = unit)]
+    #[arg(long, value_parser = unit, requires = "profile")]
     unit: Option<LengthUnit>,
     /// Direction of the file's y.
-    #[arg(long)]
+    #[arg(long, requires = "profile")]
     y_to: Option<Direction>,
     /// Direction of the file's z.
-    #[arg(long)]
+    #[arg(long, requires = "profile")]
     z: Option<Vertical>,
     /// Number of the profile in a file with more than one: of a section of .mpt; 1 left, 2 right of VAMPIRE.
-    #[arg(long)]
+    #[arg(long, requires = "profile")]
     part: Option<usize>,
     /// Distance of a wheel's running circle from the back of its flange, `m`, where the file has another origin.
-    #[arg(long, value_name = "METRES")]
+    #[arg(long, value_name = "METRES", requires = "profile")]
     flange_back_position: Option<f64>,
     /// Wavelength of the smoothing, `m`: waves of this length are halved.
-    #[arg(long, value_name = "METRES", default_value_t = 0.0)]
+    #[arg(long, value_name = "METRES", default_value_t = 0.0, requires = "profile")]
     smoothing: f64,
     /// Inclination that a rail is given, as a slope.
-    #[arg(long, value_name = "SLOPE", allow_negative_numbers = true)]
+    #[arg(long, value_name = "SLOPE", allow_negative_numbers = true, requires = "profile")]
     inclination: Option<f64>,
     /// File for the profile: SIMPACK's (.prr, .prw), MiniProf's (.ban, .whl, .mpt), VAMPIRE's (.rai, .whe), or CSV with arc length,
     /// inclination and curvature; without it the CSV goes to the standard output.
-    #[arg(short, long, value_name = "OUT")]
+    #[arg(short, long, value_name = "OUT", requires = "profile")]
     output: Option<PathBuf>,
 }
 
@@ -99,11 +99,11 @@ fn unit(text: &str) -> Result<LengthUnit, String> {
     LengthUnit::named(text).ok_or_else(|| "allowed is m, mm or in".to_owned())
 }
 
-/// Profile that is built in or in a file, of a body.
+/// Profile that is built in or in a file, of a body; smoothed where it is in a file.
 pub fn named(name: &str, body: Body, smoothing: f64) -> Result<Profile, Error> {
     let options = ReadOptions {
         body: Some(body),
-        smoothing,
+        smoothing: if is_built_in(name) { 0.0 } else { smoothing },
         ..ReadOptions::default()
     };
     let profile = either(name, &options)?;
@@ -111,9 +111,31 @@ pub fn named(name: &str, body: Body, smoothing: f64) -> Result<Profile, Error> {
     Ok(profile)
 }
 
+/// Whether a profile of this name is built in.
+pub fn is_built_in(name: &str) -> bool {
+    built_in_profiles::NAMES
+        .iter()
+        .any(|known| known.eq_ignore_ascii_case(name))
+}
+
 fn either(name: &str, options: &ReadOptions) -> Result<Profile, Error> {
-    if let Ok(profile) = Profile::built_in(name) {
-        return Ok(profile);
+    if is_built_in(name) {
+        let given = [
+            ("unit", options.unit.is_some()),
+            ("y_to", options.y_to.is_some()),
+            ("z_up", options.z_up.is_some()),
+            ("part", options.part.is_some()),
+            ("flange_back_position", options.flange_back_position.is_some()),
+            ("smoothing", options.smoothing != 0.0),
+        ];
+        if let Some((option, _)) = given.into_iter().find(|(_, is_given)| *is_given) {
+            return Err(Error::Profile(ProfileError::NotUsed {
+                name: name.to_owned(),
+                option,
+                reason: "the profile is built in",
+            }));
+        }
+        return Ok(Profile::built_in(name)?);
     }
     let path = Path::new(name);
     if !path.exists() && path.extension().is_none() {

@@ -23,73 +23,82 @@ pub struct Conicity {
 /// difference is smooth; where it jumps, a hundred times as many points change the conicity by 3e-6 of it.
 const PHASES: usize = 720;
 
-/// Difference of the rolling radii as lines between points, with its integral.
-struct Potential<'a> {
-    lateral: &'a [f64],
-    difference: &'a [f64],
-    /// Integral of the difference up to each point.
+/// Kinematic motion of a wheelset: the difference of its rolling radii over the lateral displacement, as lines between points.
+#[derive(Debug, Clone, PartialEq)]
+pub struct KinematicMotion {
+    lateral: Vec<f64>,
+    difference: Vec<f64>,
+    /// Potential S at the points: integral of the difference.
     sums: Vec<f64>,
 }
 
-impl Potential<'_> {
-    fn at(&self, y: f64) -> f64 {
-        let (cell, share) = interpolation::between(self.lateral, y);
+impl KinematicMotion {
+    /// Motion for the difference of the rolling radii, left less right, `m`, at ascending lateral displacements to the left, `m`. `None` where they do
+    /// not ascend, or are fewer than two.
+    pub fn new(lateral: Vec<f64>, difference: Vec<f64>) -> Option<KinematicMotion> {
+        let ascending = lateral.windows(2).all(|pair| pair[0] < pair[1]);
+        if lateral.len() < 2 || difference.len() != lateral.len() || !ascending {
+            return None;
+        }
+        let mut sums = vec![0.0];
+        for k in 1..lateral.len() {
+            let mean = 0.5 * (difference[k] + difference[k - 1]);
+            sums.push(sums[k - 1] + mean * (lateral[k] - lateral[k - 1]));
+        }
+        Some(KinematicMotion {
+            lateral,
+            difference,
+            sums,
+        })
+    }
+
+    /// Potential S at a displacement.
+    fn potential(&self, y: f64) -> f64 {
+        let (cell, share) = interpolation::between(&self.lateral, y);
         let (from, to) = (self.difference[cell], self.difference[cell + 1]);
         let length = self.lateral[cell + 1] - self.lateral[cell];
         self.sums[cell] + length * share * (from + 0.5 * share * (to - from))
     }
-}
 
-/// Equivalent conicity of an amplitude, `m`, from the difference of the rolling radii, left less right, `m`, at ascending lateral
-/// displacements to the left, `m`. `None` where no motion of that amplitude lies within the displacements: they do not reach as far, or the
-/// wheels do not steer back.
-pub fn equivalent_conicity(lateral: &[f64], difference: &[f64], amplitude: f64) -> Option<Conicity> {
-    let count = lateral.len();
-    let ascending = lateral.windows(2).all(|pair| pair[0] < pair[1]);
-    if count < 2 || difference.len() != count || !ascending || !(amplitude > 0.0 && amplitude.is_finite()) {
-        return None;
-    }
-    let mut sums = vec![0.0];
-    for k in 1..count {
-        let mean = 0.5 * (difference[k] + difference[k - 1]);
-        sums.push(sums[k - 1] + mean * (lateral[k] - lateral[k - 1]));
-    }
-    let potential = Potential {
-        lateral,
-        difference,
-        sums,
-    };
-    // The middle m of the motion: S(m + a) − S(m − a) rises through 0 there.
-    let (mut low, mut high) = (lateral[0] + amplitude, lateral[count - 1] - amplitude);
-    let uphill = |middle: f64| potential.at(middle + amplitude) - potential.at(middle - amplitude);
-    if low > high || uphill(low) > 0.0 || uphill(high) < 0.0 {
-        return None;
-    }
-    for _ in 0..60 {
-        let middle = 0.5 * (low + high);
-        if uphill(middle) < 0.0 {
-            low = middle;
-        } else {
-            high = middle;
-        }
-    }
-    let middle = 0.5 * (low + high);
-    let top = 0.5 * (potential.at(middle + amplitude) + potential.at(middle - amplitude));
-    // Over y = m + a sin φ, where the integrand has no singularity: L √(2/(e r₀)) = 2 ∫ a cos φ/√(S(y₂) − S(y)) dφ.
-    let mut sum = 0.0;
-    for k in 0..PHASES {
-        let phase = PI * ((k as f64 + 0.5) / PHASES as f64 - 0.5);
-        let depth = top - potential.at(middle + amplitude * phase.sin());
-        if depth <= 0.0 {
+    /// Equivalent conicity of an amplitude, `m`. `None` where no motion of that amplitude lies within the displacements: they do not reach
+    /// as far, or the wheels do not steer back.
+    pub fn conicity(&self, amplitude: f64) -> Option<Conicity> {
+        if !(amplitude > 0.0 && amplitude.is_finite()) {
             return None;
         }
-        sum += amplitude * phase.cos() / depth.sqrt();
+        // The middle m of the motion: S(m + a) − S(m − a) rises through 0 there.
+        let last = self.lateral[self.lateral.len() - 1];
+        let (mut low, mut high) = (self.lateral[0] + amplitude, last - amplitude);
+        let uphill = |middle: f64| self.potential(middle + amplitude) - self.potential(middle - amplitude);
+        if low > high || uphill(low) > 0.0 || uphill(high) < 0.0 {
+            return None;
+        }
+        for _ in 0..60 {
+            let middle = 0.5 * (low + high);
+            if uphill(middle) < 0.0 {
+                low = middle;
+            } else {
+                high = middle;
+            }
+        }
+        let middle = 0.5 * (low + high);
+        let top = 0.5 * (self.potential(middle + amplitude) + self.potential(middle - amplitude));
+        // Over y = m + a sin φ, where the integrand has no singularity: L √(2/(e r₀)) = 2 ∫ a cos φ/√(S(y₂) − S(y)) dφ.
+        let mut sum = 0.0;
+        for k in 0..PHASES {
+            let phase = PI * ((k as f64 + 0.5) / PHASES as f64 - 0.5);
+            let depth = top - self.potential(middle + amplitude * phase.sin());
+            if depth <= 0.0 {
+                return None;
+            }
+            sum += amplitude * phase.cos() / depth.sqrt();
+        }
+        let length = 2.0 * sum * PI / PHASES as f64;
+        // The cone has Δr = 2 y tan γ, S = y² tan γ and ∫ = π/√(tan γ).
+        Some(Conicity {
+            amplitude,
+            conicity: (2.0 * PI / length).powi(2),
+            ends: [middle - amplitude, middle + amplitude],
+        })
     }
-    let length = 2.0 * sum * PI / PHASES as f64;
-    // The cone has Δr = 2 y tan γ, S = y² tan γ and ∫ = π/√(tan γ).
-    Some(Conicity {
-        amplitude,
-        conicity: (2.0 * PI / length).powi(2),
-        ends: [middle - amplitude, middle + amplitude],
-    })
 }

@@ -12,7 +12,7 @@ mod conicity;
 mod side;
 mod sweep;
 
-pub use conicity::{Conicity, equivalent_conicity};
+pub use conicity::{Conicity, KinematicMotion};
 pub use side::Touch;
 pub use sweep::{Jump, Sweep};
 
@@ -186,8 +186,8 @@ impl Wheelset {
         })
     }
 
-    /// Lateral distances from the silhouette to the rail, for a picture: places (y, z) of both in the track's frame, the rail's first, of the
-    /// left or the right side as it is seen from behind, `m`.
+    /// Outlines of the rail and of the wheel's silhouette, for a picture: places (y, z) in the track's frame, `m`, the rail's first, of side 0,
+    /// the left one, or 1, the right one.
     pub fn outlines(&self, pose: &Pose, side: usize) -> [Vec<[f64; 2]>; 2] {
         let attitude = Self::attitudes(pose.lateral, pose.yaw, pose.roll)[side];
         let sign = if side == 0 { 1.0 } else { -1.0 };

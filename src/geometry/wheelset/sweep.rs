@@ -1,10 +1,10 @@
 //! Contact geometry over the lateral displacement.
 
-use super::conicity::{Conicity, equivalent_conicity};
+use super::conicity::{Conicity, KinematicMotion};
 use super::{Pose, Wheelset};
 use crate::error::ProfileError;
 
-/// Displacements at most: a conicity for each takes as many additions as there are displacements.
+/// Displacements at most: each takes some milliseconds.
 const MOST: usize = 20_000;
 /// Way of a contact on the wheel between two displacements above which a jump is looked for, `m`.
 const SUSPECT: f64 = 0.3e-3;
@@ -50,18 +50,19 @@ impl Sweep {
             maximum,
             unit: "m",
         };
-        for (name, value) in [("first displacement", range[0]), ("last displacement", range[1])] {
-            if !(-0.2..=0.2).contains(&value) {
-                return Err(refused(name, value, -0.2, 0.2));
-            }
+        let [first, last] = range;
+        if !(-0.2..=0.2).contains(&first) {
+            return Err(refused("first displacement", first, -0.2, 0.2));
         }
-        let span = (range[1] - range[0]).max(0.0);
-        let shortest = (span / MOST as f64).max(1e-7);
+        if !(first..=0.2).contains(&last) {
+            return Err(refused("last displacement", last, first, 0.2));
+        }
+        let shortest = ((last - first) / MOST as f64).max(1e-7);
         if !(shortest..=0.1).contains(&step) {
             return Err(refused("step", step, shortest, 0.1));
         }
         // Rounding is not to lose the last one.
-        let [first, last] = [(range[0] / step - 1e-9).ceil(), (range[1] / step + 1e-9).floor()];
+        let [first, last] = [(first / step - 1e-9).ceil(), (last / step + 1e-9).floor()];
         let count = (last - first).max(0.0) as usize;
         let poses = (0..=count)
             .map(|k| wheelset.at((first + k as f64) * step, yaw))
@@ -75,9 +76,9 @@ impl Sweep {
         Ok(Sweep { poses, jumps })
     }
 
-    /// Difference of the rolling radii, left less right, over the displacement, `m`: with both values at each jump, a displacement of 1e-8 m
-    /// apart, so that lines between the points are as good between the jumps as beside them.
-    pub fn radius_differences(&self) -> (Vec<f64>, Vec<f64>) {
+    /// Kinematic motion with the difference of the rolling radii over the displacement: with both values at each jump, a displacement of
+    /// 1e-8 m apart, so that lines between the points are as good between the jumps as beside them. `None` of a single displacement.
+    pub fn motion(&self) -> Option<KinematicMotion> {
         let poses = self.poses.iter().map(|pose| (pose.lateral, pose.radius_difference()));
         let jumps = self.jumps.iter().flat_map(|jump| {
             let [before, after] = jump.radius_difference;
@@ -90,13 +91,13 @@ impl Sweep {
         points.sort_by(|a, b| a.0.total_cmp(&b.0));
         // Jumps of both sides at one displacement are one, and one at a displacement of the table is between it and the next one.
         points.dedup_by(|next, last| next.0 - last.0 < 0.1 * CLOSE);
-        points.into_iter().unzip()
+        let (lateral, difference) = points.into_iter().unzip();
+        KinematicMotion::new(lateral, difference)
     }
 
     /// Equivalent conicity of an amplitude, `m`; `None` where no motion of that amplitude lies within the displacements.
     pub fn conicity(&self, amplitude: f64) -> Option<Conicity> {
-        let (lateral, difference) = self.radius_differences();
-        equivalent_conicity(&lateral, &difference, amplitude)
+        self.motion()?.conicity(amplitude)
     }
 }
 

@@ -9,6 +9,11 @@ use crate::error::ProfileError;
 /// Millimetres.
 const UNIT: f64 = 1e-3;
 
+/// Whether the file is an `.mpt`, whose sections may hold several profiles.
+pub fn has_sections(text: &str) -> bool {
+    text.trim_start().starts_with('[')
+}
+
 pub fn read(text: &str, name: &str, part: Option<usize>) -> Result<Raw, ProfileError> {
     let refused = |line: usize, reason: String| ProfileError::Content {
         name: name.to_owned(),
@@ -16,7 +21,7 @@ pub fn read(text: &str, name: &str, part: Option<usize>) -> Result<Raw, ProfileE
         line,
         reason,
     };
-    let rows = if text.trim_start().starts_with('[') {
+    let rows = if has_sections(text) {
         section(text, part).map_err(|reason| refused(0, reason))?
     } else {
         let is_old = text.lines().take(3).any(|line| line.starts_with("MINIPROF"));

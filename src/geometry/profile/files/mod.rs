@@ -200,6 +200,22 @@ impl Profile {
                 reason: format!("{} points, more than {MOST_POINTS}", raw.points.len()),
             });
         }
+        let holds_one = match format {
+            Format::Simpack | Format::Columns => true,
+            Format::MiniProf => !miniprof::has_sections(text),
+            Format::Vampire => false,
+        };
+        let not_used = |option, reason| ProfileError::NotUsed {
+            name: name.to_owned(),
+            option,
+            reason,
+        };
+        if options.part.is_some() && holds_one {
+            return Err(not_used("part", "the file holds one profile"));
+        }
+        if options.flange_back_position.is_some() && body == Body::Rail {
+            return Err(not_used("flange_back_position", "a rail has no flange"));
+        }
         let (points, found) = orientation::framed(name, body, raw, options)?;
         let source = format!("{} file {name}{found}", format.name());
         Profile::from_weighted(body, name, &source, points, options.smoothing)
