@@ -95,9 +95,6 @@ pub enum Error {
     /// State or workspace come from a model with another `contact_model`.
     #[error("the state or the workspace is not one of this contact_model")]
     OtherContactModel,
-    /// A contact model that is declared, and not computed yet.
-    #[error("contact_model = 3 (profiles) is not computed yet; 1 (line) and 2 (patch) are")]
-    NotComputedYet,
     /// No parameter has this name.
     #[error("there is no parameter named {name:?}; `wheelrail describe` lists them")]
     UnknownParameter {

@@ -61,11 +61,6 @@ impl Grid {
         0.5 * self.breadth * ((2 * strip + 1) as f64 - self.strips as f64)
     }
 
-    /// Distance along x and y of two cells that are a lag of cells and of strips apart, `m`.
-    pub fn distance(&self, (along, across): (isize, isize)) -> (f64, f64) {
-        (along as f64 * self.length, across as f64 * self.breadth)
-    }
-
     /// Area of a cell, `m²`.
     pub fn cell_area(&self) -> f64 {
         self.length * self.breadth

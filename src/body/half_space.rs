@@ -74,6 +74,57 @@ impl HalfSpaces {
     }
 }
 
+/// Kernel of a half-space, as what integrates it over rectangles.
+#[derive(Debug, Clone, Copy)]
+pub struct Kernel {
+    /// Corner function F(x, y).
+    pub corner: fn(f64, f64) -> f64,
+    /// Whether the kernel is odd in x and in y; it is even where it is not.
+    pub odd: [bool; 2],
+}
+
+/// Kernel x²/r³.
+pub const XX_OVER_R3: Kernel = Kernel {
+    corner: |x, y| y * (x / y.abs()).asinh(),
+    odd: [false, false],
+};
+
+/// Kernel y²/r³.
+pub const YY_OVER_R3: Kernel = Kernel {
+    corner: |x, y| x * (y / x.abs()).asinh(),
+    odd: [false, false],
+};
+
+/// Kernel xy/r³.
+pub const XY_OVER_R3: Kernel = Kernel {
+    corner: |x, y| -x.hypot(y),
+    odd: [true, true],
+};
+
+/// Kernel x/r².
+pub const X_OVER_R2: Kernel = Kernel {
+    corner: |x, y| 0.5 * y * (x * x + y * y).ln() + x * (y / x).atan(),
+    odd: [true, false],
+};
+
+/// Kernel y/r².
+pub const Y_OVER_R2: Kernel = Kernel {
+    corner: |x, y| 0.5 * x * (x * x + y * y).ln() + y * (x / y).atan(),
+    odd: [false, true],
+};
+
+/// Kernel x/r³.
+pub const X_OVER_R3: Kernel = Kernel {
+    corner: |x, y| -(y / x.abs()).asinh(),
+    odd: [true, false],
+};
+
+/// Kernel y/r³.
+pub const Y_OVER_R3: Kernel = Kernel {
+    corner: |x, y| -(x / y.abs()).asinh(),
+    odd: [false, true],
+};
+
 /// A rectangle under a uniform load.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Rectangle {
@@ -84,55 +135,10 @@ pub struct Rectangle {
 }
 
 impl Rectangle {
-    /// Integral ∬ x²/r³ over the rectangle, seen from `(x, y)` relative to its centre, `m`.
-    pub fn xx_over_r3(&self, x: f64, y: f64) -> f64 {
-        self.difference(x, y, |x, y| y * (x / y.abs()).asinh())
-    }
-
-    /// Integral ∬ y²/r³ over the rectangle, `m`.
-    pub fn yy_over_r3(&self, x: f64, y: f64) -> f64 {
-        self.transposed().xx_over_r3(y, x)
-    }
-
-    /// Integral ∬ xy/r³ over the rectangle, `m`.
-    pub fn xy_over_r3(&self, x: f64, y: f64) -> f64 {
-        self.difference(x, y, |x, y| -x.hypot(y))
-    }
-
-    /// Integral ∬ 1/r over the rectangle, `m`.
-    pub fn one_over_r(&self, x: f64, y: f64) -> f64 {
-        self.xx_over_r3(x, y) + self.yy_over_r3(x, y)
-    }
-
-    /// Integral ∬ x/r² over the rectangle, `m`.
-    pub fn x_over_r2(&self, x: f64, y: f64) -> f64 {
-        self.difference(x, y, |x, y| 0.5 * y * (x * x + y * y).ln() + x * (y / x).atan())
-    }
-
-    /// Integral ∬ y/r² over the rectangle, `m`.
-    pub fn y_over_r2(&self, x: f64, y: f64) -> f64 {
-        self.transposed().x_over_r2(y, x)
-    }
-
-    /// Integral ∬ x/r³ over the rectangle, dimensionless.
-    pub fn x_over_r3(&self, x: f64, y: f64) -> f64 {
-        self.difference(x, y, |x, y| -(y / x.abs()).asinh())
-    }
-
-    /// Integral ∬ y/r³ over the rectangle, dimensionless.
-    pub fn y_over_r3(&self, x: f64, y: f64) -> f64 {
-        self.transposed().x_over_r3(y, x)
-    }
-
-    fn transposed(&self) -> Rectangle {
-        Rectangle {
-            half_length: self.half_breadth,
-            half_breadth: self.half_length,
-        }
-    }
-
-    /// The mixed difference of a corner function. The place must not lie on the line of an edge.
-    fn difference(&self, x: f64, y: f64, corner: impl Fn(f64, f64) -> f64) -> f64 {
+    /// Integral of a kernel over the rectangle, seen from `(x, y)` relative to its centre: the mixed difference of its corner function. The
+    /// place must not lie on the line of an edge.
+    pub fn integral(&self, kernel: &Kernel, x: f64, y: f64) -> f64 {
+        let corner = kernel.corner;
         let (ahead, behind) = (x + self.half_length, x - self.half_length);
         let (left, right) = (y + self.half_breadth, y - self.half_breadth);
         (corner(ahead, left) - corner(ahead, right)) - (corner(behind, left) - corner(behind, right))
@@ -145,18 +151,21 @@ mod tests {
     use proptest::prelude::*;
 
     /// A kernel of Boussinesq and Cerruti and its integral over a rectangle.
-    type Kernel = (fn(f64, f64) -> f64, fn(&Rectangle, f64, f64) -> f64);
+    type Case = (fn(f64, f64) -> f64, Kernel);
 
-    const KERNELS: [Kernel; 8] = [
-        (|x, y| x * x / x.hypot(y).powi(3), Rectangle::xx_over_r3),
-        (|x, y| y * y / x.hypot(y).powi(3), Rectangle::yy_over_r3),
-        (|x, y| x * y / x.hypot(y).powi(3), Rectangle::xy_over_r3),
-        (|x, y| 1.0 / x.hypot(y), Rectangle::one_over_r),
-        (|x, y| x / (x * x + y * y), Rectangle::x_over_r2),
-        (|x, y| y / (x * x + y * y), Rectangle::y_over_r2),
-        (|x, y| x / x.hypot(y).powi(3), Rectangle::x_over_r3),
-        (|x, y| y / x.hypot(y).powi(3), Rectangle::y_over_r3),
+    const CASES: [Case; 7] = [
+        (|x, y| x * x / x.hypot(y).powi(3), XX_OVER_R3),
+        (|x, y| y * y / x.hypot(y).powi(3), YY_OVER_R3),
+        (|x, y| x * y / x.hypot(y).powi(3), XY_OVER_R3),
+        (|x, y| x / (x * x + y * y), X_OVER_R2),
+        (|x, y| y / (x * x + y * y), Y_OVER_R2),
+        (|x, y| x / x.hypot(y).powi(3), X_OVER_R3),
+        (|x, y| y / x.hypot(y).powi(3), Y_OVER_R3),
     ];
+
+    fn one_over_r(rectangle: &Rectangle, x: f64, y: f64) -> f64 {
+        rectangle.integral(&XX_OVER_R3, x, y) + rectangle.integral(&YY_OVER_R3, x, y)
+    }
 
     proptest! {
         /// Gauss's rule with five points each way, from places as far away as the rectangle is large.
@@ -170,19 +179,19 @@ mod tests {
             prop_assume!((x.abs() - half_length).abs() > 1e-3 && (y.abs() - half_breadth).abs() > 1e-3);
             let points = [0.0, 0.538_469_310_105_683, -0.538_469_310_105_683, 0.906_179_845_938_664, -0.906_179_845_938_664];
             let weights = [128.0 / 225.0, 0.478_628_670_499_366, 0.478_628_670_499_366, 0.236_926_885_056_189, 0.236_926_885_056_189];
-            for (kernel, integral) in KERNELS {
+            for (function, kernel) in CASES {
                 let mut sum = 0.0;
                 let mut size = 0.0;
                 for (s, ws) in points.iter().zip(weights) {
                     for (t, wt) in points.iter().zip(weights) {
-                        let value = kernel(x - half_length * s, y - half_breadth * t);
+                        let value = function(x - half_length * s, y - half_breadth * t);
                         sum += ws * wt * half_length * half_breadth * value;
                         size += ws * wt * half_length * half_breadth * value.abs();
                     }
                 }
                 // The rule's error (1/4)^10 of derivatives, and the corner functions' round-off, which grows with the distance.
                 let round_off = 1e-15 * distance * distance * distance;
-                prop_assert!((integral(&rectangle, x, y) - sum).abs() < 1e-6 * size + round_off);
+                prop_assert!((rectangle.integral(&kernel, x, y) - sum).abs() < 1e-6 * size + round_off);
             }
         }
     }
@@ -196,9 +205,9 @@ mod tests {
             half_breadth: b,
         };
         let expected = 4.0 * (a * (b / a).asinh() + b * (a / b).asinh());
-        assert!((rectangle.one_over_r(0.0, 0.0) / expected - 1.0).abs() < 1e-14);
-        for odd in [Rectangle::xy_over_r3, Rectangle::x_over_r2, Rectangle::y_over_r3] {
-            assert!(odd(&rectangle, 0.0, 0.0).abs() < 1e-15);
+        assert!((one_over_r(&rectangle, 0.0, 0.0) / expected - 1.0).abs() < 1e-14);
+        for odd in [XY_OVER_R3, X_OVER_R2, Y_OVER_R3] {
+            assert!(rectangle.integral(&odd, 0.0, 0.0).abs() < 1e-15);
         }
     }
 
@@ -217,13 +226,14 @@ mod tests {
             half_length,
             half_breadth,
         };
-        let along =
-            |x: f64| (pair.normal() * rectangle.one_over_r(x, 1e-9)) + pair.lateral * rectangle.xx_over_r3(x, 1e-9);
+        let along = |x: f64| {
+            pair.normal() * one_over_r(&rectangle, x, 1e-9) + pair.lateral * rectangle.integral(&XX_OVER_R3, x, 1e-9)
+        };
         let (x, h) = (3e-3, 1e-6);
         let strain = (along(x + h) - along(x - h)) / (2.0 * h);
         let expected = -(1.0 - body.poisson_ratio) / (PI * body.shear_modulus) * 2.0 * half_length / x;
         assert!((strain / expected - 1.0).abs() < 1e-3, "{strain:e} {expected:e}");
-        let lift = |x: f64| -pair.coupling * rectangle.x_over_r2(x, 1e-9);
+        let lift = |x: f64| -pair.coupling * rectangle.integral(&X_OVER_R2, x, 1e-9);
         let step = lift(-x) - lift(x);
         let expected = (1.0 - 2.0 * body.poisson_ratio) / (2.0 * body.shear_modulus) * 2.0 * half_length;
         assert!((step / expected - 1.0).abs() < 1e-3, "{step:e} {expected:e}");

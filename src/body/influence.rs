@@ -119,31 +119,16 @@ impl Transform {
         self.harmonics() * self.lags
     }
 
+    /// Largest lags along and across that a table is made of.
+    pub fn largest_lags(&self) -> [usize; 2] {
+        [self.lags - self.stride, (self.double.size() - 1) / 2]
+    }
+
     /// The tables of the kernels A, B and C, as functions of the lag.
     pub fn tables(&self, a: impl Fn(Lag) -> f64, b: impl Fn(Lag) -> f64, c: impl Fn(Lag) -> f64) -> Tables<f64> {
-        let size = self.double.size();
-        // The inverse transform lacks 1/P.
-        let share = 1.0 / size as f64;
-        let sum = |wave: fn(f64) -> f64, kernel: &dyn Fn(Lag) -> f64| {
-            let waves: Vec<f64> = (0..size).map(|turn| wave(TAU * turn as f64 / size as f64)).collect();
-            let mut table = vec![0.0; self.table_len()];
-            let largest = ((size - 1) / 2) as isize;
-            for lag in 0..self.lags {
-                let along = lag as isize - self.stride as isize;
-                let values: Vec<f64> = (-largest..=largest).map(|across| kernel((along, across))).collect();
-                for harmonic in 0..self.harmonics() {
-                    let terms = (-largest..=largest).zip(&values).map(|(across, value)| {
-                        let turn = (harmonic as isize * across).rem_euclid(size as isize);
-                        value * waves[turn as usize]
-                    });
-                    table[harmonic * self.lags + lag] = share * terms.sum::<f64>();
-                }
-            }
-            table
-        };
         Tables {
-            even: [sum(f64::cos, &a), sum(f64::cos, &c)],
-            odd: sum(f64::sin, &b),
+            even: [self.table(f64::cos, a), self.table(f64::cos, c)],
+            odd: self.table(f64::sin, b),
             scalar: false,
         }
     }
@@ -151,9 +136,33 @@ impl Transform {
     /// The tables of a kernel A alone.
     pub fn scalar_tables(&self, a: impl Fn(Lag) -> f64) -> Tables<f64> {
         Tables {
+            even: [self.table(f64::cos, a), vec![0.0; self.table_len()]],
+            odd: vec![0.0; self.table_len()],
             scalar: true,
-            ..self.tables(a, |_| 0.0, |_| 0.0)
         }
+    }
+
+    /// Harmonics of a kernel that is even across the strips, for cosines, or odd, for sines.
+    fn table(&self, wave: fn(f64) -> f64, kernel: impl Fn(Lag) -> f64) -> Vec<f64> {
+        let size = self.double.size();
+        // The inverse transform lacks 1/P.
+        let share = 1.0 / size as f64;
+        let waves: Vec<f64> = (0..size)
+            .map(|turn| share * wave(TAU * turn as f64 / size as f64))
+            .collect();
+        let mut table = vec![0.0; self.table_len()];
+        let mut values = vec![0.0; self.lags];
+        for across in 0..=self.largest_lags()[1] {
+            for (lag, value) in values.iter_mut().enumerate() {
+                *value = kernel((lag as isize - self.stride as isize, across as isize));
+            }
+            // To the left and to the right.
+            let both = if across == 0 { 1.0 } else { 2.0 };
+            for (harmonic, row) in table.chunks_exact_mut(self.lags).enumerate() {
+                dense::add_multiple(&values, both * waves[harmonic * across % size], row);
+            }
+        }
+        table
     }
 
     /// The product in double precision: `out` = tables · `load`, both as x and y components on the grid. What is not read stays.

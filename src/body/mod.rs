@@ -5,6 +5,7 @@
 //! paper's mesh. [`thermal`] is the displacement by heat. [`pair`] makes of these the [`compliance`] of rail and wheel, the
 //! dense maps that a step uses.
 
+pub mod cell_integrals;
 pub mod compliance;
 pub mod elasticity;
 pub mod forms;

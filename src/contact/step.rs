@@ -124,11 +124,6 @@ fn solve_in_room<E: Engine>(
         let before_mechanics = E::mechanics_work(solvers);
         let tractions = E::solve_mechanics(problem, iterate, now, solvers, test.mechanics_tolerance());
         work.add(problem.operators.sweep_work() + E::mechanics_work(solvers).saturating_sub(before_mechanics))?;
-        if std::env::var("ZZ").is_ok()
-            && let Err(error) = &tractions
-        {
-            eprintln!("  {error}");
-        }
         let tractions = tractions?;
         E::march_wear(problem, before, now, solvers);
         rail_and_rim::march_heat(problem, before, iterate, now, solvers)?;
@@ -150,14 +145,6 @@ fn solve_in_room<E: Engine>(
         }
         let change = iterate.change_to(image, settings.least_temperature);
         let passes = test.is_passed(change.max(pending), &tractions);
-        if std::env::var("ZZ").is_ok() {
-            eprintln!(
-                "  it {iterations} change {change:.2e} pending {pending:.1e} shear {:.2e} set {} tol {:.1e}",
-                tractions.shear_change,
-                tractions.set_changed,
-                test.mechanics_tolerance()
-            );
-        }
         if passes || ends && change.max(pending) <= settings.stalled_tolerance {
             let iterations = iterations + newton_sweeps.unwrap_or(0);
             return finish(problem, before, iterate, now, solvers, iterations, test.change());

@@ -375,29 +375,32 @@ fn columns_without_effect_are_refused() {
 
 const PROFILES: [&str; 4] = ["--set", "contact_model=profiles", "--set", "slip_source=2"];
 
-/// Profiles are declared and checked; they are not computed yet.
 #[test]
-fn profiles_are_checked() {
+fn profiles_take_the_wheelset_and_their_names_are_checked() {
     let place = Place::new("profiles", GOOD);
     let with = |name: &str, more: &[&str], expected: &[&str], scenario: &str| {
         Place::new(&format!("profiles_{name}"), scenario).refused(&[&PROFILES[..], more].concat(), expected);
     };
     let rolling = "time,vehicle_speed,lateral_displacement [mm],yaw_angle [mrad]\n0,10,0,0\n0.001,10,3,1.5\n";
-    with(
-        "plain",
-        &[],
-        &["contact_model = 3 (profiles) is not computed yet"],
-        rolling,
-    );
-    let files = [
-        "--set",
-        "rail_profile=a b.prr",
-        "--set",
-        "side=right",
-        "--set",
-        "control=height",
-    ];
-    with("files", &files, &["is not computed yet"], rolling);
+    let rolled = Place::new("profiles_rolling", rolling);
+    let output = rolled.simulate(&PROFILES);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let table = read_to_string(&rolled.output).unwrap();
+    let heading = table.lines().next().unwrap();
+    let vertical = heading.split(',').position(|name| name == "force_z [N]").unwrap();
+    let carried: f64 = table
+        .lines()
+        .last()
+        .unwrap()
+        .split(',')
+        .nth(vertical)
+        .unwrap()
+        .parse()
+        .unwrap();
+    // The default load, to the tolerance of a step.
+    assert!((carried / 60e3 - 1.0).abs() < 1e-5, "{carried}");
+    let files = ["--set", "rail_profile=a b.prr", "--set", "side=right"];
+    with("files", &files, &["rail_profile", "a b.prr"], rolling);
     let blank = ["--set", "wheel_profile= "];
     with("blank", &blank, &["wheel_profile is blank", "1 to 4096 bytes"], rolling);
     let unknown = ["--set", "rail_profil=60E1"];
@@ -409,7 +412,6 @@ fn profiles_are_checked() {
         "say --set control=3",
     ];
     with("height", &[], &words, height);
-    with("by_height", &["--set", "control=3"], &["is not computed yet"], height);
     let creeping = "time,spin_creepage\n0,0\n0.001,0.1\n";
     let words = ["must be 0 with contact_model = 3 (profiles); contact_model = 2 (patch) takes it"];
     with("creeping", &[], &words, creeping);

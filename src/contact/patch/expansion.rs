@@ -4,9 +4,10 @@
 //! u = (1+ν)α/π ∫ Θ (x, y)/r³ dA. Outside of the window each strip is taken to hold, up to the ends of the rail, what it holds
 //! in its cell at that end: heat that has left the surface goes deeper, but is kept.
 
+use crate::body::cell_integrals::CellIntegrals;
 use crate::body::grid::Grid;
 use crate::body::half_plane::HalfPlane;
-use crate::body::half_space::Rectangle;
+use crate::body::half_space::{Kernel, Rectangle, X_OVER_R3, Y_OVER_R3};
 use crate::body::influence::{self, Tables, Transform, Window};
 use crate::numerics::dense::{add_multiple, largest};
 use crate::parameters::Parameters;
@@ -52,17 +53,11 @@ impl Expansion {
         let body = HalfPlane::new(parameters.lame_lambda, parameters.shear_modulus);
         let swelling = (1.0 + body.poisson_ratio) * parameters.thermal_expansion / scale;
         let displacement = swelling / PI;
-        let cell = Rectangle {
-            half_length: 0.5 * grid.length,
-            half_breadth: 0.5 * grid.breadth,
-        };
-        let kernel = |lag, of: fn(&Rectangle, f64, f64) -> f64| {
-            let (x, y) = grid.distance(lag);
-            displacement * of(&cell, x, y)
-        };
+        let lags = transform.largest_lags();
+        let [along, across] = [X_OVER_R3, Y_OVER_R3].map(|kernel| CellIntegrals::new(grid, lags, &kernel));
         let cells = transform.tables(
-            |lag| kernel(lag, Rectangle::x_over_r3),
-            |lag| kernel(lag, Rectangle::y_over_r3),
+            |lag| displacement * along.at(lag),
+            |lag| displacement * across.at(lag),
             |_| 0.0,
         );
         let beyond = Rectangle {
@@ -70,11 +65,11 @@ impl Expansion {
             half_breadth: 0.5 * grid.breadth,
         };
         let middle = 0.5 * (rail + grid.half_length());
-        let rows = |middle: f64, kernel: fn(&Rectangle, f64, f64) -> f64| {
+        let rows = |middle: f64, kernel: &Kernel| {
             let mut rows = vec![0.0; grid.len()];
             for strip in 0..grid.strips {
                 for (cell, value) in rows[grid.row(strip)].iter_mut().enumerate() {
-                    *value = displacement * kernel(&beyond, grid.x(cell) - middle, strip as f64 * grid.breadth);
+                    *value = displacement * beyond.integral(kernel, grid.x(cell) - middle, strip as f64 * grid.breadth);
                 }
             }
             rows
@@ -82,8 +77,7 @@ impl Expansion {
         Expansion {
             bulge: 2.0 * swelling,
             cells,
-            outside: [-middle, middle]
-                .map(|middle| [Rectangle::x_over_r3, Rectangle::y_over_r3].map(|kernel| rows(middle, kernel))),
+            outside: [-middle, middle].map(|middle| [X_OVER_R3, Y_OVER_R3].map(|kernel| rows(middle, &kernel))),
         }
     }
 

@@ -1,70 +1,68 @@
 //! Influence functions of a patch: displacement of the centre of a cell by a traction on another one, a function of the lag between
 //! the two, in cells along x and strips across.
 
+use crate::body::cell_integrals::CellIntegrals;
 use crate::body::grid::Grid;
-use crate::body::half_space::{HalfSpaces, Rectangle};
+use crate::body::half_space::{HalfSpaces, Kernel, X_OVER_R2, XX_OVER_R3, XY_OVER_R3, Y_OVER_R2, YY_OVER_R3};
+use crate::body::influence::{Tables, Transform};
 
 /// Influence functions of the pair of half-spaces with a layer between them, scaled: displacement per traction.
-pub struct Kernels<'a> {
-    /// Pair of half-spaces.
-    pub pair: &'a HalfSpaces,
-    /// Grid of the cells.
-    pub grid: &'a Grid,
-    /// Scaled displacement per traction and compliance of 1 `m/Pa`.
-    pub unit: f64,
-    /// Compliance of the layer, scaled; 0 without one.
-    pub layer: f64,
+pub struct Kernels {
+    /// Factor on the kernel 1/r.
+    direct: f64,
+    /// Factor on the kernels of Poisson's effect.
+    lateral: f64,
+    /// Compliance of the layer; 0 without one.
+    layer: f64,
+    xx: CellIntegrals,
+    xy: CellIntegrals,
+    yy: CellIntegrals,
+    /// Coupling of normal and tangential displacement: its factor, and the integrals along x and y; none where the bodies are alike.
+    coupling: Option<(f64, [CellIntegrals; 2])>,
 }
 
-impl Kernels<'_> {
-    /// Cell, as the rectangle that is loaded, and the distance of the lag.
-    fn cell(&self, lag: (isize, isize)) -> (Rectangle, f64, f64) {
-        let (x, y) = self.grid.distance(lag);
-        let rectangle = Rectangle {
-            half_length: 0.5 * self.grid.length,
-            half_breadth: 0.5 * self.grid.breadth,
-        };
-        (rectangle, x, y)
+impl Kernels {
+    /// Influence functions on a grid at all lags of a transform; `unit` is the scaled displacement per traction and compliance of 1 `m/Pa`,
+    /// `layer` the compliance of the layer, scaled.
+    pub fn new(pair: &HalfSpaces, grid: &Grid, transform: &Transform, unit: f64, layer: f64) -> Kernels {
+        let lags = transform.largest_lags();
+        let integrals = |kernel: &Kernel| CellIntegrals::new(grid, lags, kernel);
+        Kernels {
+            direct: unit * pair.normal(),
+            lateral: unit * pair.lateral,
+            layer,
+            xx: integrals(&XX_OVER_R3),
+            xy: integrals(&XY_OVER_R3),
+            yy: integrals(&YY_OVER_R3),
+            coupling: (pair.coupling != 0.0)
+                .then(|| (-unit * pair.coupling, [integrals(&X_OVER_R2), integrals(&Y_OVER_R2)])),
+        }
     }
 
     /// Normal displacement by pressure.
     pub fn normal(&self, lag: (isize, isize)) -> f64 {
-        let (cell, x, y) = self.cell(lag);
-        self.unit * self.pair.normal() * cell.one_over_r(x, y)
+        self.direct * (self.xx.at(lag) + self.yy.at(lag))
     }
 
     /// Displacement u_x by τ_x.
     pub fn along(&self, lag: (isize, isize)) -> f64 {
-        let (cell, x, y) = self.cell(lag);
-        self.normal(lag) + self.unit * self.pair.lateral * cell.xx_over_r3(x, y) + self.layer_at(lag)
+        self.normal(lag) + self.lateral * self.xx.at(lag) + self.layer_at(lag)
     }
 
     /// Displacement u_y by τ_y.
     pub fn across(&self, lag: (isize, isize)) -> f64 {
-        let (cell, x, y) = self.cell(lag);
-        self.normal(lag) + self.unit * self.pair.lateral * cell.yy_over_r3(x, y) + self.layer_at(lag)
+        self.normal(lag) + self.lateral * self.yy.at(lag) + self.layer_at(lag)
     }
 
     /// Displacement u_x by τ_y, and u_y by τ_x.
     pub fn mixed(&self, lag: (isize, isize)) -> f64 {
-        let (cell, x, y) = self.cell(lag);
-        self.unit * self.pair.lateral * cell.xy_over_r3(x, y)
+        self.lateral * self.xy.at(lag)
     }
 
-    /// Displacement u_x by pressure, and normal displacement by τ_x.
-    pub fn coupling_along(&self, lag: (isize, isize)) -> f64 {
-        let (cell, x, y) = self.cell(lag);
-        self.coupling() * cell.x_over_r2(x, y)
-    }
-
-    /// Displacement u_y by pressure, and normal displacement by τ_y.
-    pub fn coupling_across(&self, lag: (isize, isize)) -> f64 {
-        let (cell, x, y) = self.cell(lag);
-        self.coupling() * cell.y_over_r2(x, y)
-    }
-
-    fn coupling(&self) -> f64 {
-        -self.unit * self.pair.coupling
+    /// Tables of the displacement u by pressure, which are those of the normal displacement by shear, too.
+    pub fn coupling(&self, transform: &Transform) -> Option<Tables<f64>> {
+        let (factor, [along, across]) = self.coupling.as_ref()?;
+        Some(transform.tables(|lag| factor * along.at(lag), |lag| factor * across.at(lag), |_| 0.0))
     }
 
     /// Displacement over the layer, which a cell's own shear alone moves.

@@ -95,12 +95,9 @@ impl PatchOperators {
         };
         let pair = HalfSpaces::of_pair(parameters);
         let transform = Transform::new(&grid, grid.strips);
-        let kernels = Kernels {
-            pair: &pair,
-            grid: &grid,
-            unit: scales.compliance(1.0),
-            layer: scales.compliance(1.0) * parameters.layer_compliance,
-        };
+        let unit = scales.compliance(1.0);
+        let layer = unit * parameters.layer_compliance;
+        let kernels = Kernels::new(&pair, &grid, &transform, unit, layer);
         let mesh = graded_mesh(parameters, &grid);
         let basis = DepthBasis::new(&mesh.depth)?;
         Ok(PatchOperators {
@@ -123,14 +120,8 @@ impl PatchOperators {
                     (transform, tables)
                 })
                 .collect(),
-            strip_kernels: strip_kernels(&kernels),
-            coupling: (pair.coupling != 0.0).then(|| {
-                transform.tables(
-                    |lag| kernels.coupling_along(lag),
-                    |lag| kernels.coupling_across(lag),
-                    |_| 0.0,
-                )
-            }),
+            strip_kernels: strip_kernels(&kernels, &grid),
+            coupling: kernels.coupling(&transform),
             expansion: Expansion::new(
                 parameters,
                 &grid,
@@ -138,7 +129,7 @@ impl PatchOperators {
                 parameters.strip_half_length,
                 scales.displacement,
             ),
-            edge_factors: edge_factors(&kernels),
+            edge_factors: edge_factors(&pair, layer / (unit * grid.length)),
             gap: undeformed_gap(parameters, &grid, &scales),
             strips: Strips::new(&mesh.x, mesh.window(), grid.strips, grid.breadth),
             incoming: Incoming::new(&mesh.depth, &basis, parameters.skin_depth),
@@ -175,8 +166,8 @@ fn shear_tables(kernels: &Kernels, transform: &Transform) -> Tables<f64> {
 }
 
 /// Kernels of u_x by τ_x and of u_y by τ_y of a strip on itself, by the lag along x, as long as the rows of the tables.
-fn strip_kernels(kernels: &Kernels) -> [Vec<f64>; 2] {
-    let stride = kernels.grid.stride() as isize;
+fn strip_kernels(kernels: &Kernels, grid: &Grid) -> [Vec<f64>; 2] {
+    let stride = grid.stride() as isize;
     let lags = || (0..2 * stride + 8).map(|place| (place - stride, 0));
     [
         lags().map(|lag| kernels.along(lag)).collect(),
@@ -185,15 +176,9 @@ fn strip_kernels(kernels: &Kernels) -> [Vec<f64>; 2] {
 }
 
 /// Factors of the leading-edge correction. The edges of the strips are nearly straight: the pressure of a cell displaces half-planes by
-/// 2Δ/E*, 1/E* = π normal.
-fn edge_factors(kernels: &Kernels) -> [f64; 2] {
-    let Kernels {
-        pair,
-        grid,
-        unit,
-        layer,
-    } = kernels;
-    let edge = LAYER_STRAIN * layer / (2.0 * PI * pair.normal() * unit * grid.length);
+/// 2Δ/E*, 1/E* = π normal. `layer` is the compliance of the layer over the length of a cell, `1/Pa`.
+fn edge_factors(pair: &HalfSpaces, layer: f64) -> [f64; 2] {
+    let edge = LAYER_STRAIN * layer / (2.0 * PI * pair.normal());
     [1.0 + edge, pair.direct / pair.normal() + edge]
 }
 
@@ -251,7 +236,7 @@ fn compliance(pair: &HalfSpaces, c: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::body::half_space::Rectangle;
+    use crate::body::half_space::{Rectangle, XX_OVER_R3, YY_OVER_R3};
 
     /// Compares the closed form with the sum over small squares that the tables are made of.
     #[test]
@@ -274,7 +259,8 @@ mod tests {
         for &(x, y) in &points {
             for &(from_x, from_y) in &points {
                 let (x, y) = (x - from_x, y - from_y);
-                let kernel = pair.normal() * square.one_over_r(x, y) + pair.lateral * square.xx_over_r3(x, y);
+                let [xx, yy] = [XX_OVER_R3, YY_OVER_R3].map(|kernel| square.integral(&kernel, x, y));
+                let kernel = pair.normal() * (xx + yy) + pair.lateral * xx;
                 sum += kernel * shear((from_x, from_y));
             }
         }

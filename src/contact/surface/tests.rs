@@ -380,3 +380,19 @@ fn tight() -> crate::Settings {
     settings.patch.first_mechanics_tolerance = 1e-10;
     settings
 }
+
+#[test]
+fn zz_build() {
+    use crate::contact::surface::operators::SurfaceOperators;
+    for _ in 0..4 {
+        let start = Instant::now();
+        let operators = SurfaceOperators::build(&parameters(true, false)).unwrap();
+        println!("build {:?} {}", start.elapsed(), operators.shapes.len());
+        let start = Instant::now();
+        let basis = crate::heat::basis::DepthBasis::new(&operators.shapes[0].depth).unwrap();
+        println!("basis {:?} {}", start.elapsed(), basis.len());
+        let start = Instant::now();
+        let solvers = super::solvers::SurfaceSolvers::new(&operators, &crate::Settings::default());
+        println!("solvers {:?} {}", start.elapsed(), solvers.windows.len());
+    }
+}

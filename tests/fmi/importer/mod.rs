@@ -36,13 +36,10 @@ pub fn with_each(test: impl Fn(&Api, ContactModel)) {
     with_each_standard(|api| with_each_contact_model(api, &test));
 }
 
-/// The contact models that are computed: profiles are declared alone.
-pub const COMPUTED: [ContactModel; 2] = [Line, Patch];
-
-/// Takes a test once with each contact model that is computed.
+/// Takes a test once with each contact model.
 #[track_caller]
 pub fn with_each_contact_model(api: &Api, test: impl Fn(&Api, ContactModel)) {
-    for contact in COMPUTED {
+    for contact in [Line, Patch, Profiles] {
         println!("{contact:?}");
         test(api, contact);
     }

@@ -1,7 +1,7 @@
 //! The law at every cell, its slip summed over the whole matrix.
 
 use super::*;
-use crate::body::half_space::Rectangle;
+use crate::body::half_space::{Rectangle, XX_OVER_R3, XY_OVER_R3, YY_OVER_R3};
 use crate::settings::Settings;
 use std::f64::consts::FRAC_2_PI;
 
@@ -34,11 +34,8 @@ fn slip_kernel(grid: &Grid, forward: bool, (along, across): (isize, isize)) -> [
     };
     let displacement = |along: isize| {
         let (x, y) = (along as f64 * grid.length, across as f64 * grid.breadth);
-        let (direct, mixed) = (0.7 * rectangle.one_over_r(x, y), 0.3 * rectangle.xy_over_r3(x, y));
-        [
-            [direct + 0.3 * rectangle.xx_over_r3(x, y), mixed],
-            [mixed, direct + 0.3 * rectangle.yy_over_r3(x, y)],
-        ]
+        let [xx, xy, yy] = [XX_OVER_R3, XY_OVER_R3, YY_OVER_R3].map(|kernel| rectangle.integral(&kernel, x, y));
+        [[xx + 0.7 * yy, 0.3 * xy], [0.3 * xy, yy + 0.7 * xx]]
     };
     let (here, next) = (displacement(along), displacement(along + ahead(forward)));
     [0, 1].map(|i: usize| [0, 1].map(|j: usize| 1.2 * here[i][j] - next[i][j]))
