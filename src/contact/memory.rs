@@ -11,8 +11,12 @@ pub fn begin<E: OneWindow>(problem: &Problem<E>, before: &E::Fields, now: &mut E
     let memory = E::memory_mut(now);
     memory.remembers = remembers;
     if remembers {
-        let (law, rise) = (problem.friction(), problem.operators.surface_rise(before));
-        memory.start_from(E::memory(before), |node| law.coefficient(rise[node]).0);
+        let rise = problem.operators.surface_rise(before);
+        // All paths are equally long.
+        let nodes = problem.operators.paths().next().map_or(1, |path| path.nodes.len());
+        memory.start_from(E::memory(before), |node| {
+            problem.friction_at(node / nodes).coefficient(rise[node]).0
+        });
     }
 }
 
@@ -23,12 +27,14 @@ pub fn end<E: OneWindow>(problem: &Problem<E>, now: &mut E::Fields) {
     let (Some(path_law), true) = (problem.path_law(), remembers) else {
         return;
     };
-    let (operators, law) = (problem.operators, problem.friction());
+    let operators = problem.operators;
     let mut memory = std::mem::take(E::memory_mut(now));
-    for (static_friction, rise) in memory.now.static_friction.iter_mut().zip(operators.surface_rise(now)) {
-        *static_friction = law.coefficient(*rise).0;
-    }
-    for path in operators.paths() {
+    let rises = operators.surface_rise(now);
+    for (strip, path) in operators.paths().enumerate() {
+        let law = problem.friction_at(strip);
+        for node in path.nodes.clone() {
+            memory.now.static_friction[node] = law.coefficient(rises[node]).0;
+        }
         let pressure = &E::pressure(now)[path.places];
         let before = memory.before.path(path.nodes.clone());
         let after = &mut memory.now;

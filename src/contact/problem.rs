@@ -68,6 +68,8 @@ pub struct Problem<'a, E> {
     pub settings: &'a Settings,
     /// Conditions of the step.
     pub conditions: StepConditions,
+    /// Shares of the strips that belong to the rail's gauge face, of a window on a rail's profile; none else.
+    pub gauge_face: &'a [f64],
 }
 
 impl<E> Clone for Problem<'_, E> {
@@ -86,6 +88,7 @@ impl<'a, E> Problem<'a, E> {
             parameters: task.parameters,
             settings: task.settings,
             conditions: task.conditions,
+            gauge_face: &[],
         }
     }
 
@@ -108,6 +111,21 @@ impl<'a, E> Problem<'a, E> {
             ambient: self.conditions.inputs.ambient_temperature,
             scale: self.conditions.inputs.friction_scale,
         }
+    }
+
+    /// Friction law on a strip: on the rail's gauge face with that face's own scale.
+    pub fn friction_at(&self, strip: usize) -> FrictionState<'a> {
+        let law = self.friction();
+        FrictionState {
+            scale: law.scale * self.gauge_face_factor(strip),
+            ..law
+        }
+    }
+
+    /// Factor on the friction coefficient of a strip, 1 but for the rail's gauge face.
+    pub fn gauge_face_factor(&self, strip: usize) -> f64 {
+        let share = self.gauge_face.get(strip).copied().unwrap_or(0.0);
+        1.0 + share * (self.parameters.gauge_face_friction_scale - 1.0)
     }
 
     /// Whether rail material moves towards −x; V = 0 counts so.

@@ -3,6 +3,7 @@
 use super::Model;
 use crate::friction;
 use crate::numerics::dense;
+use crate::parameters::{ContactModel, Control};
 use crate::signals::{Inputs, Motion};
 
 impl Model {
@@ -15,8 +16,15 @@ impl Model {
         let (half_length, half_breadth) = self.parameters.contact_half_axes(load);
         let saturation = friction::largest_coefficient(&self.parameters) * half_length / self.parameters.wheel_radius;
         // Slip along and across the rail, and that of the spin at the contact's side.
-        let slips = |motion: &Motion| [motion.rigid_slip, motion.lateral_speed, half_breadth * motion.spin_rate];
-        let (slips_before, slips_after) = (slips(&before), slips(&after));
+        let slips = |motion: &Motion, inputs: &Inputs| {
+            [
+                motion.rigid_slip,
+                // A wheelset that is yawed rolls askew. The yaw rate is none of a line or a patch.
+                motion.lateral_speed - inputs.rail_lateral_speed - motion.rolling_speed * inputs.yaw_angle,
+                half_breadth * (motion.spin_rate + inputs.yaw_rate),
+            ]
+        };
+        let (slips_before, slips_after) = (slips(&before, from), slips(&after, to));
         let slip = dense::largest(&slips_before).max(dense::largest(&slips_after));
         let relative = |change: f64, scale: f64| dense::relative(change.abs(), scale);
         relative(after.rolling_speed - before.rolling_speed, speed)
@@ -29,6 +37,24 @@ impl Model {
                 to.friction_scale - from.friction_scale,
                 from.friction_scale.max(to.friction_scale),
             ))
+            .max(self.change_of_place(from, to))
+    }
+
+    /// Largest change of the wheelset's place over the rail, relative to what changes the contacts appreciably; 0 where there are no profiles.
+    fn change_of_place(&self, from: &Inputs, to: &Inputs) -> f64 {
+        /// Way across the track over which the contacts become others, `m`.
+        const LATERAL: f64 = 5e-3;
+        if self.parameters.contact_model != ContactModel::Profiles {
+            return 0.0;
+        }
+        let lateral = |inputs: &Inputs| inputs.lateral_displacement - inputs.rail_lateral_displacement;
+        let place = (lateral(to) - lateral(from)).abs() / LATERAL;
+        if self.parameters.control != Control::Height {
+            return place;
+        }
+        let height = |inputs: &Inputs| inputs.vertical_displacement - inputs.rail_vertical_displacement;
+        let approach = self.parameters.hertz_ellipse(self.parameters.largest_load).approach;
+        place.max((height(to) - height(from)).abs() / approach)
     }
 
     /// Time in which rail material crosses the contact window, `s`; infinite at rest.

@@ -119,9 +119,9 @@ pub fn read(problem: &PatchProblem, fields: &PatchFields, solvers: &mut PatchSol
 /// Sets friction coefficient and shear to those at the temperature of the fields.
 pub fn finalise_friction(problem: &PatchProblem, fields: &mut PatchFields, contact: &Contact) {
     let grid = &problem.operators.grid;
-    let law = problem.friction();
     let of_slip = problem.path_law().is_some();
     for run in contact.runs() {
+        let law = problem.friction_at(run.strip);
         for (k, place) in run.places(grid).enumerate() {
             let index = run.strip * grid.cells + run.first + k;
             let static_friction = law.coefficient(fields.heat.surface[index]).0;

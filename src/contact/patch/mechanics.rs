@@ -151,11 +151,14 @@ fn solve_friction(
     }
     let forward = problem.is_forward();
     let ahead: isize = if forward { 1 } else { -1 };
-    let law = problem.friction();
     let path_law = problem.path_law();
     if let Some(path_law) = &path_law {
-        for (index, static_friction) in fields.memory.now.static_friction.iter_mut().enumerate() {
-            *static_friction = law.coefficient(interface.temperature(index)).0;
+        let strips = fields.memory.now.static_friction.chunks_exact_mut(grid.cells);
+        for (strip, static_friction) in strips.enumerate() {
+            let law = problem.friction_at(strip);
+            for (cell, static_friction) in static_friction.iter_mut().enumerate() {
+                *static_friction = law.coefficient(interface.temperature(strip * grid.cells + cell)).0;
+            }
         }
         memory::prepare(
             problem,
@@ -171,6 +174,7 @@ fn solve_friction(
         fields.friction.fill(0.0);
     }
     for run in solvers.contact.runs() {
+        let law = problem.friction_at(run.strip);
         let leading = if forward { run.cells - 1 } else { 0 };
         for (k, place) in run.places(grid).enumerate() {
             let index = run.offset + k;

@@ -111,6 +111,7 @@ impl<'a> PatchProblem<'a> {
         let grid = &self.operators.grid;
         let of_slip = self.path_law().is_some();
         for (strip, exchange) in exchange.chunks_exact_mut(grid.cells).enumerate() {
+            let gauge_face = self.gauge_face_factor(strip);
             for (cell, (place, exchange)) in grid.row(strip).zip(exchange).enumerate() {
                 let pressure = fields.pressure[place] * self.operators.scales.pressure;
                 *exchange = if pressure > 0.0 {
@@ -121,6 +122,7 @@ impl<'a> PatchProblem<'a> {
                 if of_slip && pressure > 0.0 {
                     exchange.law = fields.memory.point_law(strip * grid.cells + cell);
                 }
+                exchange.law.share *= gauge_face;
             }
         }
     }

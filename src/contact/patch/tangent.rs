@@ -110,8 +110,9 @@ impl PatchTangent {
         } = solution;
         let (operators, grid, direction) = (problem.operators, &problem.operators.grid, along.direction);
         let iterate = along.interface;
-        let law = problem.friction();
         for strip in 0..grid.strips {
+            let law = problem.friction_at(strip);
+            let scale_change = direction.inputs.friction_scale * problem.gauge_face_factor(strip);
             for (cell, place) in grid.row(strip).enumerate() {
                 let index = strip * grid.cells + cell;
                 self.gap[place] = self.undeformed.gap[place] + iterate.gap()[index] - iterate.displacement()[index];
@@ -120,7 +121,7 @@ impl PatchTangent {
                     let changes = [
                         iterate.temperature(index),
                         direction.inputs.ambient_temperature,
-                        direction.inputs.friction_scale,
+                        scale_change,
                     ];
                     law.coefficient_tangent(interface.temperature(index), changes)
                 } else {

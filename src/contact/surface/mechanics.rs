@@ -50,6 +50,7 @@ impl<'a> SurfaceProblem<'a> {
             parameters: self.parameters,
             settings: self.settings,
             conditions: self.conditions,
+            gauge_face: self.operators.gauge_face(place),
         }
     }
 

@@ -41,6 +41,35 @@ pub struct SurfaceOperators {
     pub shapes: Vec<PatchOperators>,
     /// The bodies as half-spaces.
     pub pair: HalfSpaces,
+    /// Strips of the rail by the number of their breadth.
+    gauge_faces: Vec<GaugeFace>,
+}
+
+/// Strips of one breadth over the rail's profile, and how far they belong to its gauge face.
+struct GaugeFace {
+    /// Number of the first strip.
+    first: i32,
+    /// Shares of the strips, 0 to 1.
+    shares: Vec<f64>,
+}
+
+impl GaugeFace {
+    /// Shares of the strips of a breadth, and of as many as a window has before the first and after the last one.
+    fn new(parameters: &Parameters, rail: &PlacedRail, breadth: f64, strips: usize) -> GaugeFace {
+        let [first, last] = rail.range().map(|arc| (arc / breadth).floor() as i32);
+        let around = strips as i32 + 1;
+        let share = |strip: i32| {
+            let [across, up] = rail.at((f64::from(strip) + 0.5) * breadth).normal;
+            let inclination = (-across).atan2(up);
+            let t = ((inclination - parameters.gauge_face_angle) / parameters.gauge_face_blend).clamp(0.0, 1.0);
+            // As smooth as derivatives by the place ask for.
+            t * t * (3.0 - 2.0 * t)
+        };
+        GaugeFace {
+            first: first - around,
+            shares: (first - around..=last + around).map(share).collect(),
+        }
+    }
 }
 
 impl SurfaceOperators {
@@ -67,6 +96,9 @@ impl SurfaceOperators {
             let arc = last - point as f64 * SCAN_STEP;
             (arc, rail.at(arc))
         });
+        let gauge_faces = (0..BREADTHS)
+            .map(|breadth| GaugeFace::new(parameters, &rail, sizes.grid(0, breadth).breadth, strips))
+            .collect();
         let shapes = (0..LENGTHS).flat_map(|length| (0..BREADTHS).map(move |breadth| (length, breadth)));
         Ok(SurfaceOperators {
             scan: scan.collect(),
@@ -77,9 +109,19 @@ impl SurfaceOperators {
                 .map(|(length, breadth)| PatchOperators::on_grid(parameters, sizes.grid(length, breadth), &narrow))
                 .collect::<Result<_>>()?,
             along: Interpolation::new(sizes.largest.cells),
+            gauge_faces,
             sizes,
             pair: HalfSpaces::of_pair(parameters),
         })
+    }
+
+    /// Shares of a window's strips that belong to the rail's gauge face.
+    pub fn gauge_face(&self, place: &Place) -> &[f64] {
+        let GaugeFace { first, shares } = &self.gauge_faces[place.breadth];
+        usize::try_from(place.strip - first)
+            .ok()
+            .and_then(|first| shares.get(first..first + self.sizes.largest.strips))
+            .unwrap_or(&[])
     }
 
     /// Operators of a window.
