@@ -97,6 +97,18 @@ pub trait Fields: Clone + PartialEq + std::fmt::Debug + Serialize + DeserializeO
         false
     }
 
+    /// Whether a row of the table counts: those of a window that is not used have no meaning.
+    fn is_used(&self, _row: usize) -> bool {
+        true
+    }
+
+    /// Takes the history of friction of others at the same places.
+    fn copy_memories(&mut self, other: &Self) {
+        for (memory, other) in self.memories_mut().zip(other.memories()) {
+            memory.copy_from(other);
+        }
+    }
+
     /// Takes the places at which the fields of others stand.
     fn copy_places(&mut self, _other: &Self) {}
 
@@ -125,12 +137,12 @@ pub trait Fields: Clone + PartialEq + std::fmt::Debug + Serialize + DeserializeO
 
     /// Copies the fields of some rows and the history of friction.
     fn copy(&mut self, other: &Self, included: impl Fn(&FieldRow<Self>) -> bool) {
-        for row in Self::ROWS.iter().filter(|row| included(row)) {
-            (row.get_mut)(self).copy_from_slice((row.get)(other));
+        for (number, row) in Self::ROWS.iter().enumerate() {
+            if included(row) && other.is_used(number) {
+                (row.get_mut)(self).copy_from_slice((row.get)(other));
+            }
         }
-        for (memory, other) in self.memories_mut().zip(other.memories()) {
-            memory.copy_from(other);
-        }
+        self.copy_memories(other);
     }
 
     /// Sets everything to 0, but for the history of friction.
@@ -146,7 +158,10 @@ pub trait Fields: Clone + PartialEq + std::fmt::Debug + Serialize + DeserializeO
     /// Takes what the outputs are made of from `fields`, moved by `step` times a change of them.
     fn move_along(&mut self, fields: &Self, change: &Self, step: f64) {
         self.copy_places(fields);
-        for row in Self::ROWS.iter().filter(|row| row.outputs != Outputs::Independent) {
+        for (number, row) in Self::ROWS.iter().enumerate() {
+            if row.outputs == Outputs::Independent || !fields.is_used(number) {
+                continue;
+            }
             let values = (row.get)(fields).iter().zip((row.get)(change));
             for (moved, (value, change)) in (row.get_mut)(self).iter_mut().zip(values) {
                 *moved = value + step * change;
@@ -162,7 +177,9 @@ pub trait Fields: Clone + PartialEq + std::fmt::Debug + Serialize + DeserializeO
     fn output_step(&self, change: &Self, settings: &SensitivitySettings) -> f64 {
         let step = Self::ROWS
             .iter()
-            .filter_map(|row| {
+            .enumerate()
+            .filter(|(number, _)| self.is_used(*number))
+            .filter_map(|(_, row)| {
                 let share = match row.outputs {
                     Outputs::Independent => return None,
                     Outputs::Linear => settings.linear_output_step,
@@ -208,7 +225,7 @@ pub struct EngineState<F> {
 impl<F: Fields> EngineState<F> {
     /// State that does not change.
     pub fn at_rest(fields: F) -> EngineState<F> {
-        let rates = extrapolated::<F>().map(|row| vec![0.0; (row.get)(&fields).len()]);
+        let rates = extrapolated::<F>().map(|(_, row)| vec![0.0; (row.get)(&fields).len()]);
         EngineState {
             rates: rates.collect(),
             fields,
@@ -218,9 +235,13 @@ impl<F: Fields> EngineState<F> {
     /// Makes the fields at the end of a step of `duration` `s` the state; `after` receives those before.
     pub fn commit(&mut self, after: &mut F, duration: f64) {
         let moved = after.has_moved(&self.fields);
-        for (rates, row) in self.rates.iter_mut().zip(extrapolated::<F>()) {
+        for (rates, (number, row)) in self.rates.iter_mut().zip(extrapolated::<F>()) {
             if moved {
                 rates.fill(0.0);
+                continue;
+            }
+            // Those of a window that is not used are 0 since its end.
+            if !after.is_used(number) {
                 continue;
             }
             let values = (row.get)(&self.fields).iter().zip((row.get)(after));
@@ -233,7 +254,10 @@ impl<F: Fields> EngineState<F> {
 
     /// Moves the first guess of a step on by `ahead` `s`.
     pub fn extrapolate(&self, ahead: f64, guess: &mut F) {
-        for (rates, row) in self.rates.iter().zip(extrapolated::<F>()) {
+        for (rates, (number, row)) in self.rates.iter().zip(extrapolated::<F>()) {
+            if !self.fields.is_used(number) {
+                continue;
+            }
             let values = (row.get_mut)(guess);
             values.copy_from_slice((row.get)(&self.fields));
             dense::add_multiple(rates, ahead, values);
@@ -255,7 +279,10 @@ impl<F: Fields> EngineState<F> {
     }
 }
 
-/// Rows that are extrapolated.
-fn extrapolated<F: Fields>() -> impl Iterator<Item = &'static FieldRow<F>> {
-    F::ROWS.iter().filter(|row| row.guess == Guess::Extrapolated)
+/// Rows that are extrapolated, with their numbers.
+fn extrapolated<F: Fields>() -> impl Iterator<Item = (usize, &'static FieldRow<F>)> {
+    F::ROWS
+        .iter()
+        .enumerate()
+        .filter(|(_, row)| row.guess == Guess::Extrapolated)
 }

@@ -56,6 +56,17 @@ impl PatchFields {
             wheel_temperature: 0.0,
         }
     }
+
+    /// Fields of the same sizes that nothing has happened to.
+    pub fn untouched(&self) -> PatchFields {
+        let mut fields = self.clone();
+        for row in Self::ROWS {
+            (row.get_mut)(&mut fields).fill(0.0);
+        }
+        fields.memory = Memory::new(self.memory.share.len());
+        fields.penetration = 0.0;
+        fields
+    }
 }
 
 impl Fields for PatchFields {

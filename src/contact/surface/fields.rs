@@ -5,12 +5,13 @@ use super::windows::{Place, SHAPES, WINDOWS};
 use crate::contact::fields::{FieldRow, Fields, Number, number, row};
 use crate::contact::patch::fields::PatchFields;
 use crate::friction::memory::Memory;
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Serialize, Serializer};
 
 /// Fields of all windows at one instant.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Deserialize)]
+#[serde(try_from = "Saved")]
 pub struct SurfaceFields {
-    /// Fields of the windows.
+    /// Fields of the windows; those of a window that is not used have no meaning.
     pub windows: [PatchFields; WINDOWS],
     /// Places of the windows; `None` of one that is not used.
     pub places: [Option<Place>; WINDOWS],
@@ -47,6 +48,76 @@ impl SurfaceFields {
             .into_iter()
             .enumerate()
             .filter_map(|(window, place)| place.map(|place| (window, place)))
+    }
+}
+
+impl PartialEq for SurfaceFields {
+    fn eq(&self, other: &SurfaceFields) -> bool {
+        self.places == other.places
+            && self.approach == other.approach
+            && [self.touch, self.stiffness, self.load, self.wheel_temperature]
+                == [other.touch, other.stiffness, other.load, other.wheel_temperature]
+            && self
+                .used()
+                .all(|(window, _)| self.windows[window] == other.windows[window])
+    }
+}
+
+/// Fields as they are saved: with the windows that are used, or one without content for the sizes.
+#[derive(Serialize, Deserialize)]
+struct Saved {
+    places: [Option<Place>; WINDOWS],
+    windows: Vec<PatchFields>,
+    approach: Vec<f64>,
+    touch: f64,
+    stiffness: f64,
+    load: f64,
+    wheel_temperature: f64,
+}
+
+impl Serialize for SurfaceFields {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let used = self.used().map(|(window, _)| self.windows[window].clone());
+        let mut windows: Vec<PatchFields> = used.collect();
+        if windows.is_empty() {
+            windows.push(self.windows[0].untouched());
+        }
+        let saved = Saved {
+            places: self.places,
+            windows,
+            approach: self.approach.clone(),
+            touch: self.touch,
+            stiffness: self.stiffness,
+            load: self.load,
+            wheel_temperature: self.wheel_temperature,
+        };
+        saved.serialize(serializer)
+    }
+}
+
+impl TryFrom<Saved> for SurfaceFields {
+    type Error = &'static str;
+
+    fn try_from(saved: Saved) -> Result<SurfaceFields, &'static str> {
+        let used = saved.places.iter().flatten().count();
+        let first = saved.windows.first().ok_or("a state without windows")?;
+        if saved.windows.len() != used.max(1) {
+            return Err("a state with another number of windows than of places");
+        }
+        let untouched = first.untouched();
+        let mut windows = saved.windows.into_iter();
+        Ok(SurfaceFields {
+            windows: saved.places.map(|place| {
+                let own = place.and_then(|_| windows.next());
+                own.unwrap_or_else(|| untouched.clone())
+            }),
+            places: saved.places,
+            approach: saved.approach,
+            touch: saved.touch,
+            stiffness: saved.stiffness,
+            load: saved.load,
+            wheel_temperature: saved.wheel_temperature,
+        })
     }
 }
 
@@ -112,6 +183,18 @@ impl Fields for SurfaceFields {
 
     fn memories_mut(&mut self) -> impl Iterator<Item = &mut Memory> {
         self.windows.iter_mut().map(|window| &mut window.memory)
+    }
+
+    fn is_used(&self, row: usize) -> bool {
+        // The approach, then as many rows of each window.
+        let rows = (Self::ROWS.len() - 1) / WINDOWS;
+        row == 0 || self.places[(row - 1) / rows].is_some()
+    }
+
+    fn copy_memories(&mut self, other: &SurfaceFields) {
+        for (window, _) in other.used() {
+            self.windows[window].memory.copy_from(&other.windows[window].memory);
+        }
     }
 
     fn has_moved(&self, before: &SurfaceFields) -> bool {

@@ -20,8 +20,8 @@ const LONGEST: f64 = 4.0;
 /// Breadth of the broadest window over that of a patch's: contacts in the gauge corner are several times as broad as long.
 const BROADEST: f64 = 4.0;
 
-/// Strips of a window over those of a patch: a contact in a gauge corner may be broad, and the load in it concentrated.
-const STRIPS: usize = 2;
+/// Strips of a window for two of a patch: a contact in a gauge corner may be broad, and the load in it concentrated.
+const STRIPS: usize = 3;
 
 /// Wheel, rail, and the operators of a window for each of its sizes.
 pub struct SurfaceOperators {
@@ -83,7 +83,7 @@ impl SurfaceOperators {
         let sizes = Sizes {
             largest: Grid::new(
                 parameters.patch_nodes,
-                STRIPS * parameters.patch_strips,
+                (STRIPS * parameters.patch_strips).div_ceil(2),
                 LONGEST * half_length,
                 BROADEST * half_breadth,
             ),

@@ -310,6 +310,8 @@ impl Transfer {
         for side in [Side::Left, Side::Right] {
             let k = side as usize;
             let Some((window, from)) = source else {
+                into.heat.breadth = strips.breadth * strips.strips as f64;
+                into.wear.breadth = into.heat.breadth;
                 into.heat.outer[k].fill(0.0);
                 into.wear.outer[k].fill(0.0);
                 continue;
