@@ -31,6 +31,35 @@ fn at_places<'a>(moved: bool, carried: &'a SurfaceFields, before: &'a SurfaceFie
     if moved { carried } else { before }
 }
 
+/// Begins a step in the windows, which stand at their places.
+fn begin_windows(
+    problem: &SurfaceProblem,
+    before: Option<&SurfaceFields>,
+    now: &mut SurfaceFields,
+    solvers: &mut SurfaceSolvers,
+) -> Result<()> {
+    let SurfaceSolvers {
+        windows,
+        before: carried,
+        moved,
+        ..
+    } = solvers;
+    let before = before.map(|before| at_places(*moved, carried, before));
+    for (window, place) in now.used() {
+        let (patch, own) = (problem.of(&place), &mut now.windows[window]);
+        let extent = extent(patch.operators, &own.pressure);
+        own.relaxation_length = if extent.length > 0.0 && extent.breadth > 0.0 {
+            let half_axes = (0.5 * extent.length, 0.5 * extent.breadth);
+            relaxation_length(&problem.operators.pair, problem.parameters.layer_compliance, half_axes)
+        } else {
+            patch.operators.relaxation_length
+        };
+        let before = before.map(|before| &before.windows[window]);
+        begin::begin(&patch, before, own, &mut windows[window].patch)?;
+    }
+    Ok(())
+}
+
 impl Engine for SurfaceOperators {
     type Fields = SurfaceFields;
     type Solvers = SurfaceSolvers;
@@ -125,25 +154,13 @@ impl Engine for SurfaceOperators {
         now: &mut SurfaceFields,
         solvers: &mut SurfaceSolvers,
     ) -> Result<()> {
-        placement::place(problem, before, now, solvers)?;
-        let SurfaceSolvers {
-            windows,
-            before: carried,
-            moved,
-            ..
-        } = solvers;
-        let before = before.map(|before| at_places(*moved, carried, before));
-        for (window, place) in now.used() {
-            let (patch, own) = (problem.of(&place), &mut now.windows[window]);
-            let extent = extent(patch.operators, &own.pressure);
-            own.relaxation_length = if extent.length > 0.0 && extent.breadth > 0.0 {
-                let half_axes = (0.5 * extent.length, 0.5 * extent.breadth);
-                relaxation_length(&problem.operators.pair, problem.parameters.layer_compliance, half_axes)
-            } else {
-                patch.operators.relaxation_length
-            };
-            let before = before.map(|before| &before.windows[window]);
-            begin::begin(&patch, before, own, &mut windows[window].patch)?;
+        placement::place(problem, before, None, now, solvers)?;
+        begin_windows(problem, before, now, solvers)?;
+        if before.is_none()
+            && let Some(approach) = mechanics::approach_of_pressure(problem, now, solvers)
+        {
+            placement::place(problem, before, Some(approach), now, solvers)?;
+            begin_windows(problem, before, now, solvers)?;
         }
         Ok(())
     }

@@ -12,7 +12,7 @@ use super::fields::SurfaceFields;
 use super::geometry::Pose;
 use super::operators::SurfaceOperators;
 use super::solvers::SurfaceSolvers;
-use super::windows::Place;
+use super::windows::{Place, WINDOWS};
 use crate::contact::engine::Engine;
 use crate::contact::interface::Interface;
 use crate::contact::patch::fields::PatchFields;
@@ -31,14 +31,21 @@ pub type SurfaceProblem<'a> = Problem<'a, SurfaceOperators>;
 
 /// Limit of the approaches that are tried for a load.
 const APPROACHES: usize = 40;
+/// Approaches after which the pressure is solved for better than to the tolerance.
+const USUAL_APPROACHES: usize = 8;
 /// Error of the load that is not worth another approach, relative: the pressure has more.
 const LOAD_TOLERANCE: f64 = 1e-9;
-/// Least change of the approach that shows the stiffness, relative: the windows' influence on each other lags behind.
-const LEAST_STEP: f64 = 1e-4;
+/// Change of the excess of load over the error of the pressure that shows the stiffness.
+const SHOWS_STIFFNESS: f64 = 5.0;
+/// Least and largest relative change of the load with a relative one of the approach: Hertz's is 3/2. The windows' influence on each
+/// other, which lags behind, may make it seem to be anything.
+const STIFFNESSES: [f64; 2] = [0.7, 4.0];
 /// Error of the pressure at the first approach, relative.
 const FIRST_TOLERANCE: f64 = 1e-3;
 /// Error of the pressure at an approach over that of the load at the one before.
 const TOLERANCE_SHARE: f64 = 0.03;
+/// Error of the load, relative, for the approach that windows are placed for.
+const APPROACH_TOLERANCE: f64 = 1e-2;
 /// Room for windows beyond which a contact is held within them.
 pub const LARGEST_ROOM: f64 = 4.0;
 
@@ -159,6 +166,33 @@ pub fn solve(
     Ok(change)
 }
 
+/// Approach at which the pressure alone carries the load in windows that were placed for one of ellipses, `m`, about: none where it is given,
+/// nothing is carried, or it is not found. It leaves windows without places and without pressure.
+pub fn approach_of_pressure(
+    problem: &SurfaceProblem,
+    fields: &mut SurfaceFields,
+    solvers: &mut SurfaceSolvers,
+) -> Option<f64> {
+    if problem.is_height_given() || problem.vertical_load() == 0.0 {
+        return None;
+    }
+    for (window, _) in fields.used() {
+        let own = &mut solvers.windows[window];
+        own.interface.values_mut().fill(0.0);
+        own.friction_share = 0.0;
+    }
+    let places = fields.places;
+    let found = press(problem, fields, solvers, APPROACH_TOLERANCE).ok();
+    let approach = found.map(|()| fields.approach[0])?;
+    for (fields, place) in fields.windows.iter_mut().zip(places) {
+        if place.is_some() {
+            fields.pressure.fill(0.0);
+        }
+    }
+    fields.places = [None; WINDOWS];
+    Some(approach)
+}
+
 /// Vertical force of all windows, `N`.
 fn carried(problem: &SurfaceProblem, fields: &SurfaceFields) -> f64 {
     fields
@@ -182,12 +216,21 @@ fn press(
     let mut left = f64::INFINITY;
     // The pressure need not be better than the approach is.
     let mut own_tolerance = tolerance.max(FIRST_TOLERANCE);
-    for _ in 0..APPROACHES {
+    for approaches in 0..APPROACHES {
         let (force, apart) = press_at(problem, search.approach, fields, solvers, own_tolerance)?;
         let excess = search.load.map_or(0.0, |load| (force - load) / load);
         left = excess.abs().max(apart);
+        if std::env::var("ZZ").is_ok() && approaches > 10 {
+            eprintln!(
+                "   {approaches} approach {:.12e} excess {excess:.3e} apart {apart:.2e} tol {own_tolerance:.1e} stiffness {:.4e}",
+                search.approach, search.stiffness
+            );
+        }
+        let error = own_tolerance;
         let solved_well = own_tolerance <= tolerance;
-        own_tolerance = (TOLERANCE_SHARE * left).clamp(tolerance, own_tolerance);
+        // The errors of the cells may add up to more of the load.
+        let finest = if approaches < USUAL_APPROACHES { 1.0 } else { 0.1 } * tolerance;
+        own_tolerance = (TOLERANCE_SHARE * left).clamp(finest, own_tolerance.max(finest));
         if left <= tolerance_of_load && !solved_well {
             own_tolerance = tolerance;
             continue;
@@ -196,7 +239,7 @@ fn press(
             search.end(fields);
             return check_room(problem, fields, solvers);
         }
-        search.next(excess);
+        search.next(excess, error);
     }
     Err(Error::NormalNotConverged {
         solver: "height of the wheel",
@@ -245,18 +288,17 @@ impl Approaches {
         }
     }
 
-    /// Takes the excess of load at the approach, relative, and moves on.
-    fn next(&mut self, excess: f64) {
+    /// Takes the excess of load at the approach, relative, with an error of it, and moves on.
+    fn next(&mut self, excess: f64, error: f64) {
         if self.load.is_none() {
             return;
         }
         if let Some([before, excess_before]) = self.last
-            && (before - self.approach).abs() > LEAST_STEP * self.approach
+            && (excess - excess_before).abs() > SHOWS_STIFFNESS * error
         {
             let slope = (excess - excess_before) / (self.approach - before);
-            if slope > 0.0 {
-                self.stiffness = slope;
-            }
+            let [least, most] = STIFFNESSES.map(|stiffness| stiffness / self.approach);
+            self.stiffness = slope.clamp(least, most);
         }
         self.last = Some([self.approach, excess]);
         // Half way to no contact at most, and to twice the approach: where another contact begins to carry, the stiffness jumps.

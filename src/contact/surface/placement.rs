@@ -13,11 +13,11 @@ use crate::geometry::unrolled::PlacedWheel;
 use crate::mechanics::patch::normal::is_free;
 
 /// Approach for which windows are placed over that which is expected.
-const AHEAD: f64 = 1.08;
+const AHEAD: f64 = 1.03;
 /// Distance of two regions, in parts of their mean breadth, below which they share a window.
 const NEAR: f64 = 0.5;
 /// Strips that the smaller of two regions must have left in a window of both.
-const LEAST_STRIPS: f64 = 5.0;
+const LEAST_STRIPS: f64 = 9.0;
 
 /// Region for a window, with the depth of the overlap.
 #[derive(Debug, Clone, Copy, Default)]
@@ -27,12 +27,14 @@ struct Wanted {
 }
 
 /// Places the windows for the pose of the step, carries the fields before over to them, and sets what their cells see of wheel and rail.
+/// Without fields before, the approach is the one that is known, `m`, or that of ellipses.
 ///
 /// # Errors
 /// A wheel that is not over the rail.
 pub fn place(
     problem: &SurfaceProblem,
     before: Option<&SurfaceFields>,
+    known: Option<f64>,
     now: &mut SurfaceFields,
     solvers: &mut SurfaceSolvers,
 ) -> Result<()> {
@@ -44,7 +46,8 @@ pub fn place(
         problem.parameters.wheel_radius
     };
     now.touch = solvers.search.touch(operators, &pose.position, guess);
-    let approach = expected_approach(problem, before, now.touch - pose.position.height, solvers);
+    let approach =
+        known.unwrap_or_else(|| expected_approach(problem, before, now.touch - pose.position.height, solvers));
     solvers.reference = approach;
     now.approach[0] = approach;
     let wanted = if approach > 0.0 {

@@ -19,6 +19,9 @@ const LINEAR: f64 = 1e-5;
 const LEAST_RISE: f64 = 0.05;
 /// Size of the region that a window is placed for over that of the overlap: a contact has 0.71 of it.
 const REGION_SHARE: f64 = 0.82;
+/// Share of the elastic displacement about the deepest place that spares shallower ones from contact with certainty: contacts near each other
+/// carry less than each by itself.
+const SPARED: f64 = 0.9;
 /// Depth of the overlap where that region ends, over the largest depth: of a parabola, 1 less the square of the share.
 const EDGE_SHARE: f64 = 1.0 - REGION_SHARE * REGION_SHARE;
 
@@ -191,6 +194,34 @@ fn hertz_load(overlap: &Overlap, modulus: f64) -> f64 {
     (overlap.depth / unit.approach).powf(1.5)
 }
 
+/// Depth of the overlap at a distance across from the middle of a contact, `m`, which the elastic displacement about it spares from contact. It is
+/// that of the ellipse's load, F/(πE*) over the distance, spread over the ellipse's length; its approach is F/(πE*) ³⁄₂ K(e)/a with its
+/// larger semi-axis a.
+fn spared(along: f64, across: f64, approach: f64) -> impl Fn(f64) -> f64 {
+    let unit = HertzEllipse::new(1.0, (0.5 * along, 0.5 * across), 1.0);
+    let scale = (approach / unit.approach).sqrt();
+    let (a, b) = (scale * unit.along, scale * unit.across);
+    let whole = approach / (1.5 * complete_elliptic_integral(a.min(b) / a.max(b)));
+    move |distance| {
+        if distance <= b {
+            0.0
+        } else if a > b {
+            SPARED * whole * (a / distance).asinh()
+        } else {
+            SPARED * whole * b / distance
+        }
+    }
+}
+
+/// K of the modulus whose complement is given, by the arithmetic-geometric mean.
+fn complete_elliptic_integral(complement: f64) -> f64 {
+    let (mut arithmetic, mut geometric) = (1.0, complement.max(1e-6));
+    for _ in 0..6 {
+        (arithmetic, geometric) = (0.5 * (arithmetic + geometric), f64::sqrt(arithmetic * geometric));
+    }
+    0.5 * std::f64::consts::PI / arithmetic
+}
+
 /// Half-length of the overlap at a point where it is `depth` deep, `m`.
 fn half_length(point: &Closest, depth: f64) -> f64 {
     (2.0 * depth.max(0.0) / point.curvature.max(0.2)).sqrt()
@@ -231,6 +262,7 @@ fn about(points: &[Closest], deepest: usize, depth: &impl Fn(usize) -> f64) -> O
         ];
     };
     let half = REGION_SHARE * half_length(&points[deepest], most);
+    let spared_at = spared(points[deepest].curvature.max(0.2), second.max(0.2), most);
     let mut reach = |direction: isize| {
         let mut point = deepest;
         loop {
@@ -241,8 +273,9 @@ fn about(points: &[Closest], deepest: usize, depth: &impl Fn(usize) -> f64) -> O
             if point != deepest && depth(next) > depth(point) {
                 return points[point].arc;
             }
-            if depth(next) <= end {
-                let share = (depth(point) - end) / (depth(point) - depth(next));
+            let spared = end.max(spared_at((points[next].arc - middle).abs()));
+            if depth(next) <= spared {
+                let share = (depth(point) - spared) / (depth(point) - depth(next));
                 return points[point].arc + share.clamp(0.0, 1.0) * (points[next].arc - points[point].arc);
             }
             point = next;
