@@ -3,6 +3,9 @@
 //! Contacts of one wheel are some millimetres to centimetres from each other, and the surface sinks by a few per cent of the approach
 //! about a contact. The pressure of blocks of cells is taken as that of points in their centres of force, and the displacement found at
 //! a few places of the other window and interpolated between them: it is smooth there.
+//!
+//! At one height of the wheel the windows are solved in turn, each for what the others do to it by then (Gauss and Seidel), until that rests: the
+//! pressures minimise one energy together, and each solution lowers it.
 
 use super::fields::SurfaceFields;
 use super::operators::SurfaceOperators;
@@ -23,12 +26,23 @@ struct Resultant {
     across: f64,
 }
 
-/// Buffers.
+impl Resultant {
+    /// Force over the distance from a place, which counts as at least so much.
+    fn at(&self, along: f64, across: f64, least: f64) -> f64 {
+        let distance = (along - self.along).hypot(across - self.across);
+        self.force / distance.max(least)
+    }
+}
+
+/// What the windows do to each other.
 pub struct Apart {
     resultants: [Vec<Resultant>; WINDOWS],
-    /// Displacement at the places of a window, scaled.
-    places: Vec<f64>,
-    /// Displacement of the windows by the pressure of the others, on the grid, scaled.
+    /// Displacement at the places of the windows by the pressure of the others, scaled.
+    places: [Vec<f64>; WINDOWS],
+    /// Rows and columns of the places of a window.
+    rows: usize,
+    columns: usize,
+    /// The same on the grid.
     pub displacement: [Vec<f64>; WINDOWS],
 }
 
@@ -41,60 +55,82 @@ impl Apart {
     pub fn new(operators: &SurfaceOperators) -> Apart {
         let grid = operators.sizes.largest;
         let blocks = grid.strips.div_ceil(BLOCK[0]) * grid.cells.div_ceil(BLOCK[1]);
+        let (rows, columns) = (count(grid.strips, STRIDE[0]), count(grid.cells, STRIDE[1]));
         Apart {
             resultants: std::array::from_fn(|_| Vec::with_capacity(blocks)),
-            places: vec![0.0; count(grid.strips, STRIDE[0]) * count(grid.cells, STRIDE[1])],
+            places: std::array::from_fn(|_| vec![0.0; rows * columns]),
+            rows,
+            columns,
             displacement: std::array::from_fn(|_| vec![0.0; grid.len()]),
         }
     }
 
-    /// Sets the displacement to that by the pressure of the fields, or to its change with a change of them. Returns whether there is any: of
-    /// one contact there is none.
-    pub fn set(&mut self, operators: &SurfaceOperators, fields: &SurfaceFields) -> bool {
-        let mut loaded = 0;
+    /// Whether more than one window carries anything: of one contact nothing comes back.
+    pub fn is_coupled(&self) -> bool {
+        self.resultants.iter().filter(|own| !own.is_empty()).count() > 1
+    }
+
+    /// Takes the pressure that a window has now, or its change.
+    pub fn take(&mut self, operators: &SurfaceOperators, fields: &SurfaceFields, window: usize, place: &Place) {
+        let grid = operators.of(place).grid;
+        resultants(&grid, place, &fields.windows[window], &mut self.resultants[window]);
+    }
+
+    /// Sets the resultants to those of the pressure of the fields.
+    pub fn set_resultants(&mut self, operators: &SurfaceOperators, fields: &SurfaceFields) {
+        self.resultants.iter_mut().for_each(Vec::clear);
         for (window, place) in fields.used() {
             let grid = operators.of(&place).grid;
             resultants(&grid, &place, &fields.windows[window], &mut self.resultants[window]);
-            loaded += usize::from(!self.resultants[window].is_empty());
         }
-        for (window, place) in fields.used() {
-            self.displacement[window].fill(0.0);
-            if loaded > usize::from(!self.resultants[window].is_empty()) {
-                self.displace(operators, fields, window, &place);
-            }
-        }
-        loaded > 1
     }
 
-    /// Computes the displacement of a window by the others.
-    fn displace(&mut self, operators: &SurfaceOperators, fields: &SurfaceFields, window: usize, place: &Place) {
+    /// Displacement by the resultants at a place along the rail and an arc length, `m`.
+    pub fn sinking(&self, operators: &SurfaceOperators, [along, across]: [f64; 2]) -> f64 {
+        let unit = operators.pair.normal() * operators.shapes[0].scales.pressure;
+        let sum: f64 = self
+            .resultants
+            .iter()
+            .flatten()
+            .map(|from| from.at(along, across, 0.0))
+            .sum();
+        unit * sum
+    }
+
+    /// Computes the displacement of a window by the others. Returns by how much it has changed at most, scaled.
+    pub fn displace(&mut self, operators: &SurfaceOperators, window: usize, place: &Place) -> f64 {
         let patch = operators.of(place);
-        let grid = patch.grid;
-        let middle = place.middle_along(&grid);
-        let (rows, columns) = (count(grid.strips, STRIDE[0]), count(grid.cells, STRIDE[1]));
+        let grid = &patch.grid;
+        let middle = place.middle_along(grid);
         // Of a point force F, (1 − ν)/(π G) F/r.
         let unit = operators.pair.normal() * patch.scales.pressure / patch.scales.displacement;
-        for row in 0..rows {
-            for column in 0..columns {
-                let across = place.arc(&grid, row * STRIDE[0]);
-                let along = middle + grid.x(0) + (column * STRIDE[1]) as f64 * grid.length;
-                let mut sum = 0.0;
-                for (other, _) in fields.used().filter(|(other, _)| *other != window) {
-                    for from in &self.resultants[other] {
-                        let distance = (along - from.along).hypot(across - from.across);
-                        sum += from.force / distance.max(0.5 * grid.breadth);
-                    }
-                }
-                self.places[row * columns + column] = unit * sum;
-            }
+        let mut change = 0.0;
+        for (number, displacement) in self.places[window].iter_mut().enumerate() {
+            let (row, column) = (number / self.columns, number % self.columns);
+            let across = place.arc(grid, row * STRIDE[0]);
+            let along = middle + grid.x(0) + (column * STRIDE[1]) as f64 * grid.length;
+            let others = self.resultants.iter().enumerate().filter(|(other, _)| *other != window);
+            let sum: f64 = others
+                .flat_map(|(_, others)| others)
+                .map(|from| from.at(along, across, 0.5 * grid.breadth))
+                .sum();
+            change = f64::max(change, (unit * sum - *displacement).abs());
+            *displacement = unit * sum;
         }
+        self.interpolate(grid, window);
+        change
+    }
+
+    /// Interpolates the displacement of a window between the places.
+    fn interpolate(&mut self, grid: &Grid, window: usize) {
+        let (rows, columns, places) = (self.rows, self.columns, &self.places[window]);
+        let at_place = |row: usize, column: usize| places[row * columns + column];
         for strip in 0..grid.strips {
             let (row, up) = ((strip / STRIDE[0]).min(rows - 2), strip as f64 / STRIDE[0] as f64);
             let up = up - row as f64;
             for (cell, at) in grid.row(strip).enumerate() {
                 let column = (cell / STRIDE[1]).min(columns - 2);
                 let right = cell as f64 / STRIDE[1] as f64 - column as f64;
-                let at_place = |row: usize, column: usize| self.places[row * columns + column];
                 let low = at_place(row, column) + right * (at_place(row, column + 1) - at_place(row, column));
                 let high =
                     at_place(row + 1, column) + right * (at_place(row + 1, column + 1) - at_place(row + 1, column));

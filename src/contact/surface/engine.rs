@@ -362,8 +362,9 @@ impl Engine for SurfaceOperators {
         let (operators, pose) = (problem.operators, problem.pose());
         let wheel = PlacedWheel::new(&operators.wheel, &pose.at_height(problem.height(fields)));
         let apart = &mut solvers.apart;
-        apart.set(operators, fields);
+        apart.set_resultants(operators, fields);
         for (window, place) in fields.used() {
+            apart.displace(operators, window, &place);
             let own = &mut solvers.windows[window];
             own.prepare(place.length);
             let everywhere = [f64::NEG_INFINITY, f64::INFINITY];

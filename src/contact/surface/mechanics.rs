@@ -12,7 +12,7 @@ use super::fields::SurfaceFields;
 use super::geometry::Pose;
 use super::operators::SurfaceOperators;
 use super::solvers::SurfaceSolvers;
-use super::windows::{Place, WINDOWS};
+use super::windows::Place;
 use crate::contact::engine::Engine;
 use crate::contact::interface::Interface;
 use crate::contact::patch::fields::PatchFields;
@@ -23,7 +23,6 @@ use crate::contact::problem::Problem;
 use crate::error::{Error, Result};
 use crate::mechanics::normal::normal_problem::Constraint;
 use crate::mechanics::normal_tangential::TractionChange;
-use crate::numerics::dense::largest_change;
 use crate::parameters::Control;
 
 /// Problem of a step of a contact of profiles.
@@ -44,6 +43,10 @@ const STIFFNESSES: [f64; 2] = [0.7, 4.0];
 const FIRST_TOLERANCE: f64 = 1e-3;
 /// Error of the pressure at an approach over that of the load at the one before.
 const TOLERANCE_SHARE: f64 = 0.03;
+/// Limit of the rounds over windows that displace each other.
+const ROUNDS: usize = 60;
+/// Error of the pressure, relative, at which the cells under pressure are found.
+const FINE_TOLERANCE: f64 = 1e-7;
 /// Error of the load, relative, for the approach that windows are placed for.
 const APPROACH_TOLERANCE: f64 = 1e-2;
 /// Room for windows beyond which a contact is held within them.
@@ -166,14 +169,15 @@ pub fn solve(
     Ok(change)
 }
 
-/// Approach at which the pressure alone carries the load in windows that were placed for one of ellipses, `m`, about: none where it is given,
-/// nothing is carried, or it is not found. It leaves windows without places and without pressure.
+/// Solves the pressure alone in windows that were placed for the overlap of the bodies. Returns the approach, `m`; none where nothing is
+/// carried or it is not found.
 pub fn approach_of_pressure(
     problem: &SurfaceProblem,
     fields: &mut SurfaceFields,
     solvers: &mut SurfaceSolvers,
 ) -> Option<f64> {
-    if problem.is_height_given() || problem.vertical_load() == 0.0 {
+    let carries = problem.is_height_given() || problem.vertical_load() > 0.0;
+    if solvers.reference <= 0.0 || !carries {
         return None;
     }
     for (window, _) in fields.used() {
@@ -181,16 +185,8 @@ pub fn approach_of_pressure(
         own.interface.values_mut().fill(0.0);
         own.friction_share = 0.0;
     }
-    let places = fields.places;
-    let found = press(problem, fields, solvers, APPROACH_TOLERANCE).ok();
-    let approach = found.map(|()| fields.approach[0])?;
-    for (fields, place) in fields.windows.iter_mut().zip(places) {
-        if place.is_some() {
-            fields.pressure.fill(0.0);
-        }
-    }
-    fields.places = [None; WINDOWS];
-    Some(approach)
+    press(problem, fields, solvers, APPROACH_TOLERANCE).ok()?;
+    Some(fields.approach[0])
 }
 
 /// Vertical force of all windows, `N`.
@@ -212,20 +208,15 @@ fn press(
     tolerance: f64,
 ) -> Result<()> {
     let mut search = Approaches::new(problem, fields, solvers);
+    solvers.apart.set_resultants(problem.operators, fields);
     let tolerance_of_load = tolerance.max(LOAD_TOLERANCE);
     let mut left = f64::INFINITY;
     // The pressure need not be better than the approach is.
     let mut own_tolerance = tolerance.max(FIRST_TOLERANCE);
     for approaches in 0..APPROACHES {
-        let (force, apart) = press_at(problem, search.approach, fields, solvers, own_tolerance)?;
+        let force = press_at(problem, search.approach, fields, solvers, own_tolerance)?;
         let excess = search.load.map_or(0.0, |load| (force - load) / load);
-        left = excess.abs().max(apart);
-        if std::env::var("ZZ").is_ok() && approaches > 10 {
-            eprintln!(
-                "   {approaches} approach {:.12e} excess {excess:.3e} apart {apart:.2e} tol {own_tolerance:.1e} stiffness {:.4e}",
-                search.approach, search.stiffness
-            );
-        }
+        left = excess.abs();
         let error = own_tolerance;
         let solved_well = own_tolerance <= tolerance;
         // The errors of the cells may add up to more of the load.
@@ -259,6 +250,8 @@ struct Approaches {
     last: Option<[f64; 2]>,
     /// Change of the load with the approach, relative, `1/m`.
     stiffness: f64,
+    /// Approaches known to be too small and too large, `m`.
+    bracket: [f64; 2],
 }
 
 impl Approaches {
@@ -269,6 +262,7 @@ impl Approaches {
                 approach: solvers.reference,
                 last: None,
                 stiffness: 0.0,
+                bracket: [0.0, f64::INFINITY],
             };
         }
         let (load, approach) = (
@@ -278,6 +272,7 @@ impl Approaches {
         Approaches {
             load: Some(load),
             approach,
+            bracket: [0.0, f64::INFINITY],
             last: None,
             // Hertz's load is as the approach to the power of 3/2.
             stiffness: if fields.stiffness > 0.0 {
@@ -293,6 +288,10 @@ impl Approaches {
         if self.load.is_none() {
             return;
         }
+        // The force grows with the approach, but for the error of the pressure.
+        if excess.abs() > SHOWS_STIFFNESS * error {
+            self.bracket[usize::from(excess > 0.0)] = self.approach;
+        }
         if let Some([before, excess_before]) = self.last
             && (excess - excess_before).abs() > SHOWS_STIFFNESS * error
         {
@@ -304,6 +303,10 @@ impl Approaches {
         // Half way to no contact at most, and to twice the approach: where another contact begins to carry, the stiffness jumps.
         let next = self.approach - excess / self.stiffness;
         self.approach = next.clamp(0.5 * self.approach, 2.0 * self.approach);
+        let [low, high] = self.bracket;
+        if self.approach <= low || self.approach >= high {
+            self.approach = 0.5 * (low + high);
+        }
     }
 
     /// Leaves the approach and the stiffness in the fields.
@@ -315,48 +318,66 @@ impl Approaches {
     }
 }
 
-/// Solves the pressure of all windows at an approach. Returns the vertical force with the friction in proportion, `N`, and by how much the
-/// windows displace each other otherwise than they were solved for, relative to the approach.
+/// Solves the pressure of all windows at an approach. Returns the vertical force with the friction in proportion, `N`.
 fn press_at(
     problem: &SurfaceProblem,
     approach: f64,
     fields: &mut SurfaceFields,
     solvers: &mut SurfaceSolvers,
     tolerance: f64,
-) -> Result<(f64, f64)> {
-    let lowered = approach - solvers.reference;
-    let mut force = 0.0;
-    solvers.apart.set(problem.operators, fields);
-    for (window, place) in fields.used() {
-        let own = &mut solvers.windows[window];
-        let patch = problem.of(&place);
-        let scale = patch.operators.scales.displacement;
-        let displaced = &solvers.apart.displacement[window];
-        own.displaced.copy_from_slice(displaced);
-        let gaps = own.patch.undeformed.gap.iter_mut().zip(&own.gap).zip(displaced);
-        for (((gap, reference), displaced), rise) in gaps.zip(&own.geometry.rise) {
-            *gap = reference - lowered * rise / scale + displaced;
-        }
-        mechanics::solve_normal(
-            &patch,
-            Constraint::Penetration(0.0),
-            &own.interface,
-            &mut fields.windows[window],
-            &mut own.patch,
-            tolerance,
-        )?;
-        let [normal, _] = vertical_forces(problem.operators, &place, &fields.windows[window]);
-        force += normal * (1.0 + own.friction_share);
-    }
-    let mut apart = 0.0;
-    if solvers.apart.set(problem.operators, fields) {
+) -> Result<f64> {
+    let operators = problem.operators;
+    for round in 0..ROUNDS {
+        let mut change = 0.0;
         for (window, place) in fields.used() {
-            let scale = problem.operators.of(&place).scales.displacement;
-            let change = largest_change(&solvers.apart.displacement[window], &solvers.windows[window].displaced);
-            apart = f64::max(apart, change * scale / approach.abs());
+            let scale = operators.of(&place).scales.displacement;
+            let displaced = solvers.apart.displace(operators, window, &place);
+            change = f64::max(change, displaced * scale / approach);
+            press_window(problem, approach, fields, solvers, (window, place), tolerance)?;
+            solvers.apart.take(operators, fields, window, &place);
+        }
+        // The second window has seen the first.
+        let coupled = solvers.apart.is_coupled();
+        if !coupled || round > 0 && change <= tolerance {
+            break;
         }
     }
-    Ok((force, apart))
+    let forces = fields.used().map(|(window, place)| {
+        let [normal, _] = vertical_forces(operators, &place, &fields.windows[window]);
+        normal * (1.0 + solvers.windows[window].friction_share)
+    });
+    Ok(forces.sum())
+}
+
+/// Solves the pressure of one window at an approach, for what the others do to it.
+fn press_window(
+    problem: &SurfaceProblem,
+    approach: f64,
+    fields: &mut SurfaceFields,
+    solvers: &mut SurfaceSolvers,
+    (window, place): (usize, Place),
+    tolerance: f64,
+) -> Result<()> {
+    let lowered = approach - solvers.reference;
+    let own = &mut solvers.windows[window];
+    let patch = problem.of(&place);
+    let scale = patch.operators.scales.displacement;
+    let displaced = &solvers.apart.displacement[window];
+    let gaps = own.patch.undeformed.gap.iter_mut().zip(&own.gap).zip(displaced);
+    for (((gap, reference), displaced), rise) in gaps.zip(&own.geometry.rise) {
+        *gap = reference - lowered * rise / scale + displaced;
+    }
+    let mut solve = |tolerance: f64| {
+        let penetration = Constraint::Penetration(0.0);
+        let fields = &mut fields.windows[window];
+        mechanics::solve_normal(&patch, penetration, &own.interface, fields, &mut own.patch, tolerance)
+    };
+    // With a rough pressure the cells under pressure may not be found.
+    match solve(tolerance) {
+        Err(Error::NormalNotConverged { .. }) if tolerance > FINE_TOLERANCE => solve(FINE_TOLERANCE)?,
+        other => other?,
+    };
+    Ok(())
 }
 
 /// Refuses a contact that has become larger than its window, as long as there are larger ones.

@@ -1,9 +1,9 @@
 //! Placement of the windows at the beginning of a step: about the regions in which wheel and rail overlap.
 
+use super::contacts::{self, CONTACTS};
 use super::fields::SurfaceFields;
 use super::mechanics::SurfaceProblem;
 use super::operators::SurfaceOperators;
-use super::search::Overlap;
 use super::solvers::SurfaceSolvers;
 use super::windows::{Place, Region, WINDOWS};
 use crate::contact::fields::Fields;
@@ -21,13 +21,16 @@ const LEAST_STRIPS: f64 = 9.0;
 
 /// Region for a window, with the depth of the overlap.
 #[derive(Debug, Clone, Copy, Default)]
-struct Wanted {
-    region: Region,
-    depth: f64,
+pub struct Wanted {
+    /// The region.
+    pub region: Region,
+    /// Depth of the overlap, `m`.
+    pub depth: f64,
 }
 
 /// Places the windows for the pose of the step, carries the fields before over to them, and sets what their cells see of wheel and rail.
-/// Without fields before, the approach is the one that is known, `m`, or that of ellipses.
+/// Without fields before, the approach is the one that is known, `m`, at which the pressure of the fields has been solved, or that of
+/// ellipses.
 ///
 /// # Errors
 /// A wheel that is not over the rail.
@@ -50,14 +53,12 @@ pub fn place(
         known.unwrap_or_else(|| expected_approach(problem, before, now.touch - pose.position.height, solvers));
     solvers.reference = approach;
     now.approach[0] = approach;
-    let wanted = if approach > 0.0 {
-        wanted(
-            operators.sizes.largest.strips,
-            solvers.search.overlaps(approach * AHEAD * problem.conditions.room),
-        )
-    } else {
-        ([Wanted::default(); WINDOWS], 0)
-    };
+    let source = before.or(known.map(|_| &*now));
+    want(problem, source, approach, solvers);
+    if known.is_some() {
+        forget(now);
+    }
+    let wanted = merged(operators.sizes.largest.strips, &solvers.wanted);
     let own = assign(problem, &wanted.0[..wanted.1], now);
     solvers.moved = before.is_some_and(|before| before.places != now.places);
     if let Some(before) = before
@@ -117,23 +118,60 @@ fn expected_approach(
     }
 }
 
-/// Regions for windows, from the gauge side to the field side, and their number: overlaps that are near each other share one.
-fn wanted(strips: usize, overlaps: &[Overlap]) -> ([Wanted; WINDOWS], usize) {
-    let mut regions = [Wanted::default(); super::search::REGIONS];
-    let mut count = 0;
-    // The overlaps come from the field side to the gauge side.
-    for overlap in overlaps.iter().rev() {
-        let new = Wanted {
+/// Lists the regions to place windows for, from the gauge side to the field side: the contacts of the source, and those that begin beside them;
+/// the overlaps of the bodies where the source has none.
+fn want(problem: &SurfaceProblem, source: Option<&SurfaceFields>, approach: f64, solvers: &mut SurfaceSolvers) {
+    let SurfaceSolvers {
+        search, apart, wanted, ..
+    } = solvers;
+    wanted.clear();
+    if approach <= 0.0 {
+        return;
+    }
+    let room = problem.conditions.room;
+    if let Some(source) = source.filter(|source| source.approach[0] > 0.0) {
+        let load_ratio = (approach / source.approach[0]).powf(1.5);
+        let growth = room * load_ratio.cbrt().max(1.0);
+        contacts::find(
+            problem.operators,
+            source,
+            (growth, load_ratio),
+            approach * AHEAD,
+            search,
+            apart,
+            wanted,
+        );
+    }
+    if wanted.is_empty() {
+        // The overlaps come from the field side to the gauge side.
+        let overlaps = search.overlaps(approach * AHEAD * room).iter().rev();
+        wanted.extend(overlaps.map(|overlap| Wanted {
             region: overlap.region,
             depth: overlap.depth,
-        };
+        }));
+    }
+}
+
+/// Takes contacts off the fields that windows have been placed by.
+fn forget(fields: &mut SurfaceFields) {
+    for (window, _) in fields.used() {
+        fields.windows[window].pressure.fill(0.0);
+    }
+    fields.places = [None; WINDOWS];
+}
+
+/// Regions for windows, from the gauge side to the field side, and their number: of wanted ones that are near each other.
+fn merged(strips: usize, wanted: &[Wanted]) -> ([Wanted; WINDOWS], usize) {
+    let mut regions = [Wanted::default(); CONTACTS];
+    let mut count = 0;
+    for new in wanted {
         if count > 0 && share_window(&regions[count - 1].region, &new.region, strips) {
             let last = &mut regions[count - 1];
             last.region = last.region.union(&new.region);
             last.depth = last.depth.max(new.depth);
             continue;
         }
-        regions[count] = new;
+        regions[count] = *new;
         count += 1;
     }
     // The shallowest are left out where there are more than windows.

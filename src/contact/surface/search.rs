@@ -19,9 +19,6 @@ const LINEAR: f64 = 1e-5;
 const LEAST_RISE: f64 = 0.05;
 /// Size of the region that a window is placed for over that of the overlap: a contact has 0.71 of it.
 const REGION_SHARE: f64 = 0.82;
-/// Share of the elastic displacement about the deepest place that spares shallower ones from contact with certainty: contacts near each other
-/// carry less than each by itself.
-const SPARED: f64 = 0.9;
 /// Depth of the overlap where that region ends, over the largest depth: of a parabola, 1 less the square of the share.
 const EDGE_SHARE: f64 = 1.0 - REGION_SHARE * REGION_SHARE;
 
@@ -48,6 +45,19 @@ pub struct Overlap {
     pub rise: f64,
     /// Second derivatives of the distance along and across where it is deepest, `1/m`.
     pub curvatures: [f64; 2],
+}
+
+/// Deepest overlap over one point of the rail's profile.
+#[derive(Debug, Clone, Copy)]
+pub struct Deepest {
+    /// Place along the rail and arc length, `m`.
+    pub place: [f64; 2],
+    /// Overlap, `m`.
+    pub depth: f64,
+    /// Half of its extent along the rail, shrunk to what a contact needs, `m`.
+    pub half_length: f64,
+    /// Distance of the points, `m`.
+    pub spacing: f64,
 }
 
 /// Buffers of a search, and what the last one has found.
@@ -163,6 +173,21 @@ impl Search {
         overlaps
     }
 
+    /// Overlap at each point where there is one, of a wheel that is lower by `approach` `m` than the height at which the points are; from the
+    /// field side to the gauge side.
+    pub fn deepest(&self, approach: f64) -> impl Iterator<Item = Deepest> + '_ {
+        let spacing = self.points[0].arc - self.points[1].arc;
+        self.points.iter().filter_map(move |point| {
+            let depth = approach * point.rise - point.distance;
+            (depth > 0.0).then(|| Deepest {
+                place: [point.along, point.arc],
+                depth,
+                half_length: REGION_SHARE * half_length(point, depth),
+                spacing,
+            })
+        })
+    }
+
     /// Approach under a vertical load, `m`, about: that of Hertz's ellipses in place of the contacts. `modulus` is the contact modulus.
     pub fn approach(&mut self, load: f64, modulus: f64) -> f64 {
         let mut carried = |approach: f64| -> f64 {
@@ -192,34 +217,6 @@ fn hertz_load(overlap: &Overlap, modulus: f64) -> f64 {
     let [along, across] = overlap.curvatures;
     let unit = HertzEllipse::new(1.0, (0.5 * along, 0.5 * across), modulus);
     (overlap.depth / unit.approach).powf(1.5)
-}
-
-/// Depth of the overlap at a distance across from the middle of a contact, `m`, which the elastic displacement about it spares from contact. It is
-/// that of the ellipse's load, F/(πE*) over the distance, spread over the ellipse's length; its approach is F/(πE*) ³⁄₂ K(e)/a with its
-/// larger semi-axis a.
-fn spared(along: f64, across: f64, approach: f64) -> impl Fn(f64) -> f64 {
-    let unit = HertzEllipse::new(1.0, (0.5 * along, 0.5 * across), 1.0);
-    let scale = (approach / unit.approach).sqrt();
-    let (a, b) = (scale * unit.along, scale * unit.across);
-    let whole = approach / (1.5 * complete_elliptic_integral(a.min(b) / a.max(b)));
-    move |distance| {
-        if distance <= b {
-            0.0
-        } else if a > b {
-            SPARED * whole * (a / distance).asinh()
-        } else {
-            SPARED * whole * b / distance
-        }
-    }
-}
-
-/// K of the modulus whose complement is given, by the arithmetic-geometric mean.
-fn complete_elliptic_integral(complement: f64) -> f64 {
-    let (mut arithmetic, mut geometric) = (1.0, complement.max(1e-6));
-    for _ in 0..6 {
-        (arithmetic, geometric) = (0.5 * (arithmetic + geometric), f64::sqrt(arithmetic * geometric));
-    }
-    0.5 * std::f64::consts::PI / arithmetic
 }
 
 /// Half-length of the overlap at a point where it is `depth` deep, `m`.
@@ -262,7 +259,6 @@ fn about(points: &[Closest], deepest: usize, depth: &impl Fn(usize) -> f64) -> O
         ];
     };
     let half = REGION_SHARE * half_length(&points[deepest], most);
-    let spared_at = spared(points[deepest].curvature.max(0.2), second.max(0.2), most);
     let mut reach = |direction: isize| {
         let mut point = deepest;
         loop {
@@ -273,9 +269,8 @@ fn about(points: &[Closest], deepest: usize, depth: &impl Fn(usize) -> f64) -> O
             if point != deepest && depth(next) > depth(point) {
                 return points[point].arc;
             }
-            let spared = end.max(spared_at((points[next].arc - middle).abs()));
-            if depth(next) <= spared {
-                let share = (depth(point) - spared) / (depth(point) - depth(next));
+            if depth(next) <= end {
+                let share = (depth(point) - end) / (depth(point) - depth(next));
                 return points[point].arc + share.clamp(0.0, 1.0) * (points[next].arc - points[point].arc);
             }
             point = next;

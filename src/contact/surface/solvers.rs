@@ -1,9 +1,11 @@
 //! Solvers and buffers of a step of a contact of profiles, made once, so that a step allocates nothing.
 
 use super::apart::Apart;
+use super::contacts::CONTACTS;
 use super::fields::SurfaceFields;
 use super::geometry::WindowGeometry;
 use super::operators::SurfaceOperators;
+use super::placement::Wanted;
 use super::search::Search;
 use super::transfer::Transfer;
 use super::windows::{LENGTHS, WINDOWS};
@@ -28,6 +30,8 @@ pub struct SurfaceSolvers {
     pub moved: bool,
     /// Influence of the windows on one another.
     pub apart: Apart,
+    /// Regions to place windows for.
+    pub wanted: Vec<Wanted>,
     /// Approach for which the geometry is that of the windows, `m`.
     pub reference: f64,
 }
@@ -47,8 +51,6 @@ pub struct WindowSolvers {
     pub contact_before: Contact,
     /// Vertical force of the friction on the wheel over that of the pressure.
     pub friction_share: f64,
-    /// Displacement by the pressure of the other windows that the pressure was solved for, on the grid, scaled.
-    pub displaced: Vec<f64>,
     /// Opening of the gap at the reference approach, on the grid, scaled.
     pub gap: Vec<f64>,
 }
@@ -69,6 +71,7 @@ impl SurfaceSolvers {
             before: SurfaceFields::new(operators),
             moved: false,
             apart: Apart::new(operators),
+            wanted: Vec::with_capacity(CONTACTS),
             reference: 0.0,
         }
     }
@@ -91,7 +94,6 @@ impl WindowSolvers {
             interface: Interface::new(first.grid.strips * first.grid.cells, 1),
             contact_before: Contact::new(&first.grid),
             friction_share: 0.0,
-            displaced: vec![0.0; first.grid.len()],
             gap: vec![0.0; first.grid.len()],
         }
     }

@@ -23,7 +23,7 @@ use crate::error::{Error, Result};
 use crate::geometry::unrolled::PlacedWheel;
 use crate::heat::strips::StripHeatScratch;
 use crate::mechanics::normal::normal_problem::Constraint;
-use crate::numerics::dense::{add_multiple, largest, largest_change};
+use crate::numerics::dense::{add_multiple, largest};
 use crate::settings::Settings;
 
 /// Limit of the iterations on what the windows do to each other.
@@ -51,8 +51,6 @@ struct WindowTangent {
     /// Change of the gap along the direction, without what the others do, on the grid, scaled.
     gap: Vec<f64>,
     interface: Interface,
-    /// Displacement by the other windows that the change was solved for, on the grid, scaled.
-    displaced: Vec<f64>,
 }
 
 impl WindowTangent {
@@ -83,7 +81,6 @@ impl SurfaceTangent {
             geometry: WindowGeometry::new(operators),
             gap: vec![0.0; grid.len()],
             interface: interface.clone(),
-            displaced: vec![0.0; grid.len()],
         };
         SurfaceTangent {
             windows: (0..WINDOWS).map(window).collect(),
@@ -324,21 +321,21 @@ struct Parts<'a> {
 impl Parts<'_> {
     /// Change of the tractions at an unchanged height of the wheel, with what the windows do to each other.
     fn at_height(&mut self, along: &Along, change: &mut SurfaceFields) -> Result<()> {
+        let operators = self.problem.operators;
+        self.apart.set_resultants(operators, change);
         for round in 0..ROUNDS {
-            let coupled = self.apart.set(self.problem.operators, change);
-            let mut left = 0.0;
-            for (window, _) in self.fields.used() {
-                let (own, displaced) = (&mut self.windows[window], &self.apart.displacement[window]);
-                let size = largest(&own.gap).max(largest(&own.displaced)).max(f64::MIN_POSITIVE);
-                left = f64::max(left, largest_change(displaced, &own.displaced) / size);
-                own.displaced.copy_from_slice(displaced);
+            let (mut left, mut size) = (0.0, f64::MIN_POSITIVE);
+            for (window, place) in self.fields.used() {
+                left = f64::max(left, self.apart.displace(operators, window, &place));
+                self.follow(window, along, change)?;
+                self.apart.take(operators, change, window, &place);
+                size = size
+                    .max(largest(&self.windows[window].gap))
+                    .max(largest(&self.apart.displacement[window]));
             }
             // Of one window nothing comes back.
-            if round > 0 && (!coupled || left <= self.tolerance) {
-                return Ok(());
-            }
-            for (window, _) in self.fields.used() {
-                self.follow(window, along, change)?;
+            if !self.apart.is_coupled() || round > 0 && left <= self.tolerance * size {
+                break;
             }
         }
         Ok(())
@@ -354,7 +351,13 @@ impl Parts<'_> {
         let Some(place) = self.fields.places[window].filter(|_| touches(fields)) else {
             return Ok(());
         };
-        let gaps = own.patch.undeformed.gap.iter_mut().zip(&own.gap).zip(&own.displaced);
+        let gaps = own
+            .patch
+            .undeformed
+            .gap
+            .iter_mut()
+            .zip(&own.gap)
+            .zip(&self.apart.displacement[window]);
         for ((gap, own), displaced) in gaps {
             *gap = own + displaced;
         }

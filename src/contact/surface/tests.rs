@@ -210,7 +210,7 @@ fn zz_sweep() {
             } else {
                 last = Some([all.force, all.force]);
             }
-            if step % 100 == 0 || staggered > 0 && state.convergence.staggered {
+            if step % 100 == 0 || (790..815).contains(&step) || staggered > 0 && state.convergence.staggered {
                 println!(
                     "{step} y {:.2} n {} F {:.0?} T {:.0} its {} {:?} {:?}",
                     -1e3 * inputs.lateral_displacement,
@@ -638,7 +638,9 @@ fn zz_geometry_change() {
         };
         let mut workspace = model.workspace();
         let state = model.initial_state(&mut workspace, &inputs).unwrap();
-        let ContactState::Surface(s) = &state.contact else { panic!() };
+        let ContactState::Surface(s) = &state.contact else {
+            panic!()
+        };
         for (_, place) in s.fields.used() {
             let grid = &operators.of(&place).grid;
             let mut geometry = WindowGeometry::new(operators);
@@ -646,7 +648,14 @@ fn zz_geometry_change() {
                 let pose = Pose::new(operators, inputs, 0.46);
                 let wheel = PlacedWheel::new(&operators.wheel, &pose.position);
                 let mut undeformed = Undeformed::none(grid);
-                geometry.set(operators, &place, &wheel, &pose.motion, [f64::NEG_INFINITY, f64::INFINITY], &mut undeformed);
+                geometry.set(
+                    operators,
+                    &place,
+                    &wheel,
+                    &pose.motion,
+                    [f64::NEG_INFINITY, f64::INFINITY],
+                    &mut undeformed,
+                );
                 undeformed
             };
             for (row, signal) in INPUTS.iter().enumerate() {
@@ -664,15 +673,32 @@ fn zz_geometry_change() {
                 let wheel = PlacedWheel::new(&operators.wheel, &pose.position);
                 let mut tangent = Undeformed::none(grid);
                 let mut own = WindowGeometry::new(operators);
-                own.set(operators, &place, &wheel, &pose.motion, [f64::NEG_INFINITY, f64::INFINITY], &mut tangent);
+                own.set(
+                    operators,
+                    &place,
+                    &wheel,
+                    &pose.motion,
+                    [f64::NEG_INFINITY, f64::INFINITY],
+                    &mut tangent,
+                );
                 own.set_change(operators, &place, &wheel, (&pose, &change), &mut tangent);
                 let compare = |a: &[f64], b: &[f64], t: &[f64]| {
                     let size = t.iter().fold(0.0, |m: f64, v| m.max(v.abs()));
-                    let error = a.iter().zip(b).zip(t).map(|((a, b), t)| ((a - b) / (2.0 * step) - t).abs()).fold(0.0, f64::max);
+                    let error = a
+                        .iter()
+                        .zip(b)
+                        .zip(t)
+                        .map(|((a, b), t)| ((a - b) / (2.0 * step) - t).abs())
+                        .fold(0.0, f64::max);
                     (size, error / size.max(1e-300))
                 };
-                println!("{row} {:30} gap {:?} x {:?} y {:?}", signal.name, compare(&a.gap, &b.gap, &tangent.gap),
-                    compare(&a.rigid_slip[0], &b.rigid_slip[0], &tangent.rigid_slip[0]), compare(&a.rigid_slip[1], &b.rigid_slip[1], &tangent.rigid_slip[1]));
+                println!(
+                    "{row} {:30} gap {:?} x {:?} y {:?}",
+                    signal.name,
+                    compare(&a.gap, &b.gap, &tangent.gap),
+                    compare(&a.rigid_slip[0], &b.rigid_slip[0], &tangent.rigid_slip[0]),
+                    compare(&a.rigid_slip[1], &b.rigid_slip[1], &tangent.rigid_slip[1])
+                );
             }
         }
     }

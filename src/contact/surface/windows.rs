@@ -94,6 +94,24 @@ impl Region {
         }
     }
 
+    /// The region with its extents, and those of the contact in it, grown about its middle.
+    pub fn grown(&self, factor: f64) -> Region {
+        let grown = |[from, to]: [f64; 2]| {
+            let more = 0.5 * (factor - 1.0) * (to - from);
+            [from - more, to + more]
+        };
+        Region {
+            along: grown(self.along),
+            across: grown(self.across),
+            narrowest: factor * self.narrowest,
+        }
+    }
+
+    /// Whether it has a part at an arc length.
+    pub fn holds_across(&self, arc: f64) -> bool {
+        self.across[0] <= arc && arc <= self.across[1]
+    }
+
     /// Whether the two have a point in common.
     pub fn meets(&self, other: &Region) -> bool {
         let overlap = |a: [f64; 2], b: [f64; 2]| a[0] < b[1] && b[0] < a[1];
@@ -120,22 +138,8 @@ impl Sizes {
             return kept;
         }
         let Grid { cells, strips, .. } = self.largest;
-        let shrunk = |size: f64, level: usize| size / f64::from(1_u32 << level);
-        // The finest of the sizes that are at least as large as the region needs.
-        let holding = |extent: [f64; 2], count: usize, margin: f64, largest: f64, levels: usize| {
-            let needed = (extent[1] - extent[0]) / (count as f64 - 2.0 * margin);
-            (0..levels)
-                .rev()
-                .find(|&level| needed <= shrunk(largest, level))
-                .unwrap_or(0)
-        };
-        let length = holding(region.along, cells, MARGIN[0], self.largest.length, LENGTHS);
-        let broadest = holding(region.across, strips, MARGIN[1], self.largest.breadth, BREADTHS);
-        let resolved = region.narrowest / (FEWEST_STRIPS[0] * strips as f64);
-        let breadth = (0..BREADTHS)
-            .find(|&level| shrunk(self.largest.breadth, level) <= resolved)
-            .unwrap_or(BREADTHS - 1)
-            .min(broadest);
+        let length = finest_holding(region.along, cells, MARGIN[0], self.largest.length, LENGTHS);
+        let breadth = self.breadth_for(region);
         let grid = self.grid(length, breadth);
         let first = |extent: [f64; 2], size: f64, count: usize| {
             (0.5 * (extent[0] + extent[1]) / size - 0.5 * count as f64).round() as i32
@@ -146,6 +150,16 @@ impl Sizes {
             cell: first(region.along, grid.length, cells),
             strip: first(region.across, grid.breadth, strips),
         }
+    }
+
+    /// Number of the breadth for a region: the broadest that resolves the narrowest contact, but broad enough for the region.
+    fn breadth_for(&self, region: &Region) -> usize {
+        let Grid { strips, breadth, .. } = self.largest;
+        let finest = finest_holding(region.across, strips, MARGIN[1], breadth, BREADTHS);
+        let resolved = region.narrowest / (FEWEST_STRIPS[0] * strips as f64);
+        (0..finest)
+            .find(|&level| shrunk(breadth, level) <= resolved)
+            .unwrap_or(finest)
     }
 
     /// Whether a window holds a region with a margin and is not far too large for it.
@@ -160,7 +174,21 @@ impl Sizes {
         holds(window.along, region.along, grid.length)
             && holds(window.across, region.across, 0.5 * grid.breadth)
             && (place.length + 1 == LENGTHS || length > LEAST_SHARE)
-            && (place.breadth + 1 == BREADTHS || strips > FEWEST_STRIPS[1])
+            && (strips > FEWEST_STRIPS[1] || self.breadth_for(region) <= place.breadth)
             && (place.breadth == 0 || strips < MOST_STRIPS)
     }
+}
+
+/// Size of a cell or strip after so many halvings.
+fn shrunk(size: f64, level: usize) -> f64 {
+    size / f64::from(1_u32 << level)
+}
+
+/// Number of the finest of the sizes with which so many cells, less a margin on either side, hold an extent.
+fn finest_holding(extent: [f64; 2], count: usize, margin: f64, largest: f64, levels: usize) -> usize {
+    let needed = (extent[1] - extent[0]) / (count as f64 - 2.0 * margin);
+    (0..levels)
+        .rev()
+        .find(|&level| needed <= shrunk(largest, level))
+        .unwrap_or(0)
 }

@@ -1,0 +1,134 @@
+//! Where the contacts are: those of a pressure that is known, and those that begin beside them.
+//!
+//! The undeformed bodies overlap in more places than they touch: the surface sinks about a contact. So windows are placed for the contacts of
+//! the step before, and for places at which the bodies overlap by more than what the pressure of that step lets the surface sink.
+
+use super::apart::Apart;
+use super::fields::SurfaceFields;
+use super::operators::SurfaceOperators;
+use super::placement::Wanted;
+use super::search::Search;
+use super::windows::{Region, WINDOWS};
+
+/// Contacts that are looked at.
+pub const CONTACTS: usize = 3 * WINDOWS;
+/// Extent of the region that a window is placed for over that of the contact in it.
+const GROWTH: f64 = 1.16;
+/// Extent over that of such a region within which its window finds other contacts by itself, and the sinking is not known well.
+const BESIDE: f64 = 1.8;
+/// Breadth of a contact over (∫f ds)²/∫f² ds of its force per breadth f: of an ellipse.
+const ELLIPSE: f64 = 1.2;
+/// Depth of an overlap over the approach that makes a contact: the sinking is known to a few per cent of the approach.
+const LEAST_DEPTH: f64 = 0.02;
+/// Depth of a contact that carries for the order in which they are left out, `m`: more than any overlap.
+const CARRIES: f64 = 1.0;
+
+/// Finds the contacts of the fields, grown as their load is, and the overlaps outside of them at an approach. They are listed from the gauge
+/// side to the field side, without allocating.
+pub fn find(
+    operators: &SurfaceOperators,
+    fields: &SurfaceFields,
+    (growth, load_ratio): (f64, f64),
+    approach: f64,
+    search: &Search,
+    apart: &mut Apart,
+    found: &mut Vec<Wanted>,
+) {
+    found.clear();
+    carrying(operators, fields, GROWTH * growth, found);
+    apart.set_resultants(operators, fields);
+    let carrying = found.len();
+    let beside: [Region; CONTACTS] = std::array::from_fn(|number| {
+        found
+            .get(number)
+            .map_or(Region::default(), |own| own.region.grown(BESIDE))
+    });
+    let least = LEAST_DEPTH * approach;
+    let mut last = f64::NAN;
+    for overlap in search.deepest(approach) {
+        let [along, across] = overlap.place;
+        if beside[..carrying].iter().any(|region| region.holds_across(across)) {
+            last = f64::NAN;
+            continue;
+        }
+        let depth = overlap.depth - load_ratio * apart.sinking(operators, [along, across]);
+        if depth <= least {
+            last = f64::NAN;
+            continue;
+        }
+        let half = 0.5 * overlap.spacing;
+        let region = Region {
+            along: [along - overlap.half_length, along + overlap.half_length],
+            across: [across - half, across + half],
+            narrowest: overlap.spacing,
+        };
+        // Places beside each other are one contact.
+        let goes_on = (last - across).abs() < 1.5 * overlap.spacing;
+        last = across;
+        if let Some(wanted) = found[carrying..].last_mut()
+            && goes_on
+        {
+            wanted.region = wanted.region.union(&region);
+            wanted.region.narrowest = wanted.region.across[1] - wanted.region.across[0];
+            wanted.depth = wanted.depth.max(depth);
+        } else if found.len() < CONTACTS {
+            found.push(Wanted { region, depth });
+        }
+    }
+    found.sort_unstable_by(|a, b| a.region.across[0].total_cmp(&b.region.across[0]));
+}
+
+/// Finds the contacts of the fields: neighbouring strips that carry.
+fn carrying(operators: &SurfaceOperators, fields: &SurfaceFields, growth: f64, found: &mut Vec<Wanted>) {
+    for (window, place) in fields.used() {
+        let grid = &operators.of(&place).grid;
+        let middle = place.middle_along(grid);
+        let mut run: Option<Run> = None;
+        // One more strip, that carries nothing, ends the last run.
+        for strip in 0..=grid.strips {
+            let row = (strip < grid.strips).then(|| &fields.windows[window].pressure[grid.row(strip)]);
+            let first = row.and_then(|row| row.iter().position(|&pressure| pressure > 0.0));
+            let (Some(row), Some(first)) = (row, first) else {
+                if let Some(run) = run.take()
+                    && found.len() < CONTACTS
+                {
+                    let breadth = run.across[1] - run.across[0];
+                    let narrowest = (ELLIPSE * grid.breadth * run.force * run.force / run.squares).min(breadth);
+                    let region = Region {
+                        along: run.along,
+                        across: run.across,
+                        narrowest,
+                    };
+                    found.push(Wanted {
+                        region: region.grown(growth),
+                        depth: CARRIES,
+                    });
+                }
+                continue;
+            };
+            let last = row.iter().rposition(|&pressure| pressure > 0.0).unwrap_or(first);
+            let force: f64 = row.iter().sum();
+            let arc = place.arc(grid, strip);
+            let along = [grid.x(first) - 0.5 * grid.length, grid.x(last) + 0.5 * grid.length].map(|x| middle + x);
+            let run = run.get_or_insert(Run {
+                along,
+                across: [arc - 0.5 * grid.breadth; 2],
+                force: 0.0,
+                squares: 0.0,
+            });
+            run.along = [run.along[0].min(along[0]), run.along[1].max(along[1])];
+            run.across[1] = arc + 0.5 * grid.breadth;
+            run.force += force;
+            run.squares += force * force;
+        }
+    }
+}
+
+/// Neighbouring strips that carry.
+struct Run {
+    along: [f64; 2],
+    across: [f64; 2],
+    /// Sum of the strips' forces, and of their squares, scaled.
+    force: f64,
+    squares: f64,
+}
