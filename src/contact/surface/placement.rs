@@ -5,7 +5,7 @@ use super::fields::SurfaceFields;
 use super::mechanics::SurfaceProblem;
 use super::operators::SurfaceOperators;
 use super::solvers::SurfaceSolvers;
-use super::windows::{Place, Region, WINDOWS};
+use super::windows::{Place, Region, Sizes, WINDOWS};
 use crate::contact::fields::Fields;
 use crate::contact::patch::fields::PatchFields;
 use crate::error::Result;
@@ -16,8 +16,10 @@ use crate::mechanics::patch::normal::is_free;
 const AHEAD: f64 = 1.03;
 /// Distance of two regions, in parts of their mean breadth, below which they share a window.
 const NEAR: f64 = 0.5;
+/// The same below which they do so in any case. The regions have a margin: those of contacts that touch overlap.
+const TOUCHES: f64 = -0.05;
 /// Strips that the smaller of two regions must have left in a window of both.
-const LEAST_STRIPS: f64 = 9.0;
+const LEAST_STRIPS: f64 = 8.0;
 
 /// Region for a window, with the depth of the overlap.
 #[derive(Debug, Clone, Copy, Default)]
@@ -58,7 +60,7 @@ pub fn place(
     if known.is_some() {
         forget(now);
     }
-    let wanted = merged(operators.sizes.largest.strips, &solvers.wanted);
+    let wanted = merged(&operators.sizes, &solvers.wanted);
     let own = assign(problem, &wanted.0[..wanted.1], now);
     solvers.moved = before.is_some_and(|before| before.places != now.places);
     if let Some(before) = before
@@ -161,11 +163,11 @@ fn forget(fields: &mut SurfaceFields) {
 }
 
 /// Regions for windows, from the gauge side to the field side, and their number: of wanted ones that are near each other.
-fn merged(strips: usize, wanted: &[Wanted]) -> ([Wanted; WINDOWS], usize) {
+fn merged(sizes: &Sizes, wanted: &[Wanted]) -> ([Wanted; WINDOWS], usize) {
     let mut regions = [Wanted::default(); CONTACTS];
     let mut count = 0;
     for new in wanted {
-        if count > 0 && share_window(&regions[count - 1].region, &new.region, strips) {
+        if count > 0 && share_window(&regions[count - 1].region, &new.region, sizes) {
             let last = &mut regions[count - 1];
             last.region = last.region.union(&new.region);
             last.depth = last.depth.max(new.depth);
@@ -185,13 +187,12 @@ fn merged(strips: usize, wanted: &[Wanted]) -> ([Wanted; WINDOWS], usize) {
     (std::array::from_fn(|i| regions[i]), count)
 }
 
-/// Whether two regions are so near each other that one window serves both, and well.
-fn share_window(a: &Region, b: &Region, strips: usize) -> bool {
+/// Whether two regions share a window: those that touch, and those near each other that it resolves.
+fn share_window(a: &Region, b: &Region, sizes: &Sizes) -> bool {
     let breadth = |region: &Region| region.across[1] - region.across[0];
     let both = a.union(b);
-    let gap = b.across[0] - a.across[1];
-    gap < NEAR * 0.5 * (breadth(a) + breadth(b))
-        && both.narrowest > LEAST_STRIPS * breadth(&both) / (strips as f64 - 2.0)
+    let gap = (b.across[0] - a.across[1]) / (0.5 * (breadth(a) + breadth(b)));
+    gap < TOUCHES || gap < NEAR && both.narrowest > LEAST_STRIPS * sizes.strip_for(&both)
 }
 
 /// Gives each region a window: the one that it had, or one that is free. Returns the arc lengths between which each window has the

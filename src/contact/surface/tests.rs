@@ -210,7 +210,7 @@ fn zz_sweep() {
             } else {
                 last = Some([all.force, all.force]);
             }
-            if step % 100 == 0 || (790..815).contains(&step) || staggered > 0 && state.convergence.staggered {
+            if step % 100 == 0 || (1095..1120).contains(&step) || staggered > 0 && state.convergence.staggered {
                 println!(
                     "{step} y {:.2} n {} F {:.0?} T {:.0} its {} {:?} {:?}",
                     -1e3 * inputs.lateral_displacement,

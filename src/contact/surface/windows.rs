@@ -162,6 +162,11 @@ impl Sizes {
             .unwrap_or(finest)
     }
 
+    /// Breadth of a strip of the window for a region, `m`.
+    pub fn strip_for(&self, region: &Region) -> f64 {
+        shrunk(self.largest.breadth, self.breadth_for(region))
+    }
+
     /// Whether a window holds a region with a margin and is not far too large for it.
     fn suits(&self, region: &Region, place: &Place) -> bool {
         let grid = self.grid(place.length, place.breadth);
