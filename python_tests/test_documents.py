@@ -16,7 +16,7 @@ sys.path.insert(0, str(REPOSITORY / "tools"))
 import update_docs  # noqa: E402
 
 STALE = "run `make docs` and commit what it changes"
-DRAWN = ["paper_cases", "braking_demo", "patch_fields"]
+DRAWN = ["paper_cases", "braking_demo", "patch_fields", "profiles_contact", "wheelset_sweep"]
 
 
 def block(path, marker):
