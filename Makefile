@@ -252,8 +252,8 @@ pytest:
 # README's and the documentation page's generated tables, README's pictures and those of the verification; commit what
 # changes.
 docs: demo verify
-	@$(PY) tools/update_docs.py
 	@$(PY) tools/verification_figures.py
+	@$(PY) tools/update_docs.py
 	@$(PY) tools/patch_axes.py
 	@$(PY) tools/profiles_figure.py
 	@$(PY) tools/profiles_axes.py
