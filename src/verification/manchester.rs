@@ -35,7 +35,7 @@ const MOMENT: f64 = 0.03;
 const NORMAL_FORCE: f64 = 5e-3;
 /// Peak pressure, relative: a cell of either side less or more in the contact.
 const PEAK: f64 = 0.02;
-/// The same on the flange.
+/// Peak pressure on the flange, relative: a contact is four of CONTACT's cells broad there.
 const PEAK_ON_FLANGE: f64 = 0.04;
 /// Area, relative, where a row of cells is not more.
 const AREA: f64 = 0.04;
@@ -99,7 +99,7 @@ impl Case {
             .map(|error| error.abs() / (FRICTION * normal))
     }
 
-    /// The same of the forces in the axes of the track.
+    /// Friction and pressure together in the axes of the track, along it and across, less those on the curved surface, over μ F_N.
     fn in_track(&self) -> [f64; 2] {
         self.curved.map_or([f64::NAN; 2], |[normal, .., along, across, _]| {
             [self.outputs.force_x + along, self.outputs.force_y - across].map(|error| error.abs() / (FRICTION * normal))

@@ -25,7 +25,7 @@ const FRICTION: f64 = 0.3;
 const SPEED: f64 = 20.0;
 /// Vertical load, `N`.
 const LOAD: f64 = 60e3;
-/// All but F_x where a part sticks: of some 20 cells from edge to edge, each edge is known to a thirtieth of one.
+/// Tolerance of all but F_x where a part sticks: of some 20 cells from edge to edge, each edge is known to a thirtieth of one.
 const TOLERANCE: f64 = 3e-3;
 /// Yaw, rad, and excess of the circumference's speed: rolling, driving, steering, both, and sliding.
 const MOTIONS: [[f64; 2]; 5] = [[0.0, 0.0], [0.0, 1e-3], [1e-3, 0.0], [1e-3, 1e-3], [4e-3, 5e-3]];
