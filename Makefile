@@ -4,7 +4,7 @@
 #   make fmu3    target/WheelRailContact-fmi3.fmu, the same library under FMI 3.0
 #   make platforms  win64 in the same archive, and aarch64 Linux: built where there is a compiler, run under wine and qemu
 #   make wheel   dist/wheelrail-*.whl: a Python package with the FMUs and the command line in it
-#   make demo    the paper's cases, a braking manoeuvre and the patch: results/
+#   make demo    the paper's cases, a braking manoeuvre, the patch and profiles: results/
 #   make measurements  fits to measured creep curves, a twin disc, wear: results/ and docs/measurements.md
 #   make couplings  the component in vehicle models, masters and sweeps: results/, one page each in docs/couplings/
 #   make test    formatting, lints, order of the modules, documentation, all Rust tests, `wheelrail verify`, all Python tests
@@ -142,6 +142,10 @@ demo:
 	@$(CARGO) run --quiet --example patch_creep_curves > results/patch_creep_curves.part
 	@mv results/patch_creep_curves.part results/patch_creep_curves.csv
 	@$(PY) studies patch_creep_curves
+	$(call say,Profiles: where they touch and the pressure there)
+	@$(PY) studies profiles_contact
+	$(call say,Profiles: two wheels of a wheelset over its displacement)
+	@$(PY) studies wheelset_sweep
 	@cp $(FMU) results/
 	$(call say,Written)
 	@ls -l results/*.fmu results/*.csv results/*.png | awk '{ print $$NF, "(" $$5, "bytes)" }'
@@ -248,11 +252,12 @@ pytest:
 # README's and the documentation page's generated tables, README's pictures and those of the verification; commit what
 # changes.
 docs: demo verify
-	@$(PY) tools/update_docs.py
 	@$(PY) tools/verification_figures.py
+	@$(PY) tools/update_docs.py
 	@$(PY) tools/patch_axes.py
 	@$(PY) tools/profiles_figure.py
-	@cp results/paper_temperature.png results/braking.png results/braking_stop.png results/patch_fields.png results/patch_creep_curves.png docs/
+	@$(PY) tools/profiles_axes.py
+	@cp results/paper_temperature.png results/braking.png results/braking_stop.png results/patch_fields.png results/patch_creep_curves.png results/profiles_contact.png results/wheelset_sweep.png docs/
 	@cp results/verification/*.png docs/verification/
 
 # The site needs no network when it is read; warnings are errors.

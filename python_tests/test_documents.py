@@ -8,6 +8,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 REPOSITORY = Path(__file__).resolve().parent.parent
@@ -16,7 +17,7 @@ sys.path.insert(0, str(REPOSITORY / "tools"))
 import update_docs  # noqa: E402
 
 STALE = "run `make docs` and commit what it changes"
-DRAWN = ["paper_cases", "braking_demo", "patch_fields"]
+DRAWN = ["paper_cases", "braking_demo", "patch_fields", "profiles_contact", "wheelset_sweep"]
 
 
 def block(path, marker):
@@ -104,6 +105,17 @@ def test_accuracy_of_the_patch():
     for one, other in zip(shown, fresh, strict=True):
         for text, value in zip(one[3:], other[3:], strict=True):
             assert abs(float(text) - float(value)) < 1.5e-4, f"{one}, {other}; {STALE}"
+
+
+def test_table_of_the_manchester_benchmark():
+    """The table is that of the last `make docs`, if any, to one unit of the last digit."""
+    if not update_docs.MANCHESTER.exists():
+        pytest.skip("`make docs` writes results/verification/manchester.csv")
+    shown, fresh = (
+        [[float(cell) for cell in row.split("|")[1:-1]] for row in text.strip().splitlines()[2:]]
+        for text in (block(update_docs.PROFILES, "wheelrail verify --curves"), update_docs.manchester_markdown())
+    )
+    assert np.allclose(shown, fresh, rtol=1e-3, atol=1.0), STALE
 
 
 def test_figures_of_the_verification():

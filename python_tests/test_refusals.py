@@ -149,6 +149,7 @@ SIMULATE = {
     "field that is none": (TABLE, {"fields": "presure"}, "fields: there is no field presure; did you mean pressure"),
     "no fields": (TABLE, {"fields": []}, "fields = []: none is chosen"),
     "fields of the patch": (TABLE, {"fields": True, "contact_model": "patch"}, "those of the patch are in the FMU of FMI 3.0"),
+    "fields of profiles": (SPEEDS, {"fields": True, "contact_model": "profiles", "slip_source": 2}, "profiles have no fields over time"),
     "fields_every": (TABLE, {"fields": True, "fields_every": 0}, "fields_every = 0: a whole number of at least 1"),
 }  # fmt: skip
 

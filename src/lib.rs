@@ -40,6 +40,8 @@
 //! | (16) of a patch | s = (V(ξ + φ y), −V(η + φ x)) − V ∂u/∂x + ∂u/∂t | the same across the rail too, with lateral creepage η and spin φ | m/s | `mechanics::kinematics`, `contact::patch::problem` |
 //! | (18) of a patch | u = ∫ Boussinesq's and Cerruti's influence · (τ, p) dA | displacement of half-spaces, rail against wheel | m | `body::half_space`, `body::influence` |
 //! | (9), (22) | u₂ + g − W ≤ 0, p ≥ 0, p (u₂ + g − W) = 0, g = δ − r₀ + √(r₀² − x₁²) | contact; of a patch g = δ − x²/2r₀ − ½(κ_r + κ_w) y² | m, Pa | `contact::line`, `contact::patch` |
+//! | (9) of profiles | f(P + h n) = 0, −g = h from the rail's point P(x, s) along its normal n(s) to the wheel f = 0 | undeformed distance over the rail's arc length s | m | `geometry::unrolled`, `contact::surface` |
+//! | load of profiles | Σ ∫ (p cos δ − τ_s sin δ) dA = Q | vertical equilibrium of all contacts, inclined by δ(s) | N | `contact::surface::mechanics` |
 //! | (37) | min ½ pᵀC p − (b + δ)ᵀp, p ≥ 0 | the discrete contact problem | scaled | `mechanics::normal`, `mechanics::patch::normal` |
 //! | (10), (30) | Coulomb's law, or τ = −μ(θ) p (2/π) arctan(s/ε) | friction; of a patch with vectors | Pa | `friction::coulomb`, `mechanics::tangential`, `mechanics::patch` |
 //! | (31) | (37) for given τ ↔ (30) for given p | mechanics for given temperature and wear | | `mechanics::normal_tangential` |
@@ -69,7 +71,10 @@
 //! | lateral creepage η = v_y/V | the wheel moves to the left |
 //! | spin creepage φ = ω_z/V | the wheel turns anticlockwise seen from above |
 //! | slip velocity s | of the rail's surface relative to the wheel's, as V and ω r₀ count |
-//! | penetration δ | into the rail |
+//! | penetration δ | into the rail; of profiles the way by which the wheel is lower than where it touches first |
+//! | force, moment of profiles | on the wheelset about its centre: x forward, y to the left, z upward |
+//! | arc length s of a rail's profile | from the gauge face to the field side |
+//! | inclination of a contact | towards the gauge face: its normal force pushes the wheel to the track's middle |
 //! | displacement u₂ | upward: the thermal bulge closes the gap |
 //! | wear depth W | material lost: opens the gap |
 //! | heat flux | into the rail |
@@ -88,7 +93,8 @@
 //!    mechanics and heat; `contact::step` iterates on that vector, `contact::newton` where this does not converge, and
 //!    `contact::sensitivity` is the derivative. `contact::line` is the paper's contact; `contact::patch` resolves the contact across
 //!    the rail as well: read `body::half_space` and `body::influence` for its displacements, `mechanics::patch` for its tractions,
-//!    `transport::strips` and `heat::strips` for what its strips carry along. `contact::rim` is the wheel's temperature and wear,
+//!    `transport::strips` and `heat::strips` for what its strips carry along. `contact::surface` is the contact of profiles: patches on the
+//!    unrolled surface of the rail, in windows that follow the contacts, and the height of the wheel that carries the load. `contact::rim` is the wheel's temperature and wear,
 //!    `contact::integrals` and `contact::outputs` are the results.
 //! 6. `wheel_rail`: the stepped model. `simulation`: a wheel's way through time.
 //! 7. `verification`: the closed forms and published numbers that all this is held against.

@@ -3,6 +3,7 @@
 - the tables of variables, from `wheelrail describe`: all of them, and for README those to begin with;
 - the figures of the paper's cases, from results/paper_cases.csv, which studies/paper_cases writes;
 - the accuracy of the patch, from results/patch_accuracy.csv, which studies/patch_creep_curves writes;
+- the Manchester benchmark, from results/verification/manchester.csv, which tools/verification_figures.py writes;
 - the figures of the verification, from target/verification.txt, which `make verify` writes.
 
 With the argument `couplings` (`make couplings-docs`) the tables of the pages in docs/couplings/, with `measurements`
@@ -31,6 +32,8 @@ MEASURED = ("measurements_eurosprinter.md", "measurements_twin_disc.md")
 PAPER_CASES = REPOSITORY / "results" / "paper_cases.csv"
 PATCH = REPOSITORY / "docs" / "patch.md"
 PATCH_ACCURACY = REPOSITORY / "results" / "patch_accuracy.csv"
+PROFILES = REPOSITORY / "docs" / "profiles.md"
+MANCHESTER = REPOSITORY / "results" / "verification" / "manchester.csv"
 
 # What one sets and reads first.
 FIRST = ["wheel_speed", "creepage", "vehicle_speed", "normal_load", "lateral_creepage", "spin_creepage"]
@@ -119,6 +122,20 @@ def patch_accuracy_markdown():
     return "\n".join(lines) + "\n"
 
 
+def manchester_markdown():
+    """Return the right wheel of the Manchester benchmark beside CONTACT's as a Markdown table."""
+    with MANCHESTER.open(newline="") as file:
+        rows = [[float(cell) for cell in row] for row in list(csv.reader(file))[1:]]
+    lines = ["| $y$ | contacts | $F_x$ | curved | plane | $F_y$ | curved | peak | CONTACT | area | CONTACT |"]
+    lines.append("|" + "---|" * 11)
+    for right, lateral, contacts, *values in rows:
+        if right == 1.0:
+            digits = (0, 0, 0, 0, 0, 0, 0, 1, 1)
+            cells = [f"{value:.{places}f}" for value, places in zip(values, digits, strict=True)]
+            lines.append(f"| {lateral:g} | {contacts:.0f} | {' | '.join(cells)} |".replace("| -0 |", "| 0 |"))
+    return "\n".join(lines) + "\n"
+
+
 ROW = re.compile(
     r"^  (?P<quantity>\S.*?)\s{2,}(?P<reference>[-\d.e]+)\s+(?P<computed>[-\d.e]+) (?P<unit>\S+)"
     r"\s+(?P<deviation>[-\d.e]+)\s+(?P<tolerance>[-\d.e]+)\s+(?P<passed>yes|NO)\s+(?P<source>.*)$"
@@ -198,6 +215,7 @@ def main():
     write(VARIABLES, {"wheelrail describe": variables_markdown()})
     write(INDEX, {"studies/paper_cases": paper_cases_markdown()})
     write(PATCH, {"studies/patch_creep_curves": patch_accuracy_markdown()})
+    write(PROFILES, {"wheelrail verify --curves": manchester_markdown()})
     write(PAGE, {"wheelrail describe": variables_html(), "wheelrail verify": verification_html()})
 
 

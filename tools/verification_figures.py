@@ -139,12 +139,29 @@ def draw_patch_creep(force, creepage, share, contact):
     save(figure, "patch_creep")
 
 
+def draw_manchester(right, lateral, _, along, on_curve, _plane, across, across_it, *_others):
+    """Forces of the right wheel of the Manchester benchmark."""
+    figure, axes, difference = axes_and_difference("manchester")
+    chosen = right == 1.0
+    forces = ((along, on_curve, "$F_x$, forward"), (across, across_it, "$F_y$, to the left"))
+    for colour, (force, contact, label) in zip(COLOURS, forces, strict=False):
+        axes.plot(lateral[chosen], contact[chosen] / 1e3, **CLOSED_FORM)
+        axes.plot(lateral[chosen], force[chosen] / 1e3, color=colour, label=label, **MODEL)
+        difference.plot(lateral[chosen], (force - contact)[chosen], color=colour, **MODEL)
+    title = "Manchester benchmark, right wheel under 10 kN; lines: CONTACT"
+    axes.set(ylabel="force on the wheel [kN]", title=title)
+    difference.set(ylabel="difference\n[N]", xlabel="wheelset to the right by [mm]")
+    axes.legend(loc="upper left")
+    save(figure, "manchester")
+
+
 DRAW = {
     "hertz": draw_hertz,
     "carter": draw_carter,
     "flash_temperature": draw_flash_temperature,
     "patch_hertz": draw_patch_hertz,
     "patch_creep": draw_patch_creep,
+    "manchester": draw_manchester,
 }
 
 

@@ -99,8 +99,8 @@ def simulate(
         Parameters and constant inputs whose names are no Python names, `{"friction_table.temperature": [...]}`.
     fields
         True for the fields of the contact over time as well, or the names of some: pressure, shear, slip, temperature
-        and wear over the cells of a patch, or along a line and into the depth. They need xarray, and come from the FMU
-        of FMI 3.0 unless another is given.
+        and wear over the cells of a patch, or along a line and into the depth; profiles have none. They need xarray,
+        and come from the FMU of FMI 3.0 unless another is given.
     fields_every
         Communication points from one set of fields to the next; the first and the last point are always among them.
     progress
@@ -176,7 +176,11 @@ def simulate(
     times = points(start, end, seconds("step", step), columns["time"], len(listed) + width(fmu, names, given))
     report = reporter(progress, start, end, "simulate", "s")
     every = whole("fields_every", fields_every)
-    patch = "contact_model" in known and value("contact_model") == choices(known["contact_model"]).get("patch")
+    models = choices(known["contact_model"]) if "contact_model" in known else {}
+    model = value("contact_model") if models else None
+    patch = model is not None and model == models.get("patch")
+    if fields is not False and model is not None and model == models.get("profiles"):
+        raise ValueError("profiles have no fields over time; the cells at the end: `wheelrail simulate --fields`")
     first = {
         name: float(np.interp(start, columns["time"], column)) for name, column in columns.items() if name != "time"
     }

@@ -21,6 +21,8 @@ pub mod hertz;
 pub mod kalker;
 pub mod layer;
 pub mod locked_wheel;
+pub mod manchester;
+pub mod manchester_cases;
 pub mod mirrored;
 pub mod paper_cases;
 pub mod patch_cases;
@@ -35,6 +37,7 @@ pub mod patch_long;
 pub mod patch_mirrored;
 pub mod patch_power;
 pub mod power_balance;
+pub mod profiles_circle;
 pub mod rigid_wheel;
 pub mod rolling_start;
 mod row;
@@ -82,6 +85,24 @@ pub const CURVES: &[Curve] = &[
         name: "patch_creep",
         columns: &["force [1]", "creepage [1]", "share [1]", "CONTACT [1]"],
         points: patch_creep::curve,
+    },
+    Curve {
+        name: "manchester",
+        columns: &[
+            "right wheel [1]",
+            "displacement to the right [mm]",
+            "contacts [1]",
+            "F_x [N]",
+            "CONTACT's, curved [N]",
+            "CONTACT's, in one plane [N]",
+            "F_y [N]",
+            "CONTACT's, curved [N]",
+            "peak pressure [MPa]",
+            "CONTACT's [MPa]",
+            "area [mm2]",
+            "CONTACT's [mm2]",
+        ],
+        points: manchester::curve,
     },
 ];
 
@@ -226,6 +247,14 @@ pub const CHECKS: &[Check] = &[
     Check {
         name: "Equivalent conicity",
         rows: equivalent_conicity::rows,
+    },
+    Check {
+        name: "Profiles: circle on circle",
+        rows: profiles_circle::rows,
+    },
+    Check {
+        name: "Profiles: Manchester benchmark",
+        rows: manchester::rows,
     },
 ];
 
