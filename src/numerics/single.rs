@@ -54,7 +54,7 @@ pub const fn padded(n: usize) -> usize {
     n.next_multiple_of(WIDTH)
 }
 
-/// Writes the product of [`WIDTH`] columns with as many values: `sum + factor · columns · x`.
+/// Adds a product of [`WIDTH`] columns with as many values: `sum + factor · columns · x`.
 #[inline(always)]
 fn add_product(fma: MultiplyAdd, columns: [&Wide; WIDTH], x: &Wide, factor: f32, sum: Wide) -> Wide {
     let mut sum = sum;

@@ -169,7 +169,8 @@ impl Friction {
             noise: problem.noise,
             regularisation: problem.regularisation,
         };
-        if self.newton(problem, &scheme, shear, problem.tolerance).is_ok() {
+        let slack = self.settings.slack;
+        if self.newton(problem, &scheme, shear, problem.tolerance, slack).is_ok() {
             self.remember(shear);
             return Ok(());
         }
@@ -196,12 +197,12 @@ impl Friction {
             };
             self.factorised = false;
             // A smoother law that stalls still leads closer.
-            let _ = self.newton(problem, &smooth, shear, self.settings.continuation_tolerance);
+            let _ = self.newton(problem, &smooth, shear, self.settings.continuation_tolerance, 1.0);
             epsilon *= self.settings.continuation_step;
         }
         for noise in [f64::INFINITY, 1e2 * problem.noise, problem.noise] {
             self.factorised = false;
-            let last = self.newton(problem, &Scheme { noise, ..scheme }, shear, problem.tolerance);
+            let last = self.newton(problem, &Scheme { noise, ..scheme }, shear, problem.tolerance, 1.0);
             if noise == problem.noise {
                 self.remember(shear);
                 if last.is_err_and(|(_, residual)| residual <= problem.accepted) {
@@ -226,13 +227,15 @@ impl Friction {
         }
     }
 
-    /// Solves by Newton's method. The error, where it does not reach the tolerance, is the iterations and the residual.
+    /// Solves by Newton's method, from a first guess that is far off to up to `slack` tolerances. The error, where it does not get there,
+    /// is the iterations and the residual.
     fn newton(
         &mut self,
         problem: &FrictionProblem,
         scheme: &Scheme,
         shear: &mut [Vec<f64>; 2],
         tolerance: f64,
+        slack: f64,
     ) -> std::result::Result<(), (usize, f64)> {
         let n = problem.contact.cells();
         let window = problem.contact.window(problem.grid, 1);
@@ -251,7 +254,7 @@ impl Friction {
         }
         let mut size = self.update_rows(problem, scheme, shear, 0.0);
         let mut largest = self.largest_residual(n);
-        let roughly = (self.settings.reduction * largest).min(self.settings.slack * tolerance);
+        let roughly = (self.settings.reduction * largest).min(slack * tolerance);
         let tolerance = tolerance.max(roughly);
         let mut forcing = f64::from(self.settings.largest_forcing);
         for iterations in 0..self.settings.newton_steps {
