@@ -87,7 +87,7 @@ pub struct Friction {
     scratch_single: influence::ProductScratch<f32>,
     /// Linearised law of the cells.
     rows: Vec<CellLawRow>,
-    /// The same in single precision, as it was when it was taken last.
+    /// Linearised law in single precision, as it was when it was taken last.
     law: LinearLaw,
     step: Vec<f32>,
     /// Change of the rows by the data in a linearised problem.
