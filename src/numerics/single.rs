@@ -171,8 +171,8 @@ fn factorise_panel(fma: MultiplyAdd, panel: &mut [f32], n: usize, first: usize, 
         let inverse = 1.0 / own[row];
         // Of the register with the diagonal only what is below it.
         let mut lower = *wide_mut(own, first);
-        for lane in 0..WIDTH {
-            lower[lane] = if lane > k { inverse * lower[lane] } else { 0.0 };
+        for (lane, value) in lower.iter_mut().enumerate() {
+            *value = if lane > k { inverse * *value } else { 0.0 };
         }
         let own_first = wide_mut(own, first);
         for lane in 0..WIDTH {
