@@ -15,7 +15,7 @@ use wheelrail::{Inputs, Parameters, Simulation};
 const WARM_UP: usize = 50;
 const ROUNDS: usize = 3;
 /// Cells along and across.
-const GRIDS: [(usize, usize); 4] = [(34, 21), (24, 15), (16, 11), (12, 9)];
+const GRIDS: [(usize, usize); 5] = [(34, 21), (24, 15), (16, 11), (12, 9), (10, 7)];
 
 /// Inputs at the communication points.
 fn track() -> Vec<Inputs> {

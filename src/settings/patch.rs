@@ -39,14 +39,28 @@ pub struct PatchSettings {
     pub newton_steps: usize,
     /// Limit of the Krylov iterations of one of them.
     pub krylov_iterations: usize,
-    /// Residual of a correction relative to that of the law: as much as is needed, between these.
+    /// Smallest residual that is asked of a correction, relative to that of the law.
     pub least_forcing: f32,
-    /// The largest of it.
+    /// The largest residual of a correction: while cells change between stick and slip, a closer one gains nothing.
     pub largest_forcing: f32,
+    /// Residual of a correction over the square of the ratio by which the last step reduced that of the law (Eisenstat and Walker 1996).
+    pub forcing: f64,
+    /// Share of the tolerance of the law that its last correction may leave.
+    pub forcing_margin: f64,
+    /// Share of the residual that a first guess leaves to which pressure and friction law are solved, where that is less exact than the
+    /// tolerance: what is left of so large a change is changed again by the next temperature.
+    pub reduction: f64,
+    /// Factor on the tolerance up to which it is.
+    pub slack: f64,
+    /// Error of a product in single precision, with its rounding in the sums of many Newton steps: where it is below the tolerance, the
+    /// response to a correction is such a product.
+    pub single_round_off: f64,
+    /// Tolerance of the pressure from which on the products of conjugate gradients are in single precision.
+    pub single_tolerance: f64,
     /// Residual of the friction law, relative to the peak pressure, that will do in a staggered step where none smaller is reached.
     pub staggered_residual: f64,
-    /// Krylov iterations above which the blocks are factorised anew for the next Newton step.
-    pub renewal: usize,
+    /// Krylov iterations a decimal digit of a correction above which the blocks are factorised anew for the next Newton step.
+    pub renewal: f64,
     /// Limit of the halvings of a Newton step.
     pub halvings: usize,
     /// Limit of the regularisations on the way to the law, from the largest slip on.
@@ -82,9 +96,15 @@ impl Default for PatchSettings {
             newton_steps: 40,
             krylov_iterations: 60,
             least_forcing: 1e-5,
-            largest_forcing: 1e-2,
+            largest_forcing: 1e-1,
+            forcing: 0.9,
+            forcing_margin: 0.5,
+            reduction: 3e-3,
+            slack: 10.0,
+            single_round_off: 1e-5,
+            single_tolerance: 1e-6,
             staggered_residual: 1e-2,
-            renewal: 12,
+            renewal: 6.0,
             halvings: 12,
             continuation: 12,
             continuation_step: 0.2,

@@ -12,6 +12,7 @@ mod paper_mesh;
 mod profiles;
 mod random_sensitivity;
 mod robustness;
+mod rough_track;
 mod sensitivity;
 mod setups;
 mod shared_model;

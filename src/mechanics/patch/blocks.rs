@@ -4,8 +4,8 @@
 //! which is as much as a preconditioner is good for, and twice as fast.
 
 use super::contact::Contact;
-use super::law::CellLawRow;
-use crate::numerics::single;
+use super::linear_law::LinearLaw;
+use crate::numerics::{dense, single};
 
 /// Response of the slip of a strip to its own shear: along and across, by the lag along x; the lag 0 is at `origin`.
 #[derive(Debug, Clone, Copy)]
@@ -25,65 +25,58 @@ pub struct StripResponse<'a> {
 pub struct Blocks {
     factors: Vec<f32>,
     pivots: Vec<usize>,
-    /// Places of each run: of its unknowns among all, of its factors.
-    places: Vec<(usize, usize, usize)>,
+    places: Vec<Place>,
     values: Vec<f32>,
+}
+
+/// Place of a run.
+#[derive(Debug, Clone)]
+struct Place {
+    /// First of its cells among all.
+    first: usize,
+    /// Number of its cells.
+    cells: usize,
+    /// First of its factors.
+    factors: usize,
+    /// First of its pivots.
+    pivots: usize,
 }
 
 impl Blocks {
     /// Blocks for strips of up to `cells` cells, `total` cells in all.
     pub fn new(cells: usize, total: usize) -> Blocks {
+        // As much as runs of any lengths can take: one of a cell is padded more than a long one.
+        let strips = total.div_ceil(cells.max(1));
+        let (whole, single) = (single::padded(2 * cells), single::padded(2));
+        let of_strip = |one: usize, several: usize| one.max(several * cells.div_ceil(2));
         Blocks {
-            factors: vec![0.0; 4 * cells * total],
-            pivots: vec![0; 2 * total],
+            factors: vec![0.0; strips * of_strip(whole * whole, single * single)],
+            pivots: vec![0; strips * of_strip(whole, single)],
             places: Vec::with_capacity(total),
-            values: vec![0.0; 2 * cells],
+            values: vec![0.0; whole],
         }
     }
 
-    /// Factorises the law's rows. `edge` is what the leading edge adds to the slip of a cell per its own shear, along x and y. False
-    /// where a block is singular.
+    /// Factorises the law. False where a block is singular.
     /// The dependence of a cell's μ on the slip of the cells before it is left out: it would take more time than the iterations that it
     /// would save.
-    pub fn factorise(
-        &mut self,
-        contact: &Contact,
-        rows: &[CellLawRow],
-        edge: &[[f64; 2]],
-        response: &StripResponse,
-    ) -> bool {
+    pub fn factorise(&mut self, contact: &Contact, law: &LinearLaw, response: &StripResponse) -> bool {
         self.places.clear();
-        let mut start = 0;
+        let (mut factors, mut pivots) = (0, 0);
         for run in contact.runs() {
-            let n = run.cells;
-            let size = 2 * n;
-            let rows = &rows[run.indices()];
-            let block = &mut self.factors[start..start + size * size];
-            for (column, edge) in (0..n).zip(&edge[run.indices()]) {
-                for component in 0..2 {
-                    let table = [response.along, response.across][component];
-                    let entries = &mut block[(component * n + column) * size..][..size];
-                    let (first, second) = entries.split_at_mut(n);
-                    for (line, (row, (first, second))) in
-                        rows.iter().zip(first.iter_mut().zip(second.iter_mut())).enumerate()
-                    {
-                        let lag = response.origin + line - column;
-                        let ahead = f64::from(table[lag]);
-                        let behind = f64::from(table[lag.wrapping_add_signed(response.behind)]);
-                        *first = (row.by_ahead[0][component] * ahead + row.by_behind[0][component] * behind) as f32;
-                        *second = (row.by_ahead[1][component] * ahead + row.by_behind[1][component] * behind) as f32;
-                    }
-                    let row = &rows[column];
-                    first[column] += (row.by_shear[0][component] + row.by_ahead[0][component] * edge[component]) as f32;
-                    second[column] +=
-                        (row.by_shear[1][component] + row.by_ahead[1][component] * edge[component]) as f32;
-                }
-            }
-            if !single::lu(block, size, &mut self.pivots[2 * run.offset..]) {
+            let size = single::padded(2 * run.cells);
+            let block = &mut self.factors[factors..factors + size * size];
+            assemble(law, run.offset, run.cells, response, block);
+            if !single::lu(block, size, &mut self.pivots[pivots..pivots + size]) {
                 return false;
             }
-            self.places.push((run.offset, n, start));
-            start += size * size;
+            self.places.push(Place {
+                first: run.offset,
+                cells: run.cells,
+                factors,
+                pivots,
+            });
+            (factors, pivots) = (factors + size * size, pivots + size);
         }
         true
     }
@@ -91,21 +84,58 @@ impl Blocks {
     /// Solves with the blocks, in place: the x components of all cells, then their y components.
     pub fn solve(&mut self, values: &mut [f32]) {
         let (x, y) = values.split_at_mut(values.len() / 2);
-        for &(offset, n, start) in &self.places {
-            let own = &mut self.values[..2 * n];
-            own[..n].copy_from_slice(&x[offset..offset + n]);
-            own[n..].copy_from_slice(&y[offset..offset + n]);
-            single::lu_solve(&self.factors[start..], 2 * n, &self.pivots[2 * offset..], own);
-            x[offset..offset + n].copy_from_slice(&own[..n]);
-            y[offset..offset + n].copy_from_slice(&own[n..]);
+        for place in &self.places {
+            let (n, cells) = (place.cells, place.first..place.first + place.cells);
+            let size = single::padded(2 * n);
+            let own = &mut self.values[..size];
+            own[..n].copy_from_slice(&x[cells.clone()]);
+            own[n..2 * n].copy_from_slice(&y[cells.clone()]);
+            own[2 * n..].fill(0.0);
+            single::lu_solve(&self.factors[place.factors..], size, &self.pivots[place.pivots..], own);
+            x[cells.clone()].copy_from_slice(&own[..n]);
+            y[cells].copy_from_slice(&own[n..2 * n]);
         }
     }
+}
+
+/// Writes the block of a run of `n` cells from cell `first` on: the x components of all of them, then their y components.
+fn assemble(law: &LinearLaw, first: usize, n: usize, response: &StripResponse, block: &mut [f32]) {
+    let kernels = [response.along, response.across];
+    dense::vectorised(
+        #[inline(always)]
+        |fma| {
+            let size = single::padded(2 * n);
+            for (number, entries) in block.chunks_exact_mut(size).enumerate() {
+                entries[2 * n..].fill(0.0);
+                if number >= 2 * n {
+                    entries.fill(0.0);
+                    entries[number] = 1.0;
+                    continue;
+                }
+                let (component, column) = (number / n, number % n);
+                // The lag of the first line; those of the others follow.
+                let lag = response.origin - column;
+                let ahead = &kernels[component][lag..lag + n];
+                let behind = &kernels[component][lag.wrapping_add_signed(response.behind)..][..n];
+                for (residual, entries) in entries[..2 * n].chunks_exact_mut(n).enumerate() {
+                    let by_ahead = &law.by_ahead[residual][component][first..first + n];
+                    let by_behind = &law.by_behind[residual][component][first..first + n];
+                    let slips = by_ahead.iter().zip(ahead).zip(by_behind.iter().zip(behind));
+                    for (entry, ((by_ahead, ahead), (by_behind, behind))) in entries.iter_mut().zip(slips) {
+                        *entry = fma.multiply_add_single(*by_ahead, *ahead, by_behind * behind);
+                    }
+                    entries[column] += law.by_shear[residual][component][first + column];
+                }
+            }
+        },
+    );
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::body::grid::Grid;
+    use crate::mechanics::patch::law::{CellLawRow, Vector};
     use nalgebra::{DMatrix, DVector};
 
     const CELLS: usize = 9;
@@ -148,6 +178,12 @@ mod tests {
             .collect()
     }
 
+    fn law(rows: &[CellLawRow], edge: &[Vector]) -> LinearLaw {
+        let mut law = LinearLaw::new(rows.len());
+        law.take(rows, edge);
+        law
+    }
+
     /// by_shear + by_ahead (T + edge) + by_behind T′ of one run, T′ that of the cells behind: x components first.
     fn dense(rows: &[CellLawRow], edge: &[[f64; 2]], behind: isize) -> DMatrix<f64> {
         let n = rows.len();
@@ -184,7 +220,7 @@ mod tests {
                 behind,
             };
             let mut blocks = Blocks::new(CELLS, CELLS * STRIPS);
-            assert!(blocks.factorise(&contact, &rows, &edge, &response));
+            assert!(blocks.factorise(&contact, &law(&rows, &edge), &response));
             let mut solved = right.clone();
             blocks.solve(&mut solved);
             for run in contact.runs() {
@@ -219,6 +255,6 @@ mod tests {
         // Of one cell that sticks without compliance.
         rows[n - 1].by_shear = [[0.0; 2]; 2];
         let mut blocks = Blocks::new(CELLS, CELLS * STRIPS);
-        assert!(!blocks.factorise(&contact, &rows, &vec![[0.0; 2]; n], &response));
+        assert!(!blocks.factorise(&contact, &law(&rows, &vec![[0.0; 2]; n]), &response));
     }
 }

@@ -14,11 +14,12 @@ pub use tangent::{FrictionChange, LEAST_CHANGE};
 use super::blocks::{Blocks, StripResponse};
 use super::contact::{Contact, work_of_product};
 use super::law::{Cell, CellLawRow, Scheme, Vector};
+use super::linear_law::{LinearLaw, RunChange};
 use crate::body::grid::Grid;
 use crate::body::influence::{self, Tables, Transform, Window};
 use crate::error::{Error, Result};
 use crate::friction::path::NodeFriction;
-use crate::numerics::gmres::Gmres;
+use crate::numerics::gmres::{Gmres, Solved};
 use crate::settings::PatchSettings;
 use on_path::OnPath;
 
@@ -86,6 +87,8 @@ pub struct Friction {
     scratch_single: influence::ProductScratch<f32>,
     /// Linearised law of the cells.
     rows: Vec<CellLawRow>,
+    /// Linearised law in single precision, as it was when it was taken last.
+    law: LinearLaw,
     step: Vec<f32>,
     /// Change of the rows by the data in a linearised problem.
     given: Vec<Vector>,
@@ -96,6 +99,9 @@ pub struct Friction {
     /// Newton steps, Krylov iterations and factorisations since the solver was made.
     iterations: [u64; 3],
 }
+
+/// Least decimal digits of a correction that are counted, where it was asked for less.
+const LEAST_DIGITS: f64 = 0.3;
 
 /// Sum of a power of the unknowns of each run.
 fn work_of_blocks(contact: &Contact, power: u32) -> u64 {
@@ -122,6 +128,7 @@ impl Friction {
             scratch: transform.scratch(),
             scratch_single: transform.scratch(),
             rows: vec![CellLawRow::default(); total],
+            law: LinearLaw::new(total),
             step: vec![0.0; 2 * total],
             given: Vec::with_capacity(total),
             on_path: OnPath::new(total),
@@ -162,7 +169,8 @@ impl Friction {
             noise: problem.noise,
             regularisation: problem.regularisation,
         };
-        if self.newton(problem, &scheme, shear, problem.tolerance).is_ok() {
+        let slack = self.settings.slack;
+        if self.newton(problem, &scheme, shear, problem.tolerance, slack).is_ok() {
             self.remember(shear);
             return Ok(());
         }
@@ -189,12 +197,12 @@ impl Friction {
             };
             self.factorised = false;
             // A smoother law that stalls still leads closer.
-            let _ = self.newton(problem, &smooth, shear, self.settings.continuation_tolerance);
+            let _ = self.newton(problem, &smooth, shear, self.settings.continuation_tolerance, 1.0);
             epsilon *= self.settings.continuation_step;
         }
         for noise in [f64::INFINITY, 1e2 * problem.noise, problem.noise] {
             self.factorised = false;
-            let last = self.newton(problem, &Scheme { noise, ..scheme }, shear, problem.tolerance);
+            let last = self.newton(problem, &Scheme { noise, ..scheme }, shear, problem.tolerance, 1.0);
             if noise == problem.noise {
                 self.remember(shear);
                 if last.is_err_and(|(_, residual)| residual <= problem.accepted) {
@@ -219,13 +227,15 @@ impl Friction {
         }
     }
 
-    /// Solves by Newton's method. The error, where it does not reach the tolerance, is the iterations and the residual.
+    /// Solves by Newton's method, from a first guess that is far off to up to `slack` tolerances. The error, where it does not get there,
+    /// is the iterations and the residual.
     fn newton(
         &mut self,
         problem: &FrictionProblem,
         scheme: &Scheme,
         shear: &mut [Vec<f64>; 2],
         tolerance: f64,
+        slack: f64,
     ) -> std::result::Result<(), (usize, f64)> {
         let n = problem.contact.cells();
         let window = problem.contact.window(problem.grid, 1);
@@ -244,32 +254,32 @@ impl Friction {
         }
         let mut size = self.update_rows(problem, scheme, shear, 0.0);
         let mut largest = self.largest_residual(n);
+        let roughly = (self.settings.reduction * largest).min(slack * tolerance);
+        let tolerance = tolerance.max(roughly);
+        let mut forcing = f64::from(self.settings.largest_forcing);
         for iterations in 0..self.settings.newton_steps {
             if largest <= tolerance {
                 return Ok(());
             }
             let fresh = !self.factorised;
-            if !self.factorised {
+            if fresh {
                 self.factorised = self.factorise(problem);
             }
             if !self.factorised {
                 return Err((iterations, largest));
             }
-            let solved = self.correct(problem, &window, (tolerance / largest) as f32);
+            let needed = self.settings.forcing_margin * tolerance / largest;
+            let solved = self.correct(problem, &window, needed.max(forcing) as f32);
             self.iterations[0] += 1;
-            self.iterations[1] += solved as u64;
+            self.iterations[1] += solved.iterations as u64;
             // A kept factorisation that no longer serves is made anew for the next correction.
-            if solved > self.settings.renewal && !fresh {
+            let digits = -f64::from(solved.residual).log10();
+            if solved.iterations as f64 > self.settings.renewal * digits.max(LEAST_DIGITS) && !fresh {
                 self.factorised = false;
             }
+            let size_before = size;
             self.work += product;
-            {
-                let [x, y] = &mut self.correction_response;
-                let load = [&self.correction[0][..], &self.correction[1][..]];
-                problem
-                    .transform
-                    .apply(&problem.response.double, &window, load, [x, y], &mut self.scratch);
-            }
+            self.respond_to_correction(problem, &window, tolerance);
             let mut length = 1.0;
             let mut halvings = 0;
             loop {
@@ -299,11 +309,52 @@ impl Friction {
                 self.factorised = false;
             }
             largest = self.largest_residual(n);
+            // No closer than the law's curvature lets the next step come.
+            let ratio = size / size_before;
+            forcing = self.settings.forcing * ratio * ratio;
         }
         if largest <= tolerance {
             Ok(())
         } else {
             Err((self.settings.newton_steps, largest))
+        }
+    }
+
+    /// Computes the response to the correction: in single precision where its error, added to the response to the shear, is far below the
+    /// tolerance.
+    fn respond_to_correction(&mut self, problem: &FrictionProblem, window: &Window, tolerance: f64) {
+        let largest = self
+            .correction
+            .iter()
+            .flatten()
+            .fold(0.0, |m: f64, value| value.abs().max(m));
+        if self.settings.single_round_off * largest > tolerance {
+            let [x, y] = &mut self.correction_response;
+            let load = [&self.correction[0][..], &self.correction[1][..]];
+            problem
+                .transform
+                .apply(&problem.response.double, window, load, [x, y], &mut self.scratch);
+            return;
+        }
+        // Outside the contact both are 0.
+        for (single, double) in self.load_single.iter_mut().zip(&self.correction) {
+            for place in problem.contact.places(problem.grid) {
+                single[place] = double[place] as f32;
+            }
+        }
+        let [x, y] = &mut self.response_single;
+        let load = [&self.load_single[0][..], &self.load_single[1][..]];
+        problem
+            .transform
+            .apply_single(&problem.response.single, window, load, [x, y], &mut self.scratch_single);
+        for (double, single) in self.correction_response.iter_mut().zip(&self.response_single) {
+            for strip in window.strips.clone() {
+                let row = problem.grid.row(strip).start;
+                let read = row + window.read.start..row + window.read.end;
+                for (double, single) in double[read.clone()].iter_mut().zip(&single[read]) {
+                    *double = f64::from(*single);
+                }
+            }
         }
     }
 
@@ -365,6 +416,7 @@ impl Friction {
         sum.sqrt()
     }
 
+    /// Factorises the strips' blocks. False where one is singular.
     fn factorise(&mut self, problem: &FrictionProblem) -> bool {
         let response = problem.response;
         let own = StripResponse {
@@ -373,16 +425,16 @@ impl Friction {
             origin: response.origin,
             behind: if response.forward { -1 } else { 1 },
         };
-        let n = problem.contact.cells();
         self.work += work_of_blocks(problem.contact, 3) / 3;
         self.iterations[2] += 1;
-        self.blocks
-            .factorise(problem.contact, &self.rows[..n], problem.edge, &own)
+        self.law.take(&self.rows[..problem.contact.cells()], problem.edge);
+        self.blocks.factorise(problem.contact, &self.law, &own)
     }
 
-    /// Computes the correction of the shear on the grid. Returns the iterations that it took.
-    fn correct(&mut self, problem: &FrictionProblem, window: &Window, needed: f32) -> usize {
+    /// Computes the correction of the shear on the grid.
+    fn correct(&mut self, problem: &FrictionProblem, window: &Window, tolerance: f32) -> Solved {
         let n = problem.contact.cells();
+        self.law.take(&self.rows[..n], problem.edge);
         for (index, row) in self.rows[..n].iter().enumerate() {
             self.step[index] = -row.residual[0] as f32;
             self.step[n + index] = -row.residual[1] as f32;
@@ -391,6 +443,7 @@ impl Friction {
             gmres,
             blocks,
             rows,
+            law,
             step,
             load_single,
             response_single,
@@ -399,7 +452,7 @@ impl Friction {
             on_path,
             ..
         } = self;
-        let tolerance = needed.clamp(settings.least_forcing, settings.largest_forcing);
+        let tolerance = tolerance.clamp(settings.least_forcing, settings.largest_forcing);
         for component in load_single.iter_mut() {
             component.fill(0.0);
         }
@@ -417,30 +470,23 @@ impl Friction {
             }
             let (out_along, out_across) = out.split_at_mut(n);
             for run in problem.contact.runs() {
-                for (index, place) in run.indices().zip(run.places(problem.grid)) {
-                    let row = &rows[index];
-                    let shear = [f64::from(along[index]), f64::from(across[index])];
-                    let next = place.wrapping_add_signed(behind);
-                    let mut ahead = [
-                        f64::from(response_single[0][place]),
-                        f64::from(response_single[1][place]),
-                    ];
-                    let behind = [f64::from(response_single[0][next]), f64::from(response_single[1][next])];
-                    let edge = problem.edge[index];
-                    ahead[0] += edge[0] * shear[0];
-                    ahead[1] += edge[1] * shear[1];
-                    let line = |i: usize| {
-                        row.by_shear[i][0] * shear[0]
-                            + row.by_shear[i][1] * shear[1]
-                            + row.by_ahead[i][0] * ahead[0]
-                            + row.by_ahead[i][1] * ahead[1]
-                            + row.by_behind[i][0] * behind[0]
-                            + row.by_behind[i][1] * behind[1]
-                    };
-                    out_along[index] = line(0) as f32;
-                    out_across[index] = line(1) as f32;
-                    if let Some(path) = &problem.path {
-                        on_path.keep_slip_change(path, index, ahead, behind);
+                let (own, places) = (run.indices(), run.places(problem.grid));
+                let next = places.start.wrapping_add_signed(behind);
+                let [x, y] = &*response_single;
+                let change = RunChange {
+                    shear: [&along[own.clone()], &across[own.clone()]],
+                    ahead: [&x[places.clone()], &y[places]],
+                    behind: [&x[next..next + run.cells], &y[next..next + run.cells]],
+                };
+                law.multiply(0, run.offset, &change, &mut out_along[own.clone()]);
+                law.multiply(1, run.offset, &change, &mut out_across[own.clone()]);
+                if let Some(path) = &problem.path {
+                    for (k, index) in own.enumerate() {
+                        let at = |values: [&[f32]; 2]| values.map(|component| f64::from(component[k]));
+                        let (shear, mut ahead, edge) = (at(change.shear), at(change.ahead), problem.edge[index]);
+                        ahead[0] += edge[0] * shear[0];
+                        ahead[1] += edge[1] * shear[1];
+                        on_path.keep_slip_change(path, index, ahead, at(change.behind));
                     }
                 }
             }
@@ -462,7 +508,7 @@ impl Friction {
                 self.correction[component][place] = f64::from(*value);
             }
         }
-        solved.iterations
+        solved
     }
 
     /// Coefficients μ of the cells of the last solve, where μ depends on slip, and the magnitude of the law's slip velocity, `m/s`.

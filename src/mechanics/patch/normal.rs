@@ -22,6 +22,8 @@ use std::ops::Range;
 pub struct NormalInfluence {
     /// A.
     pub tables: Tables<f64>,
+    /// A in single precision.
+    single: Tables<f32>,
     /// Diagonal of A: influence of a cell on itself.
     pub diagonal: f64,
     /// Inverse W of the Cholesky factor of a whole strip's own block, column by column and row by row. That of a shorter run is its
@@ -41,9 +43,12 @@ impl NormalInfluence {
         let inverse = factor
             .and_then(|factor| factor.solve_lower_triangular(&DMatrix::identity(n, n)))
             .unwrap_or_else(|| DMatrix::identity(n, n));
+        let diagonal = influence((0, 0));
+        let tables = transform.scalar_tables(influence);
         NormalInfluence {
-            diagonal: influence((0, 0)),
-            tables: transform.scalar_tables(influence),
+            diagonal,
+            single: tables.single(),
+            tables,
             rows: inverse.transpose().as_slice().to_vec(),
             columns: inverse.as_slice().to_vec(),
             cells: n,
@@ -108,6 +113,9 @@ pub struct Normal {
     nothing: Vec<f64>,
     ignored: Vec<f64>,
     scratch: influence::ProductScratch<f64>,
+    /// Direction, its displacement, and what belongs to the other component, in single precision.
+    single: [Vec<f32>; 4],
+    scratch_single: influence::ProductScratch<f32>,
     /// Residual of the cells; values of the cells are the following ones as well.
     residual: Vec<f64>,
     direction: Vec<f64>,
@@ -127,6 +135,8 @@ pub struct Normal {
     work_done: u64,
     /// Conjugate gradients since the solver was made.
     iterations: u64,
+    /// Error from which the last conjugate gradients on a set began.
+    first_error: f64,
 }
 
 fn dot(a: &[f64], b: &[f64]) -> f64 {
@@ -146,6 +156,8 @@ impl Normal {
             nothing: on_grid(),
             ignored: on_grid(),
             scratch: transform.scratch(),
+            single: std::array::from_fn(|_| vec![0.0; grid.len()]),
+            scratch_single: transform.scratch(),
             residual: on_grid(),
             direction: on_grid(),
             corrected: on_grid(),
@@ -159,6 +171,7 @@ impl Normal {
             displaced: Window::whole(grid),
             work_done: 0,
             iterations: 0,
+            first_error: 0.0,
         }
     }
 
@@ -188,6 +201,7 @@ impl Normal {
         start(problem, &self.settings, pressure);
         let mut settled = false;
         let mut left = f64::INFINITY;
+        let mut least = problem.tolerance;
         for pass in 0..self.settings.normal_passes {
             contact.list(grid, |place| pressure[place] > 0.0);
             // Cells have joined and left; conjugate gradients keep the sum that they start from.
@@ -198,16 +212,21 @@ impl Normal {
                 }
             }
             let tolerance = if settled {
-                problem.tolerance
+                least
             } else {
-                self.settings.set_tolerance.max(problem.tolerance)
+                self.settings.set_tolerance.max(least)
             };
             let penetration;
             (penetration, left) = self.solve_on(problem, contact, pressure, tolerance);
+            if pass == 0 {
+                // As roughly as the friction law after a first guess that is far off.
+                let roughly = (self.settings.reduction * self.first_error).min(self.settings.slack * least);
+                least = least.max(roughly);
+            }
             self.separate(problem, contact, pressure, penetration);
             let one_at_a_time = pass >= self.settings.normal_passes / 2;
             let changed = self.exchange(problem, pressure, one_at_a_time);
-            if !changed && left <= problem.tolerance {
+            if !changed && left <= least {
                 return Ok(penetration);
             }
             settled = !changed;
@@ -350,6 +369,9 @@ impl Normal {
             self.residual[i] = given - self.residual[i] - self.image[i] - self.wear_compliance[i] * self.pressure[i];
         }
         let load_given = matches!(problem.constraint, Constraint::Total(_));
+        // What single precision leaves out is far below so large a tolerance.
+        let in_single =
+            problem.tolerance >= self.settings.single_tolerance && std::ptr::eq(transform, problem.transform);
         self.ones[..n].fill(1.0);
         problem
             .normal_influence
@@ -374,6 +396,9 @@ impl Normal {
                 }
             }
             error = self.residual[..n].iter().fold(0.0, |m: f64, r| r.abs().max(m)) / problem.normal_influence.diagonal;
+            if iteration == 0 {
+                self.first_error = error;
+            }
             if error <= tolerance {
                 break;
             }
@@ -388,13 +413,26 @@ impl Normal {
             self.work_done += work;
             self.iterations += 1;
             // Of all cells that may come into contact: what lies beside it must be known to see whether it overlaps.
-            transform.apply(
-                tables,
-                &window,
-                [&self.direction_grid, &self.nothing],
-                [&mut self.direction_image, &mut self.ignored],
-                &mut self.scratch,
-            );
+            if in_single {
+                let [direction, nothing, image, ignored] = &mut self.single;
+                for (single, double) in direction.iter_mut().zip(&self.direction_grid) {
+                    *single = *double as f32;
+                }
+                let (load, out) = ([&direction[..], &nothing[..]], [&mut image[..], &mut ignored[..]]);
+                let tables = &problem.normal_influence.single;
+                transform.apply_single(tables, &window, load, out, &mut self.scratch_single);
+                for (double, single) in self.direction_image.iter_mut().zip(image) {
+                    *double = f64::from(*single);
+                }
+            } else {
+                transform.apply(
+                    tables,
+                    &window,
+                    [&self.direction_grid, &self.nothing],
+                    [&mut self.direction_image, &mut self.ignored],
+                    &mut self.scratch,
+                );
+            }
             contact.gather(grid, &self.direction_image, &mut self.image);
             for i in 0..n {
                 self.image[i] += self.wear_compliance[i] * self.direction[i];
