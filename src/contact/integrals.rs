@@ -1,7 +1,7 @@
 //! Integrals of the fields over a contact. The sums of two parts of a contact add up to those of the whole.
 
+use super::on_wheelset::OnWheelset;
 use super::rim::ContactHeat;
-use super::surface::totals::OnWheelset;
 use crate::friction::coulomb;
 
 /// State of one surface node.

@@ -15,6 +15,7 @@ pub mod line;
 pub mod linear;
 pub mod memory;
 pub mod newton;
+pub mod on_wheelset;
 pub mod outputs;
 pub mod patch;
 pub mod problem;

@@ -1,9 +1,9 @@
 //! The outputs, from the integrals over a contact.
 
 use super::integrals::Integrals;
+use super::on_wheelset::OneContact;
 use super::problem::StepConditions;
 use super::rim;
-use super::surface::totals::OneContact;
 use crate::friction;
 use crate::parameters::{ContactModel, Parameters};
 use crate::signals::{ContactOutputs, Inputs, Motion, Outputs, Totals};

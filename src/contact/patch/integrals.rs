@@ -7,8 +7,8 @@ use super::problem::PatchProblem;
 use crate::contact::engine::Engine;
 use crate::contact::integrals::Integrals;
 use crate::contact::integrals::{Node, NodeSums};
+use crate::contact::on_wheelset::OnWheelset;
 use crate::contact::rim::ContactHeat;
-use crate::contact::surface::totals::OnWheelset;
 use crate::friction::coulomb;
 
 /// Integrals of the given fields under the problem's conditions.

@@ -43,7 +43,7 @@ pub struct PatchOperators {
     /// Transforms that serve fewer strips, ascending, with the tables of u by shear for them: a product costs as much as it serves
     /// strips.
     pub narrow: Vec<(Transform, Tables<f64>)>,
-    /// The same with the tables of the normal influence, for windows whose contact is known to be within a part of them; none else.
+    /// Transforms with tables of the normal influence, for windows whose contact is known to be within a part of them; none else.
     pub narrow_normal: Vec<(Transform, Tables<f64>)>,
     /// The kernels of u_x by τ_x and of u_y by τ_y of a strip on itself, by the lag along x, as the tables have it.
     pub strip_kernels: [Vec<f64>; 2],

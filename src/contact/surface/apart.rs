@@ -1,4 +1,4 @@
-//! What the pressure of one window does to the surface under another.
+//! Displacement by the pressure of one window of the surface under another.
 //!
 //! Contacts of one wheel are some millimetres to centimetres from each other, and the surface sinks by a few per cent of the approach
 //! about a contact. The pressure of blocks of cells is taken as that of points in their centres of force, and the displacement found at
@@ -34,7 +34,7 @@ impl Resultant {
     }
 }
 
-/// What the windows do to each other.
+/// Displacement of the windows by each other.
 pub struct Apart {
     resultants: [Vec<Resultant>; WINDOWS],
     /// Displacement at the places of the windows by the pressure of the others, scaled.
@@ -42,7 +42,7 @@ pub struct Apart {
     /// Rows and columns of the places of a window.
     rows: usize,
     columns: usize,
-    /// The same on the grid.
+    /// Displacement by the others on the grid, scaled.
     pub displacement: [Vec<f64>; WINDOWS],
 }
 

@@ -1,4 +1,4 @@
-//! Where the contacts are: those of a pressure that is known, and those that begin beside them.
+//! Places of the contacts: those of a pressure that is known, and those that begin beside them.
 //!
 //! The undeformed bodies overlap in more places than they touch: the surface sinks about a contact. So windows are placed for the contacts of
 //! the step before, and for places at which the bodies overlap by more than what the pressure of that step lets the surface sink.
@@ -6,7 +6,6 @@
 use super::apart::Apart;
 use super::fields::SurfaceFields;
 use super::operators::SurfaceOperators;
-use super::placement::Wanted;
 use super::search::Search;
 use super::windows::{Region, WINDOWS};
 
@@ -22,6 +21,15 @@ const ELLIPSE: f64 = 1.2;
 const LEAST_DEPTH: f64 = 0.02;
 /// Depth of a contact that carries for the order in which they are left out, `m`: more than any overlap.
 const CARRIES: f64 = 1.0;
+
+/// Region for a window, with the depth of the overlap.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Wanted {
+    /// The region.
+    pub region: Region,
+    /// Depth of the overlap, `m`.
+    pub depth: f64,
+}
 
 /// Finds the contacts of the fields, grown as their load is, and the overlaps outside of them at an approach. They are listed from the gauge
 /// side to the field side, without allocating.

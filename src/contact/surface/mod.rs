@@ -8,6 +8,7 @@ mod contacts;
 mod engine;
 pub mod fields;
 mod geometry;
+mod interpolation;
 mod mechanics;
 pub mod operators;
 mod placement;

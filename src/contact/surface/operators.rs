@@ -1,6 +1,6 @@
 //! Operators of a contact of profiles: wheel and rail in their shapes, and those of a patch for each size of a window.
 
-use super::geometry::Interpolation;
+use super::interpolation::Interpolation;
 use super::windows::{BREADTHS, LENGTHS, Place, Sizes};
 use crate::body::grid::Grid;
 use crate::body::half_space::HalfSpaces;

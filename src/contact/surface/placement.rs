@@ -1,6 +1,6 @@
 //! Placement of the windows at the beginning of a step: about the regions in which wheel and rail overlap.
 
-use super::contacts::{self, CONTACTS};
+use super::contacts::{self, CONTACTS, Wanted};
 use super::fields::SurfaceFields;
 use super::mechanics::SurfaceProblem;
 use super::operators::SurfaceOperators;
@@ -16,19 +16,10 @@ use crate::mechanics::patch::normal::is_free;
 const AHEAD: f64 = 1.03;
 /// Distance of two regions, in parts of their mean breadth, below which they share a window.
 const NEAR: f64 = 0.5;
-/// The same below which they do so in any case. The regions have a margin: those of contacts that touch overlap.
+/// Distance below which they do so in any case. The regions have a margin: those of contacts that touch overlap.
 const TOUCHES: f64 = -0.05;
 /// Strips that the smaller of two regions must have left in a window of both.
 const LEAST_STRIPS: f64 = 8.0;
-
-/// Region for a window, with the depth of the overlap.
-#[derive(Debug, Clone, Copy, Default)]
-pub struct Wanted {
-    /// The region.
-    pub region: Region,
-    /// Depth of the overlap, `m`.
-    pub depth: f64,
-}
 
 /// Places the windows for the pose of the step, carries the fields before over to them, and sets what their cells see of wheel and rail.
 /// Without fields before, the approach is the one that is known, `m`, at which the pressure of the fields has been solved, or that of

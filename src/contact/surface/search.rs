@@ -37,7 +37,7 @@ struct Closest {
 /// Region in which the bodies overlap.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Overlap {
-    /// Its extent, shrunk to what a contact needs.
+    /// Extent, shrunk to what a contact needs.
     pub region: Region,
     /// Largest overlap, `m`.
     pub depth: f64,

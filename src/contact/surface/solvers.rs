@@ -1,11 +1,10 @@
 //! Solvers and buffers of a step of a contact of profiles, made once, so that a step allocates nothing.
 
 use super::apart::Apart;
-use super::contacts::CONTACTS;
+use super::contacts::{CONTACTS, Wanted};
 use super::fields::SurfaceFields;
 use super::geometry::WindowGeometry;
 use super::operators::SurfaceOperators;
-use super::placement::Wanted;
 use super::search::Search;
 use super::transfer::Transfer;
 use super::windows::{LENGTHS, WINDOWS};
@@ -18,7 +17,7 @@ use crate::wear::strips::StripWearSteps;
 
 /// Solvers and buffers of a step.
 pub struct SurfaceSolvers {
-    /// Those of the windows.
+    /// Solvers of the windows.
     pub windows: Vec<WindowSolvers>,
     /// Search of contacts.
     pub search: Search,
@@ -38,12 +37,12 @@ pub struct SurfaceSolvers {
 
 /// Solvers and buffers of one window.
 pub struct WindowSolvers {
-    /// Those of a patch.
+    /// Solvers of a patch.
     pub patch: PatchSolvers,
-    /// What of them depends on the length of the window, by its number; the one in use is in `patch`.
+    /// Buffers that depend on the length of the window, by its number; the one in use is in `patch`.
     marches: Vec<March>,
     length: Option<usize>,
-    /// What the cells see of wheel and rail.
+    /// View that the cells have of wheel and rail.
     pub geometry: WindowGeometry,
     /// Part of the interface vector of all windows.
     pub interface: Interface,

@@ -41,7 +41,7 @@ pub struct SurfaceTangent {
     nothing: Interface,
 }
 
-/// Those of a window.
+/// Solvers of a window.
 struct WindowTangent {
     patch: PatchTangent,
     /// Heat marches by the length of the window; the one in use is in `patch`.
@@ -308,7 +308,7 @@ fn add(unit: &SurfaceFields, factor: f64, change: &mut SurfaceFields) {
     }
 }
 
-/// What a change of the tractions of all windows is made of.
+/// Parts that a change of the tractions of all windows is made of.
 struct Parts<'a> {
     problem: &'a SurfaceProblem<'a>,
     fields: &'a SurfaceFields,

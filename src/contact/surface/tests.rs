@@ -1,5 +1,5 @@
-use super::totals::OnWheelset;
 use crate::contact::ContactState;
+use crate::contact::on_wheelset::OnWheelset;
 use crate::parameters::{ContactModel, Control, FrictionLaw, Parameters, Side, SlipSource};
 use crate::signals::Inputs;
 use crate::wheel_rail::Model;

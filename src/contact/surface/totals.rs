@@ -1,10 +1,11 @@
-//! What is read off the fields of a contact of profiles: integrals over all windows, forces on the wheelset, the contacts one by one.
+//! Sums over the fields of a contact of profiles: integrals over all windows, forces on the wheelset, the contacts one by one.
 
 use super::fields::SurfaceFields;
 use super::mechanics::SurfaceProblem;
 use super::operators::SurfaceOperators;
 use crate::contact::engine::Engine;
 use crate::contact::integrals::{Integrals, NodeSums};
+use crate::contact::on_wheelset::{OnWheelset, OneContact};
 use crate::contact::outputs::LEAST_CREEPAGE_SPEED;
 use crate::contact::patch;
 use crate::contact::patch::operators::PatchOperators;
@@ -12,52 +13,6 @@ use crate::contact::profiles::ContactNode;
 use crate::contact::rim::ContactHeat;
 use crate::friction::coulomb;
 use crate::geometry::unrolled::PlacedWheel;
-
-/// Force and moment on the wheelset, and the contacts one by one, in the axes of the track.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct OnWheelset {
-    /// Force on the wheelset, `N`.
-    pub force: [f64; 3],
-    /// Moment on the wheelset about its middle, `N m`.
-    pub moment: [f64; 3],
-    /// Moment about the axle, `N m`.
-    pub torque: f64,
-    /// Number of contacts.
-    pub count: usize,
-    /// The contacts, from the gauge side to the field side.
-    pub contacts: [OneContact; super::windows::WINDOWS],
-}
-
-/// One contact.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct OneContact {
-    /// Arc length of the rail's profile at the resultant of the pressure, `m`.
-    pub arc: f64,
-    /// Place of the resultant of the pressure ahead of the axle, `m`.
-    pub along: f64,
-    /// Lateral positions of the resultant of the pressure in the frames of the rail's and of the wheel's profile, `m`.
-    pub positions: [f64; 2],
-    /// Creepages along and across in the plane of the contact, and of spin, `1/m`, at the resultant of the pressure.
-    pub creepages: [f64; 3],
-    /// Inclination of the rail's surface there, rad; positive where it rises to the field side.
-    pub inclination: f64,
-    /// Normal force, `N`.
-    pub normal_force: f64,
-    /// Friction on the wheel along the rail, and across it in the plane of the contact to the field side, `N`.
-    pub friction: [f64; 2],
-    /// Moment of the friction on the wheel about the normal through the resultant of the pressure, `N m`.
-    pub spin_moment: f64,
-    /// Length along the rail and breadth across it, `m`.
-    pub size: [f64; 2],
-    /// Area, `m²`.
-    pub area: f64,
-    /// Peak pressure, `Pa`.
-    pub peak_pressure: f64,
-    /// Peak temperature rise, `K`.
-    pub peak_rise: f64,
-    /// Friction power, `W`.
-    pub friction_power: f64,
-}
 
 impl OneContact {
     /// Wear number: creep forces and spin moment times their creepages, `N`.

@@ -26,7 +26,7 @@ struct Share {
 #[derive(Debug, Default)]
 struct Sources {
     shares: Vec<Share>,
-    /// Where the shares of each target begin.
+    /// Beginning of the shares of each target.
     begins: Vec<usize>,
 }
 

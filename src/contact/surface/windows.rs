@@ -5,10 +5,11 @@
 //! of cells of another.
 
 use crate::body::grid::Grid;
+use crate::contact::on_wheelset::CONTACTS;
 use serde::{Deserialize, Serialize};
 
 /// Largest number of windows: contacts that are resolved.
-pub const WINDOWS: usize = 4;
+pub const WINDOWS: usize = CONTACTS;
 /// Number of lengths that a window may have.
 pub const LENGTHS: usize = 5;
 /// Number of breadths that a window may have.
@@ -41,9 +42,9 @@ pub struct Place {
 /// Region of the rail's surface.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Region {
-    /// From and to along the rail, `m` ahead of the axle.
+    /// Ends along the rail, `m` ahead of the axle.
     pub along: [f64; 2],
-    /// From and to in arc length of the rail's profile, `m`.
+    /// Ends in arc length of the rail's profile, `m`.
     pub across: [f64; 2],
     /// Breadth of the narrowest contact in it, `m`.
     pub narrowest: f64,
