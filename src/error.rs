@@ -92,6 +92,17 @@ pub enum Error {
     /// A contact has become larger than the window it was sought in; the step is tried again with a larger one.
     #[error("the contact has become larger than the window it was sought in")]
     ContactOutgrowsWindow,
+    /// The wheel touches the rail with its flange's tip or beyond it, or the rail's end, or nothing of it.
+    #[error(
+        "the wheel has left the rail: with lateral_displacement = {lateral} m and roll_angle = {roll} rad, relative to the rail, it would touch it \
+         at its flange's tip or not at all; the state before is kept"
+    )]
+    WheelOffRail {
+        /// Lateral displacement of the wheelset relative to the rail, `m`.
+        lateral: f64,
+        /// Roll of the wheelset relative to the rail, rad.
+        roll: f64,
+    },
     /// State or workspace come from a model with another `contact_model`.
     #[error("the state or the workspace is not one of this contact_model")]
     OtherContactModel,

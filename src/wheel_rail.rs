@@ -178,7 +178,7 @@ impl Model {
             self.operators.initial_state(&task, &mut workspace.contact)
         };
         let (contact, convergence, integrals) = first(Coupling::Implicit, workspace).or_else(|error| match error {
-            Error::ContactLeavesWindow { .. } | Error::OtherContactModel => Err(error),
+            Error::ContactLeavesWindow { .. } | Error::WheelOffRail { .. } | Error::OtherContactModel => Err(error),
             _ if self.settings.step.staggered_substeps == 0 => Err(error),
             _ => first(Coupling::Staggered, workspace).map_err(|_| error),
         })?;
@@ -266,7 +266,9 @@ impl Model {
             let solved = match self.advance(workspace, state, &at_end, length, coupling) {
                 Ok(solved) => solved,
                 // What the window cannot hold no step can.
-                Err(error @ (Error::ContactLeavesWindow { .. } | Error::OtherContactModel)) => {
+                Err(
+                    error @ (Error::ContactLeavesWindow { .. } | Error::WheelOffRail { .. } | Error::OtherContactModel),
+                ) => {
                     return Err(interrupted(committed, error));
                 }
                 Err(error) => {
@@ -382,26 +384,6 @@ impl Model {
         let task = self.task(&state.inputs, state.duration, Coupling::Implicit);
         self.operators
             .sensitivities(&task, &mut workspace.contact, &state.contact, inputs)
-    }
-
-    /// TEMPORARY
-    #[cfg(test)]
-    pub fn operators_for_tests(&self) -> &crate::contact::Operators {
-        &self.operators
-    }
-
-    /// TEMPORARY
-    #[cfg(test)]
-    pub fn integrals_for_tests(&self, state: &State, inputs: &Inputs) -> crate::contact::integrals::Integrals {
-        use crate::contact::engine::Engine;
-        use crate::contact::problem::Problem;
-        let task = self.task(inputs, state.duration, Coupling::Implicit);
-        match (&self.operators, &state.contact) {
-            (crate::contact::Operators::Surface(operators), crate::contact::ContactState::Surface(own)) => {
-                Engine::integrals(&Problem::new(operators, &task), &own.fields)
-            }
-            _ => panic!(),
-        }
     }
 
     /// Convergence of the last step.

@@ -1,5 +1,6 @@
 //! Contact of profiles: mirror images, a given height, a wheel that is lifted. Forces are in `wheelrail::verification`.
 
+use crate::derivatives;
 use wheelrail::parameters::{ContactModel, Control, FrictionLaw, Parameters, Side, SlipSource};
 use wheelrail::signals::Inputs;
 use wheelrail::wheel_rail::{Model, State};
@@ -115,4 +116,145 @@ fn a_given_height_carries_the_load_that_belongs_to_it() {
         [lifted.force_x, lifted.force_y, lifted.force_z, lifted.contacts],
         [0.0; 4]
     );
+}
+
+/// Heat, wear and thermal bulge, on small windows.
+fn warm(side: Side, control: Control) -> Parameters {
+    Parameters {
+        friction_law: FrictionLaw::PiecewiseLinear,
+        friction_cold: 0.4,
+        control,
+        patch_nodes: 18,
+        patch_strips: 11,
+        depth_nodes: 13,
+        strip_half_length: 0.3,
+        ..bodies(side)
+    }
+}
+
+/// A wheelset at 20 m/s that moves onto the flange at 10 mm/s, under little load and the largest: tread, two contacts, one that is conformal,
+/// flange. Each step arrives; only while contacts appear, merge and part may one be staggered.
+#[test]
+fn a_wheelset_moves_onto_the_flange_step_by_step() {
+    for load in [10e3, 60e3, 95e3] {
+        let model = Model::new(warm(Side::Right, Control::Load)).unwrap();
+        let mut workspace = model.workspace();
+        let mut inputs = Inputs {
+            normal_load: load,
+            wheel_speed: 20.0 / 0.46,
+            vehicle_speed: 20.0,
+            ..Inputs::default()
+        };
+        let rates = Inputs {
+            lateral_displacement: -10e-3,
+            yaw_angle: -3e-2,
+            roll_angle: -0.4e-2,
+            ..Inputs::ZERO
+        };
+        let mut state = model.initial_state(&mut workspace, &inputs).unwrap();
+        let mut staggered = 0;
+        let mut most = 0.0_f64;
+        for step in 0..800 {
+            let result = model.step(&mut workspace, &mut state, &inputs, &rates, 1e-3);
+            assert!(result.is_ok(), "{load} N, step {step}: {result:?}");
+            inputs = inputs.advanced(&rates, 1e-3);
+            staggered += usize::from(state.convergence.staggered);
+            most = most.max(state.outputs.contacts);
+            if !state.convergence.staggered {
+                // The force on the wheelset is the load, to the tolerance of the split's mechanics.
+                assert!(
+                    (state.outputs.force_z / load - 1.0).abs() < 1e-4,
+                    "{load} N, step {step}"
+                );
+            }
+        }
+        assert!(most >= 2.0, "{load} N: {most} contacts");
+        assert!(staggered <= 16, "{load} N: {staggered} of 800 steps staggered");
+    }
+}
+
+/// Derivatives of a step of all outputs with respect to all inputs, places and motion of wheelset and rail among them, on the tread and where tread
+/// and gauge corner carry, under a load and at a height.
+#[test]
+fn a_step_has_the_derivatives_of_its_differences() {
+    for (lateral, control) in [(1e-3, Control::Load), (5e-3, Control::Load), (2e-3, Control::Height)] {
+        let inputs = Inputs {
+            normal_load: if control == Control::Load { 40e3 } else { 0.0 },
+            wheel_speed: 20.1 / 0.46,
+            vehicle_speed: 20.0,
+            lateral_displacement: -lateral,
+            vertical_displacement: if control == Control::Height { -0.15e-3 } else { 0.0 },
+            yaw_angle: 1e-3,
+            incoming_temperature: 310.0,
+            incoming_wear_depth: 2e-7,
+            ..Inputs::default()
+        };
+        let compared = derivatives::check(warm(Side::Right, control), inputs, 1e-3).unwrap();
+        assert!(compared > 100, "{compared}");
+    }
+}
+
+/// A wheel on its flange's tip, or beside the rail, is refused with its place; the state is the one before.
+#[test]
+fn a_wheel_off_the_rail_is_refused() {
+    let model = Model::new(warm(Side::Right, Control::Load)).unwrap();
+    let mut workspace = model.workspace();
+    let at = |lateral: f64| Inputs {
+        lateral_displacement: -lateral,
+        wheel_speed: 20.0 / 0.46,
+        vehicle_speed: 20.0,
+        ..Inputs::default()
+    };
+    for lateral in [0.03, 0.06, -0.1] {
+        let error = model
+            .initial_state(&mut workspace, &at(lateral))
+            .unwrap_err()
+            .to_string();
+        let place = format!("lateral_displacement = {} m", -lateral);
+        assert!(
+            error.contains("has left the rail") && error.contains(&place),
+            "{lateral}: {error}"
+        );
+    }
+    let mut state = model.initial_state(&mut workspace, &at(0.0)).unwrap();
+    let before = state.clone();
+    let stopped = model
+        .step(&mut workspace, &mut state, &at(0.03), &Inputs::ZERO, 1e-3)
+        .unwrap_err();
+    assert!(stopped.error.to_string().contains("has left the rail"), "{stopped:?}");
+    assert_eq!((stopped.committed, state), (0.0, before));
+}
+
+/// Poses at which two contacts lie close together are found from nothing.
+#[test]
+fn two_contacts_are_found_from_nothing() {
+    let parameters = Parameters {
+        contact_model: ContactModel::Profiles,
+        slip_source: SlipSource::VehicleSpeed,
+        side: Side::Left,
+        ..Parameters::default()
+    };
+    let model = Model::new(parameters).unwrap();
+    for (load, lateral, roll) in [
+        (40e3, 5.1e-3, 3.647273e-4),
+        (40e3, 5.2e-3, 3.893471e-4),
+        (35e3, 5.0e-3, 3.5e-4),
+        (35e3, 5.1e-3, 3.5e-4),
+        (35e3, 5.2e-3, 3.5e-4),
+    ] {
+        let inputs = Inputs {
+            normal_load: load,
+            wheel_speed: 43.478,
+            vehicle_speed: 20.0,
+            lateral_displacement: lateral,
+            roll_angle: roll,
+            ..Inputs::default()
+        };
+        let outputs = start(&model, &inputs).outputs;
+        assert!(
+            (outputs.force_z / load - 1.0).abs() < 1e-6,
+            "{lateral}: {}",
+            outputs.force_z
+        );
+    }
 }

@@ -89,7 +89,7 @@ impl Engine for SurfaceOperators {
     fn split_settings(settings: &Settings) -> SplitSettings {
         SplitSettings {
             // The load is found to this by the height of the wheel.
-            mechanics_alone_tolerance: settings.patch_split().mechanics_alone_tolerance.max(1e-8),
+            mechanics_alone_tolerance: settings.patch_split().mechanics_alone_tolerance.max(1e-9),
             ..settings.patch_split()
         }
     }
@@ -193,9 +193,9 @@ impl Engine for SurfaceOperators {
                 &problem.of(&place),
                 &fields.windows[window],
                 &mut own.patch,
-                &mut own.interface,
+                &mut own.image,
             );
-            own.interface.put_window(interface, window);
+            own.image.put_window(interface, window);
         }
     }
 

@@ -41,6 +41,8 @@ pub struct SurfaceOperators {
     pub shapes: Vec<PatchOperators>,
     /// The bodies as half-spaces.
     pub pair: HalfSpaces,
+    /// Position of the flange's tip on the wheel's profile, from the running circle to the field side, `m`.
+    pub flange_tip: f64,
     /// Strips of the rail by the number of their breadth.
     gauge_faces: Vec<GaugeFace>,
 }
@@ -103,6 +105,7 @@ impl SurfaceOperators {
         Ok(SurfaceOperators {
             scan: scan.collect(),
             rail,
+            flange_tip: flange_tip(&wheel),
             wheel,
             side: if parameters.side == Side::Right { -1.0 } else { 1.0 },
             shapes: shapes
@@ -144,6 +147,19 @@ fn bodies(parameters: &Parameters) -> Result<(PlacedRail, Wheel)> {
         offset: 0.5 * parameters.flange_back_distance + parameters.flange_back_position,
     };
     Ok((rail, wheel))
+}
+
+/// Position on a wheel's profile from the running circle to the field side where its radius is largest towards the middle of the track, `m`; of a
+/// wheel without a flange its end.
+fn flange_tip(wheel: &Wheel) -> f64 {
+    /// Distance of the places that are looked at, `m`.
+    const STEP: f64 = 0.1e-3;
+    let height = |place: f64| wheel.profile.value_slope_curvature(place)[0];
+    let first = wheel.profile.range()[0];
+    let places = (0..)
+        .map(|number| first + f64::from(number) * STEP)
+        .take_while(|place| *place < 0.0);
+    places.min_by(|a, b| height(*a).total_cmp(&height(*b))).unwrap_or(first)
 }
 
 /// Profile that a parameter names: one that is built in, or a file.

@@ -4,12 +4,13 @@ use super::contacts::{self, CONTACTS, Wanted};
 use super::fields::SurfaceFields;
 use super::mechanics::SurfaceProblem;
 use super::operators::SurfaceOperators;
+use super::search::Search;
 use super::solvers::SurfaceSolvers;
 use super::windows::{Place, Region, Sizes, WINDOWS};
 use crate::contact::fields::Fields;
 use crate::contact::patch::fields::PatchFields;
-use crate::error::Result;
-use crate::geometry::unrolled::PlacedWheel;
+use crate::error::{Error, Result};
+use crate::geometry::unrolled::{PlacedWheel, WheelsetPosition};
 use crate::mechanics::patch::normal::is_free;
 
 /// Approach for which windows are placed over that which is expected.
@@ -46,6 +47,9 @@ pub fn place(
         known.unwrap_or_else(|| expected_approach(problem, before, now.touch - pose.position.height, solvers));
     solvers.reference = approach;
     now.approach[0] = approach;
+    if approach > 0.0 {
+        check_on_rail(problem, &solvers.search, &pose.at_height(now.touch))?;
+    }
     let source = before.or(known.map(|_| &*now));
     want(problem, source, approach, solvers);
     if known.is_some() {
@@ -89,6 +93,24 @@ pub fn place(
         own_solvers.gap.copy_from_slice(&own_solvers.patch.undeformed.gap);
     }
     Ok(())
+}
+
+/// Refuses a wheel that has climbed onto its flange's tip, or is not over the rail.
+fn check_on_rail(problem: &SurfaceProblem, search: &Search, position: &WheelsetPosition) -> Result<()> {
+    let (operators, inputs) = (problem.operators, &problem.conditions.inputs);
+    let stands = search.first().is_some_and(|(number, along)| {
+        let last = operators.scan.len() - 1;
+        let at = PlacedWheel::new(&operators.wheel, position);
+        let place = at.profile_position(&at.distance(along, &operators.scan[number].1, 0.0));
+        (1..last).contains(&number) && place > operators.flange_tip && place < operators.wheel.profile.range()[1]
+    });
+    if stands {
+        return Ok(());
+    }
+    Err(Error::WheelOffRail {
+        lateral: inputs.lateral_displacement - inputs.rail_lateral_displacement,
+        roll: inputs.roll_angle - inputs.rail_roll_angle,
+    })
 }
 
 /// Approach to expect, `m`: the given one, or that of the step before under the load of this one, or that of ellipses.

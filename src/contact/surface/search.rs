@@ -96,6 +96,45 @@ impl Search {
         height
     }
 
+    /// Number of the point of the scan at which the bodies touch first, and its place along the rail, `m`; none where they do not.
+    pub fn first(&self) -> Option<(usize, f64)> {
+        let rooms = self
+            .points
+            .iter()
+            .enumerate()
+            .filter(|(_, point)| point.rise > LEAST_RISE);
+        let least = rooms.min_by(|(_, a), (_, b)| (a.distance / a.rise).total_cmp(&(b.distance / b.rise)));
+        least.map(|(number, point)| (number, point.along))
+    }
+
+    /// Change of the height at which the bodies touch first, with a change of the position at an unchanged height, `m`. The points are those at the
+    /// position, at that height: the least room of the parabola through three of them stays 0.
+    pub fn touch_change(
+        &self,
+        operators: &SurfaceOperators,
+        position: &WheelsetPosition,
+        change: &WheelsetPosition,
+    ) -> f64 {
+        let Some((middle, _)) = self
+            .first()
+            .filter(|(point, _)| (1..self.points.len() - 1).contains(point))
+        else {
+            return 0.0;
+        };
+        let wheel = PlacedWheel::new(&operators.wheel, position);
+        let three = [middle - 1, middle, middle + 1].map(|point| {
+            let Closest {
+                along, distance, rise, ..
+            } = self.points[point];
+            let at = wheel.distance(along, &operators.scan[point].1, distance);
+            (distance / rise, wheel.distance_change(&at, change) / rise)
+        });
+        let [(before, before_change), (here, here_change), (after, after_change)] = three;
+        let ratio = 0.5 * (before - after) / (before + after - 2.0 * here);
+        let sides = [0.5 * (ratio * ratio - ratio), 0.5 * (ratio * ratio + ratio)];
+        -((1.0 - ratio * ratio) * here_change + sides[0] * before_change + sides[1] * after_change)
+    }
+
     /// Way that the wheel may be lowered until it touches, `m`: the smallest at the points, and on the parabolas through three of them.
     fn room(&self) -> f64 {
         let room = |point: usize| {

@@ -44,8 +44,10 @@ pub struct WindowSolvers {
     length: Option<usize>,
     /// View that the cells have of wheel and rail.
     pub geometry: WindowGeometry,
-    /// Part of the interface vector of all windows.
+    /// Part of the interface vector of all windows that the tractions are solved for.
     pub interface: Interface,
+    /// Part of one that is read off fields, or off a change of them.
+    pub image: Interface,
     /// Cells under pressure before a sweep.
     pub contact_before: Contact,
     /// Vertical force of the friction on the wheel over that of the pressure.
@@ -91,6 +93,7 @@ impl WindowSolvers {
             length: None,
             geometry: WindowGeometry::new(operators),
             interface: Interface::new(first.grid.strips * first.grid.cells, 1),
+            image: Interface::new(first.grid.strips * first.grid.cells, 1),
             contact_before: Contact::new(&first.grid),
             friction_share: 0.0,
             gap: vec![0.0; first.grid.len()],

@@ -9,6 +9,7 @@ use super::fields::SurfaceFields;
 use super::geometry::WindowGeometry;
 use super::mechanics::{SurfaceProblem, vertical_forces};
 use super::operators::SurfaceOperators;
+use super::search::Search;
 use super::solvers::SurfaceSolvers;
 use super::windows::{BREADTHS, LENGTHS, WINDOWS};
 use crate::contact::engine::{Along, Direction, Linearised};
@@ -37,6 +38,10 @@ pub struct SurfaceTangent {
     unit: SurfaceFields,
     /// Change of the vertical force in it, `N`; 0 where the height is given.
     stiffness: f64,
+    /// Search of contacts at the position of the wheelset.
+    search: Search,
+    /// Change of the approach along the direction where the height is given, `m`.
+    approach: f64,
     /// Interface vector without a change.
     nothing: Interface,
 }
@@ -87,6 +92,8 @@ impl SurfaceTangent {
             apart: Apart::new(operators),
             unit: SurfaceFields::new(operators),
             stiffness: 0.0,
+            search: Search::new(operators),
+            approach: 0.0,
             nothing: Interface::new(WINDOWS * grid.strips * grid.cells, 1),
         }
     }
@@ -117,6 +124,8 @@ impl SurfaceTangent {
             }
         }
         self.stiffness = 0.0;
+        self.search
+            .touch(problem.operators, &problem.pose().position, fields.touch);
         if problem.is_height_given() {
             return Ok(());
         }
@@ -170,10 +179,14 @@ impl SurfaceTangent {
             &direction.inputs,
             problem.parameters,
         );
-        if !problem.is_height_given() {
-            // What the inputs say of the height does not count: the load sets it.
-            moved.position.height = 0.0;
-        }
+        let height = moved.position.height;
+        moved.position.height = 0.0;
+        let touching = pose.at_height(fields.touch);
+        let touch = self.search.touch_change(operators, &touching, &moved.position);
+        // What the inputs say of the height counts where it is given. Under a load the wheel first follows the rail, at an unchanged approach.
+        moved.position.height = if problem.is_height_given() { height } else { touch };
+        self.approach = touch - moved.position.height;
+        change.touch = touch;
         let wheel = PlacedWheel::new(&operators.wheel, &pose.at_height(problem.height(fields)));
         for (window, place) in fields.used() {
             let own = &mut self.windows[window];
@@ -258,12 +271,15 @@ pub fn tractions(at: &mut Linearised<SurfaceOperators>, along: &Along, change: &
         apart,
         unit,
         stiffness,
+        approach,
         ..
     } = &mut *at.tangent;
     let scale = problem.operators.shapes[0].scales.displacement;
     // The first guess is the change at an unchanged height: what the height has added is taken off again.
-    add(unit, -change.approach[0] / scale, change);
-    change.approach[0] = 0.0;
+    if !problem.is_height_given() {
+        add(unit, -change.approach[0] / scale, change);
+        change.approach[0] = 0.0;
+    }
     let mut parts = Parts {
         problem,
         fields: at.fields,
@@ -276,6 +292,7 @@ pub fn tractions(at: &mut Linearised<SurfaceOperators>, along: &Along, change: &
     let force = vertical_force(problem.operators, change);
     if problem.is_height_given() {
         change.load = force;
+        change.approach[0] = *approach;
         return Ok(());
     }
     // A contact whose load does not grow as the wheel is lowered has no height for a load.
