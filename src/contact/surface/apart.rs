@@ -1,8 +1,8 @@
 //! Displacement by the pressure of one window of the surface under another.
 //!
 //! Contacts of one wheel are some millimetres to centimetres from each other, and the surface sinks by a few per cent of the approach
-//! about a contact. The pressure of blocks of cells is taken as that of points in their centres of force, and the displacement found at
-//! a few places of the other window and interpolated between them: it is smooth there.
+//! about a contact. The pressure of blocks of cells is taken as a force and its moments in the block's middle, which are linear in the pressure, and the
+//! displacement found at a few places of the other window and interpolated between them: it is smooth there.
 //!
 //! At one height of the wheel the windows are solved in turn, each for what the others do to it by then (Gauss and Seidel), until that rests: the
 //! pressures minimise one energy together, and each solution lowers it.
@@ -18,19 +18,24 @@ const BLOCK: [usize; 2] = [4, 6];
 /// Strips and cells between the places of the target.
 const STRIDE: [usize; 2] = [4, 6];
 
-/// Resultant of the pressure on a block.
+/// Resultant of the pressure on a block: force and its first moments about the block's middle, over the unit of pressure.
 #[derive(Debug, Clone, Copy, Default)]
 struct Resultant {
+    /// Force, `m²`.
     force: f64,
-    along: f64,
-    across: f64,
+    /// Moments along and across, `m³`.
+    moments: [f64; 2],
+    /// Place of the middle along the rail and its arc length, `m`.
+    middle: [f64; 2],
 }
 
 impl Resultant {
-    /// Force over the distance from a place, which counts as at least so much.
+    /// ∫ p/r dA at a place, to the first order in the block's size over the distance, which counts as at least so much.
     fn at(&self, along: f64, across: f64, least: f64) -> f64 {
-        let distance = (along - self.along).hypot(across - self.across);
-        self.force / distance.max(least)
+        let [x, y] = [along - self.middle[0], across - self.middle[1]];
+        let distance = x.hypot(y).max(least);
+        let [moment_x, moment_y] = self.moments;
+        (self.force + (moment_x * x + moment_y * y) / (distance * distance)) / distance
     }
 }
 
@@ -145,24 +150,28 @@ fn resultants(grid: &Grid, place: &Place, fields: &PatchFields, found: &mut Vec<
     found.clear();
     let middle = place.middle_along(grid);
     for strips in (0..grid.strips).step_by(BLOCK[0]) {
+        let strips = strips..(strips + BLOCK[0]).min(grid.strips);
+        let across = 0.5 * (place.arc(grid, strips.start) + place.arc(grid, strips.end - 1));
         for cells in (0..grid.cells).step_by(BLOCK[1]) {
-            let (mut force, mut size, mut along, mut across) = (0.0, 0.0, 0.0, 0.0);
-            for strip in strips..(strips + BLOCK[0]).min(grid.strips) {
-                let arc = place.arc(grid, strip);
-                for cell in cells..(cells + BLOCK[1]).min(grid.cells) {
-                    let pressure = fields.pressure[grid.place(strip, cell)];
-                    force += pressure;
-                    size += pressure.abs();
-                    along += pressure.abs() * (middle + grid.x(cell));
-                    across += pressure.abs() * arc;
+            let cells = cells..(cells + BLOCK[1]).min(grid.cells);
+            let along = middle + 0.5 * (grid.x(cells.start) + grid.x(cells.end - 1));
+            let mut own = Resultant {
+                middle: [along, across],
+                ..Resultant::default()
+            };
+            let mut acts = false;
+            for strip in strips.clone() {
+                let y = place.arc(grid, strip) - across;
+                for cell in cells.clone() {
+                    let force = fields.pressure[grid.place(strip, cell)] * grid.cell_area();
+                    acts |= force != 0.0;
+                    own.force += force;
+                    own.moments[0] += force * (middle + grid.x(cell) - along);
+                    own.moments[1] += force * y;
                 }
             }
-            if size > 0.0 {
-                found.push(Resultant {
-                    force: force * grid.cell_area(),
-                    along: along / size,
-                    across: across / size,
-                });
+            if acts {
+                found.push(own);
             }
         }
     }
