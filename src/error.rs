@@ -89,6 +89,16 @@ pub enum Error {
     /// A profile of wheel or rail that does not serve.
     #[error(transparent)]
     Profile(ProfileError),
+    /// A profile that a parameter names does not serve.
+    #[error("{name} = {text:?}: {reason}")]
+    NamedProfile {
+        /// Parameter.
+        name: &'static str,
+        /// Its value.
+        text: String,
+        /// Profile's own error.
+        reason: ProfileError,
+    },
     /// A contact has become larger than the window it was sought in; the step is tried again with a larger one.
     #[error("the contact has become larger than the window it was sought in")]
     ContactOutgrowsWindow,

@@ -25,6 +25,7 @@ mod logging;
 mod odd_calls;
 mod probes;
 mod probes_fmi3;
+mod profiles;
 mod sequences;
 #[cfg(target_os = "linux")]
 mod soak;

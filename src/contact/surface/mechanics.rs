@@ -119,7 +119,7 @@ pub fn solve(
     for (window, place) in fields.used() {
         let own = &mut solvers.windows[window];
         own.interface.take_window(interface, window);
-        own.contact_before.clone_from(&own.patch.contact);
+        own.contact_before.copy_from(&own.patch.contact);
         let [normal, friction] = vertical_forces(problem.operators, &place, &fields.windows[window]);
         own.friction_share = if normal > 0.0 { friction / normal } else { 0.0 };
     }

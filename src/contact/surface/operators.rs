@@ -175,7 +175,12 @@ fn profile(parameter: &'static str, text: &str, body: Body, parameters: &Paramet
             Profile::read(&path, &options)
         }
     };
-    let profile = profile.map_err(Error::Profile)?;
-    profile.require(body).map_err(Error::Profile)?;
+    let named = |reason| Error::NamedProfile {
+        name: parameter,
+        text: text.to_owned(),
+        reason,
+    };
+    let profile = profile.map_err(named)?;
+    profile.require(body).map_err(named)?;
     Ok(profile)
 }

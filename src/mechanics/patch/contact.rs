@@ -46,6 +46,12 @@ impl Contact {
         }
     }
 
+    /// Takes the cells of another one, without allocating.
+    pub fn copy_from(&mut self, other: &Contact) {
+        self.runs.clone_from(&other.runs);
+        self.cells = other.cells;
+    }
+
     /// Lists the cells for which `inside` holds, given their places.
     pub fn list(&mut self, grid: &Grid, inside: impl Fn(usize) -> bool) {
         self.runs.clear();
