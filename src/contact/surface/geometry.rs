@@ -9,7 +9,7 @@ use crate::geometry::unrolled::{Distance, PlacedWheel, RailPoint, WheelsetMotion
 use crate::parameters::Parameters;
 use crate::signals::Inputs;
 
-/// Distance that is added where another window has the surface, `m`: far more than any approach.
+/// Distance that is added where another window has the surface, and beyond the places where contacts are sought, `m`: far more than any approach.
 const ELSEWHERE: f64 = 1e-2;
 
 /// Position of the wheelset but for the height of its middle, and its motion, both relative to the rail; of one side.
@@ -160,10 +160,16 @@ impl WindowGeometry {
             height: 1.0,
             ..WheelsetPosition::default()
         };
+        let [first, last] = operators.rail.range();
         let mut first_guess = 0.0;
         for strip in 0..grid.strips {
             let arc = place.arc(grid, strip);
-            let elsewhere = if own[0] <= arc && arc < own[1] { 0.0 } else { ELSEWHERE };
+            let on_head = (first..=last).contains(&arc);
+            let elsewhere = if on_head && own[0] <= arc && arc < own[1] {
+                0.0
+            } else {
+                ELSEWHERE
+            };
             let point = operators.rail.at(arc);
             let tangent = point.tangent();
             let mut guess = first_guess;
@@ -173,13 +179,16 @@ impl WindowGeometry {
                 at
             });
             first_guess = found[0].distance;
-            let (distances, rises) = (
-                found.map(|at| at.distance),
-                found.map(|at| wheel.distance_change(&at, &up)),
-            );
-            for (at, weights) in grid.row(strip).zip(&interpolation.cells) {
+            let rises = found.map(|at| wheel.distance_change(&at, &up));
+            // Between two nodes by what is known at both: where the rail is steep the distance bends sharply far from the contact, and a polynomial through
+            // all nodes would swing. dh/dx = −g_x/(g·n).
+            let jets = found.map(|at| [at.distance, -half * at.gradient[0], half * half * at.curvature_along]);
+            let cells = interpolation.cells.iter().zip(&interpolation.spans);
+            for (at, (weights, (node, spans))) in grid.row(strip).zip(cells) {
                 self.rise[at] = between(weights, &rises);
-                undeformed.gap[at] = (between(weights, &distances) + elsewhere) / scale;
+                let ends = jets[*node].iter().chain(&jets[node + 1]);
+                let distance: f64 = spans.iter().zip(ends).map(|(weight, value)| weight * value).sum();
+                undeformed.gap[at] = (distance + elsewhere) / scale;
             }
             let velocities = found.map(|at| wheel.velocity(&at, motion));
             set_slip(grid, strip, motion, interpolation, tangent, &velocities, undeformed);

@@ -43,6 +43,8 @@ const STIFFNESSES: [f64; 2] = [0.7, 4.0];
 const FIRST_TOLERANCE: f64 = 1e-3;
 /// Error of the pressure at an approach over that of the load at the one before.
 const TOLERANCE_SHARE: f64 = 0.03;
+/// Approach that counts for a step of it, over that of the largest load.
+const LEAST_SIZE: f64 = 0.05;
 /// Limit of the rounds over windows that displace each other.
 const ROUNDS: usize = 60;
 /// Error of the pressure, relative, at which the cells under pressure are found.
@@ -252,17 +254,22 @@ struct Approaches {
     stiffness: f64,
     /// Approaches known to be too small and too large, `m`.
     bracket: [f64; 2],
+    /// Approach that counts for the size of a step at least, `m`: a rail that bulges carries at an approach of nothing, and below.
+    size: f64,
 }
 
 impl Approaches {
     fn new(problem: &SurfaceProblem, fields: &SurfaceFields, solvers: &SurfaceSolvers) -> Approaches {
+        let bracket = [f64::NEG_INFINITY, f64::INFINITY];
+        let size = LEAST_SIZE * problem.operators.shapes[0].scales.displacement;
         if problem.is_height_given() {
             return Approaches {
                 load: None,
                 approach: solvers.reference,
                 last: None,
                 stiffness: 0.0,
-                bracket: [0.0, f64::INFINITY],
+                bracket,
+                size,
             };
         }
         let (load, approach) = (
@@ -272,7 +279,8 @@ impl Approaches {
         Approaches {
             load: Some(load),
             approach,
-            bracket: [0.0, f64::INFINITY],
+            bracket,
+            size,
             last: None,
             // Hertz's load is as the approach to the power of 3/2.
             stiffness: if fields.stiffness > 0.0 {
@@ -296,15 +304,16 @@ impl Approaches {
             && (excess - excess_before).abs() > SHOWS_STIFFNESS * error
         {
             let slope = (excess - excess_before) / (self.approach - before);
-            let [least, most] = STIFFNESSES.map(|stiffness| stiffness / self.approach);
+            let [least, most] = STIFFNESSES.map(|stiffness| stiffness / self.approach.max(self.size));
             self.stiffness = slope.clamp(least, most);
         }
         self.last = Some([self.approach, excess]);
         // Half way to no contact at most, and to twice the approach: where another contact begins to carry, the stiffness jumps.
         let next = self.approach - excess / self.stiffness;
-        self.approach = next.clamp(0.5 * self.approach, 2.0 * self.approach);
+        let size = self.approach.abs().max(self.size);
+        self.approach = next.clamp(self.approach - 0.5 * size, self.approach + size);
         let [low, high] = self.bracket;
-        if self.approach <= low || self.approach >= high {
+        if low.is_finite() && high.is_finite() && !(low < self.approach && self.approach < high) {
             self.approach = 0.5 * (low + high);
         }
     }
@@ -332,13 +341,12 @@ fn press_at(
         for (window, place) in fields.used() {
             let scale = operators.of(&place).scales.displacement;
             let displaced = solvers.apart.displace(operators, window, &place);
-            change = f64::max(change, displaced * scale / approach);
+            change = f64::max(change, displaced * scale / approach.abs().max(LEAST_SIZE * scale));
             press_window(problem, approach, fields, solvers, (window, place), tolerance)?;
             solvers.apart.take(operators, fields, window, &place);
         }
-        // The second window has seen the first.
-        let coupled = solvers.apart.is_coupled();
-        if !coupled || round > 0 && change <= tolerance {
+        // In the second round the first window has seen the others as well; of one contact nothing comes back.
+        if change <= tolerance && (round > 0 || !solvers.apart.is_coupled()) {
             break;
         }
     }

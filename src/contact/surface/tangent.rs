@@ -350,8 +350,8 @@ impl Parts<'_> {
                     .max(largest(&self.windows[window].gap))
                     .max(largest(&self.apart.displacement[window]));
             }
-            // Of one window nothing comes back.
-            if !self.apart.is_coupled() || round > 0 && left <= self.tolerance * size {
+            // Of one contact nothing comes back.
+            if left <= self.tolerance * size && (round > 0 || !self.apart.is_coupled()) {
                 break;
             }
         }

@@ -105,9 +105,10 @@ fn the_change_of_the_geometry_is_its_difference() {
                     let ends = row(&ahead).iter().zip(row(&behind)).zip(row(&tangent));
                     for ((ahead, behind), tangent) in ends {
                         let difference = (ahead - behind) / (2.0 * step);
-                        // The third derivative over the step's square, and round-off over the step.
+                        // The third derivative over the step's square, round-off over the step, and that the gap is interpolated between two nodes, its
+                        // change between all.
                         assert!(
-                            (difference - tangent).abs() < 2e-5 * size,
+                            (difference - tangent).abs() < 1e-4 * size,
                             "{} {number}: {difference:e} {tangent:e}",
                             signal.name
                         );
