@@ -1,6 +1,6 @@
 //! Position and motion of the wheelset over the rail, and what the cells of a window see of them.
 
-use super::interpolation::{Interpolation, NODES, between};
+use super::interpolation::{Interpolation, NODES};
 use super::operators::SurfaceOperators;
 use super::windows::Place;
 use crate::body::grid::Grid;
@@ -180,15 +180,12 @@ impl WindowGeometry {
             });
             first_guess = found[0].distance;
             let rises = found.map(|at| wheel.distance_change(&at, &up));
-            // Between two nodes by what is known at both: where the rail is steep the distance bends sharply far from the contact, and a polynomial through
-            // all nodes would swing. dh/dx = −g_x/(g·n).
+            // dh/dx = −g_x/(g·n).
             let jets = found.map(|at| [at.distance, -half * at.gradient[0], half * half * at.curvature_along]);
             let cells = interpolation.cells.iter().zip(&interpolation.spans);
-            for (at, (weights, (node, spans))) in grid.row(strip).zip(cells) {
-                self.rise[at] = between(weights, &rises);
-                let ends = jets[*node].iter().chain(&jets[node + 1]);
-                let distance: f64 = spans.iter().zip(ends).map(|(weight, value)| weight * value).sum();
-                undeformed.gap[at] = (distance + elsewhere) / scale;
+            for (at, (near, span)) in grid.row(strip).zip(cells) {
+                self.rise[at] = near.of(&rises);
+                undeformed.gap[at] = (span.of(&jets) + elsewhere) / scale;
             }
             let velocities = found.map(|at| wheel.velocity(&at, motion));
             set_slip(grid, strip, motion, interpolation, tangent, &velocities, undeformed);
@@ -219,8 +216,8 @@ impl WindowGeometry {
         let both = (&change.position, &change.motion);
         for (strip, (point, nodes)) in self.points.iter().zip(&self.nodes).enumerate() {
             let distances = nodes.map(|at| wheel.distance_change(&at, &change.position));
-            for (at, weights) in grid.row(strip).zip(&interpolation.cells) {
-                undeformed.gap[at] = between(weights, &distances) / scale;
+            for (at, near) in grid.row(strip).zip(&interpolation.cells) {
+                undeformed.gap[at] = near.of(&distances) / scale;
             }
             let velocities = nodes.map(|at| wheel.velocity_change(&at, point, &pose.motion, both));
             let tangent = point.tangent();
@@ -254,10 +251,10 @@ fn set_slip(
     ];
     // The cell ahead is the next one for V ≥ 0, else the one before.
     let behind = usize::from(motion.velocity[0] < 0.0);
-    for (cell, weights) in interpolation.ends.iter().enumerate() {
+    for (cell, near) in interpolation.ends.iter().enumerate() {
         let at = grid.place(strip, cell + behind);
         for (component, slips) in slips.iter().enumerate() {
-            undeformed.rigid_slip[component][at] = between(weights, slips);
+            undeformed.rigid_slip[component][at] = near.of(slips);
         }
     }
 }
