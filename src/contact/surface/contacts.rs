@@ -12,7 +12,7 @@ use super::windows::{Region, WINDOWS};
 /// Contacts that are looked at.
 pub const CONTACTS: usize = 3 * WINDOWS;
 /// Extent of the region that a window is placed for over that of the contact in it.
-const GROWTH: f64 = 1.16;
+const GROWTH: f64 = 1.08;
 /// Extent over that of such a region within which its window finds other contacts by itself, and the sinking is not known well.
 const BESIDE: f64 = 1.8;
 /// Breadth of a contact over (∫f ds)²/∫f² ds of its force per breadth f: of an ellipse.

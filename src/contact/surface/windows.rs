@@ -22,9 +22,9 @@ const MARGIN: [f64; 2] = [1.5, 1.0];
 /// Least share of a window's length that the region in it takes up, before the window becomes shorter.
 const LEAST_SHARE: f64 = 0.36;
 /// Share of a window's strips that the narrowest contact in it has at least when a window is placed, and when it stays.
-const FEWEST_STRIPS: [f64; 2] = [0.3, 0.25];
+const FEWEST_STRIPS: [f64; 2] = [0.4, 0.32];
 /// Largest share of a window's strips that the narrowest contact has in a window that stays.
-const MOST_STRIPS: f64 = 0.66;
+const MOST_STRIPS: f64 = 0.85;
 
 /// Size and place of a window.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
