@@ -1,4 +1,5 @@
-//! Steps on a rough track (`rough_track.csv`, written by `tools/rough_track.py`): line and patch on several grids, all effects on.
+//! Steps on a rough track (`rough_track.csv`, written by `tools/rough_track.py`): line, patch on several grids, and profiles with one contact on the
+//! tread and with two, all effects on.
 //! Percentiles, the ratio to the line's step in the same run, and the iterations of the patch's solvers a step, which are the same on
 //! every machine.
 //!
@@ -8,6 +9,7 @@ mod braking;
 mod timing;
 
 use timing::thread_time;
+use wheelrail::parameters::ContactModel;
 use wheelrail::wheel_rail::Iterations;
 use wheelrail::{Inputs, Parameters, Simulation};
 
@@ -16,6 +18,22 @@ const WARM_UP: usize = 50;
 const ROUNDS: usize = 3;
 /// Cells along and across.
 const GRIDS: [(usize, usize); 5] = [(34, 21), (24, 15), (16, 11), (12, 9), (10, 7)];
+
+/// Lateral displacement of the left wheel S1002 on 60E1: on the tread, and where tread and gauge corner carry, `m`.
+const PROFILES: [(&str, f64); 2] = [("tread", 0.0), ("two", 5.0e-3)];
+/// Part of the track's spin that a contact of profiles has by its inclination, `1/m`.
+const INCLINED: f64 = 0.1;
+
+/// The same load, speeds and creepages for a wheelset at a displacement.
+fn on_profiles(track: &[Inputs], displacement: f64) -> Vec<Inputs> {
+    let inputs = |inputs: &Inputs| Inputs {
+        spin_rate: 0.0,
+        yaw_rate: inputs.spin_rate - INCLINED * inputs.vehicle_speed,
+        lateral_displacement: displacement,
+        ..*inputs
+    };
+    track.iter().map(inputs).collect()
+}
 
 /// Inputs at the communication points.
 fn track() -> Vec<Inputs> {
@@ -108,7 +126,19 @@ fn main() {
     let line = braking::parameters(Parameters::default().contact_nodes);
     let patches =
         GRIDS.map(|(cells, strips)| (format!("{cells} x {strips}"), braking::patch_parameters(cells, strips)));
-    let models = || std::iter::once((&line, &straight)).chain(patches.iter().map(|(_, patch)| (patch, &track)));
+    let profiles = PROFILES.map(|(name, displacement)| {
+        let patch = braking::patch_parameters(GRIDS[0].0, GRIDS[0].1);
+        let parameters = Parameters {
+            contact_model: ContactModel::Profiles,
+            ..patch
+        };
+        (name, parameters, on_profiles(&track, displacement))
+    });
+    let models = || {
+        std::iter::once((&line, &straight))
+            .chain(patches.iter().map(|(_, patch)| (patch, &track)))
+            .chain(profiles.iter().map(|(_, parameters, track)| (parameters, track)))
+    };
     let round = || -> Vec<Run> {
         models()
             .map(|(parameters, inputs)| Run::new(parameters, inputs))
@@ -133,6 +163,7 @@ fn main() {
     let median = best[0].quantile(0.5);
     for (name, run) in std::iter::once("line")
         .chain(patches.iter().map(|(name, _)| name.as_str()))
+        .chain(profiles.iter().map(|(name, ..)| *name))
         .zip(&best)
     {
         run.print(name, median);

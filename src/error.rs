@@ -94,10 +94,10 @@ pub enum Error {
     NamedProfile {
         /// Parameter.
         name: &'static str,
-        /// Its value.
+        /// Text that was given.
         text: String,
         /// Profile's own error.
-        reason: ProfileError,
+        reason: Box<ProfileError>,
     },
     /// A contact has become larger than the window it was sought in; the step is tried again with a larger one.
     #[error("the contact has become larger than the window it was sought in")]

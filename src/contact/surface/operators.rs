@@ -178,7 +178,7 @@ fn profile(parameter: &'static str, text: &str, body: Body, parameters: &Paramet
     let named = |reason| Error::NamedProfile {
         name: parameter,
         text: text.to_owned(),
-        reason,
+        reason: Box::new(reason),
     };
     let profile = profile.map_err(named)?;
     profile.require(body).map_err(named)?;

@@ -257,8 +257,8 @@ fn assign(problem: &SurfaceProblem, wanted: &[Wanted], now: &mut SurfaceFields) 
         own[window] = [low, high];
     }
     // A window without a region stays while nothing else needs its place: rail that it has heated rolls out of it.
-    for window in 0..WINDOWS {
-        if !taken[window] && !is_warm(now, window) {
+    for (window, taken) in taken.into_iter().enumerate() {
+        if !taken && !is_warm(now, window) {
             now.places[window] = None;
         }
     }
