@@ -81,9 +81,11 @@ impl Apart {
         resultants(&grid, place, &fields.windows[window], &mut self.resultants[window]);
     }
 
-    /// Sets the resultants to those of the pressure of the fields.
+    /// Begins with the resultants of the pressure of the fields, or of its change.
     pub fn set_resultants(&mut self, operators: &SurfaceOperators, fields: &SurfaceFields) {
         self.resultants.iter_mut().for_each(Vec::clear);
+        // How many rounds follow must not hang on what was solved before.
+        self.places.iter_mut().for_each(|places| places.fill(0.0));
         for (window, place) in fields.used() {
             let grid = operators.of(&place).grid;
             resultants(&grid, &place, &fields.windows[window], &mut self.resultants[window]);
