@@ -51,6 +51,7 @@ cargo() {
 # Commands in the running text that are more than `make` and a target, and what runs them.
 ELSEWHERE = {
     "cargo bench --bench patch": ("Cargo.toml", 'name = "patch"'),
+    "cargo bench --bench rough_track": ("Cargo.toml", 'name = "rough_track"'),
     "cargo doc --open": ("Makefile", "$(CARGO) doc"),
     "cargo run --release": ("src/lib.rs", 'include_str!("../README.md")'),
     "pip install dist/wheelrail-*linux*.whl": ("README.md", "pip install dist/wheelrail-*linux*.whl"),

@@ -19,7 +19,7 @@ from matplotlib.patches import Rectangle
 WHEELRAIL = REPOSITORY / "target" / "release" / "wheelrail"
 SPEED, LOAD = 20.0, 30e3  # m/s, N
 INCLINATION, HALF_GAUGE, GAUGE_DEPTH = 1 / 40, 0.7175, 0.014  # of the default parameters; m
-# Twice the default cells each way, for the picture; a window of profiles has twice as many strips.
+# Twice the default cells each way, for the picture; a window of profiles has half as many strips again.
 NODES, STRIPS = 68, 42
 PLACES = {"tread": 1e-3, "two places": 5e-3, "flange": 6.6e-3}
 
@@ -52,9 +52,10 @@ def windows(cells, rail):
     top = HALF_GAUGE - running_face(rail)
     arc = np.interp(cells["y"] - top, rail["y"], rail["arc_length"])
     arc -= np.interp(0.0, rail["y"], rail["arc_length"])
-    size = 2 * STRIPS * NODES
+    strips = (3 * STRIPS + 1) // 2
+    size = strips * NODES
     for start in range(0, len(cells), size):
-        shape = (2 * STRIPS, NODES)
+        shape = (strips, NODES)
         part = slice(start, start + size)
         yield tuple(np.reshape(values[part], shape) for values in (cells["x"].array, arc, cells["pressure"].array))
 
