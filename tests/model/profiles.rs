@@ -5,19 +5,13 @@ use wheelrail::parameters::{ContactModel, Control, FrictionLaw, Parameters, Side
 use wheelrail::signals::Inputs;
 use wheelrail::wheel_rail::{Model, State};
 
-/// Bodies of the Manchester contact benchmark.
+/// A wheel S1002 on a rail UIC60, of steel.
 fn bodies(side: Side) -> Parameters {
-    let (shear, poisson) = (82e9, 0.28);
-    let lame = 2.0 * shear * poisson / (1.0 - 2.0 * poisson);
     Parameters {
         contact_model: ContactModel::Profiles,
         slip_source: SlipSource::VehicleSpeed,
         rail_profile: "UIC60".to_owned(),
         side,
-        shear_modulus: shear,
-        lame_lambda: lame,
-        wheel_shear_modulus: shear,
-        wheel_lame_lambda: lame,
         friction_law: FrictionLaw::Constant,
         friction_cold: 0.3,
         ..Parameters::default()
@@ -161,10 +155,12 @@ fn a_wheelset_moves_onto_the_flange_step_by_step() {
             staggered += usize::from(state.convergence.staggered);
             most = most.max(state.outputs.contacts);
             if !state.convergence.staggered {
-                // The force on the wheelset is the load, to the tolerance of the split's mechanics.
+                // The force on the wheelset is the load, to the tolerance of the split's mechanics, 1e-4, and what the last change of temperature
+                // makes of the friction.
                 assert!(
-                    (state.outputs.force_z / load - 1.0).abs() < 1e-4,
-                    "{load} N, step {step}"
+                    (state.outputs.force_z / load - 1.0).abs() < 2e-4,
+                    "{load} N, step {step}: {} N",
+                    state.outputs.force_z
                 );
             }
         }
@@ -174,22 +170,42 @@ fn a_wheelset_moves_onto_the_flange_step_by_step() {
 }
 
 /// Derivatives of a step of all outputs with respect to all inputs, places and motion of wheelset and rail among them, on the tread and where tread
-/// and gauge corner carry, under a load and at a height.
+/// and gauge corner carry, under a load and at a height, and on a flange that is lubricated in part.
 #[test]
 fn a_step_has_the_derivatives_of_its_differences() {
-    for (lateral, control) in [(1e-3, Control::Load), (5e-3, Control::Load), (2e-3, Control::Height)] {
+    /// On the flange the normal turns as the wheel sinks. The step takes the distance as linear in the approach from the expected one on, which the
+    /// derivatives, taken at the approach that was found, do not know.
+    const FLANGE: [f64; 2] = [1e-3, 1e-5];
+    /// The place along the rail on a flange moves with yaw by the difference of two ways of 0.7 m/rad that all but cancel.
+    const LEFT_OUT: [(&str, &str); 2] = [("contact_offset", "yaw_angle"), ("contact.position[1]", "yaw_angle")];
+    let tread = [1e-4, 4e-6];
+    for (lateral, roll, load, control, tolerances) in [
+        (1e-3, 0.0, 40e3, Control::Load, tread),
+        (5e-3, 0.0, 40e3, Control::Load, tread),
+        (2e-3, 0.0, 40e3, Control::Height, tread),
+        (8e-3, -8e-3, 10e3, Control::Load, FLANGE),
+        (8e-3, -8e-3, 40e3, Control::Load, FLANGE),
+    ] {
         let inputs = Inputs {
-            normal_load: 40e3,
+            normal_load: load,
             wheel_speed: 20.1 / 0.46,
             vehicle_speed: 20.0,
             lateral_displacement: -lateral,
             vertical_displacement: if control == Control::Height { -0.15e-3 } else { 0.0 },
+            roll_angle: roll,
             yaw_angle: 1e-3,
             incoming_temperature: 310.0,
             incoming_wear_depth: 2e-7,
             ..Inputs::default()
         };
-        let compared = derivatives::check(warm(Side::Right, control), inputs, 1e-3).unwrap();
+        let parameters = Parameters {
+            gauge_face_friction_scale: 0.4,
+            gauge_face_angle: 0.9,
+            gauge_face_blend: 0.3,
+            ..warm(Side::Right, control)
+        };
+        let left_out = if tolerances == tread { &[][..] } else { &LEFT_OUT };
+        let compared = derivatives::check_within(parameters, inputs, 1e-3, tolerances, left_out).unwrap();
         assert!(compared > 100, "{compared}");
     }
 }

@@ -11,15 +11,17 @@ use super::windows::{Region, WINDOWS};
 
 /// Contacts that are looked at.
 pub const CONTACTS: usize = 3 * WINDOWS;
-/// Extent of the region that a window is placed for over that of the contact in it.
+/// Extent of the region that a window is placed for, over that of the contact in it: the contact may grow in a step.
 const GROWTH: f64 = 1.08;
-/// Extent over that of such a region within which its window finds other contacts by itself, and the sinking is not known well.
+/// Extent about such a region, over that of the region, in which no other contact is looked for: the window there finds it by itself, and so near a
+/// contact the sinking of the surface is not known well.
 const BESIDE: f64 = 1.8;
 /// Breadth of a contact over (∫f ds)²/∫f² ds of its force per breadth f: of an ellipse.
 const ELLIPSE: f64 = 1.2;
-/// Depth of an overlap over the approach that makes a contact: the sinking is known to a few per cent of the approach.
+/// Least depth, over the approach, by which the bodies overlap more than the surface sinks where a contact begins: the sinking is known to a few per cent of
+/// the approach.
 const LEAST_DEPTH: f64 = 0.02;
-/// Depth of a contact that carries for the order in which they are left out, `m`: more than any overlap.
+/// Depth that a contact which carries counts with where the shallowest are left out, `m`: more than any overlap.
 const CARRIES: f64 = 1.0;
 
 /// Region for a window, with the depth of the overlap.
@@ -31,17 +33,32 @@ pub struct Wanted {
     pub depth: f64,
 }
 
-/// Finds the contacts of the fields, grown as their load is, and the overlaps outside of them at an approach. They are listed from the gauge
-/// side to the field side, without allocating.
+/// Contacts to expect of fields.
+#[derive(Debug, Clone, Copy)]
+pub struct Expected {
+    /// Extent of the contacts over that in the fields.
+    pub growth: f64,
+    /// Load over that in the fields.
+    pub load_ratio: f64,
+    /// Approach, `m`.
+    pub approach: f64,
+}
+
+/// Finds the contacts of the fields, grown as is expected of them, and the overlaps outside of them at the expected approach. They are listed from
+/// the gauge side to the field side, without allocating.
 pub fn find(
     operators: &SurfaceOperators,
     fields: &SurfaceFields,
-    (growth, load_ratio): (f64, f64),
-    approach: f64,
+    expected: Expected,
     search: &Search,
     apart: &mut Apart,
     found: &mut Vec<Wanted>,
 ) {
+    let Expected {
+        growth,
+        load_ratio,
+        approach,
+    } = expected;
     found.clear();
     carrying(operators, fields, GROWTH * growth, found);
     apart.set_resultants(operators, fields);

@@ -111,6 +111,18 @@ impl Pose {
         }
     }
 
+    /// Change of the pose of a wheel that is lowered by an approach, `m`.
+    pub fn lowered(approach: f64) -> Pose {
+        Pose {
+            position: WheelsetPosition {
+                height: -approach,
+                ..WheelsetPosition::default()
+            },
+            motion: WheelsetMotion::default(),
+            rail_roll: 0.0,
+        }
+    }
+
     /// Position with the axle's middle at another height.
     pub fn at_height(&self, height: f64) -> WheelsetPosition {
         WheelsetPosition {
@@ -128,7 +140,15 @@ pub struct WindowGeometry {
     nodes: Vec<[Distance; NODES]>,
     /// Change of the distance with the height of the axle's middle, on the grid.
     pub rise: Vec<f64>,
+    /// Rigid slip over the nodes of the strips, `m/s`.
+    slips: Vec<NodeSlips>,
+    /// Change of the rigid slip with the height of the axle's middle, `1/s`: where the rail is steep, the wheel's material over a point of the rail then is
+    /// another one.
+    slip_rises: Vec<NodeSlips>,
 }
+
+/// Rigid slip along and across over the nodes of a strip, or a change of it.
+type NodeSlips = [[f64; NODES]; 2];
 
 impl WindowGeometry {
     /// Buffers for a window.
@@ -138,6 +158,8 @@ impl WindowGeometry {
             points: vec![RailPoint::default(); grid.strips],
             nodes: vec![[Distance::default(); NODES]; grid.strips],
             rise: vec![0.0; grid.len()],
+            slips: vec![[[0.0; NODES]; 2]; grid.strips],
+            slip_rises: vec![[[0.0; NODES]; 2]; grid.strips],
         }
     }
 
@@ -187,8 +209,11 @@ impl WindowGeometry {
                 self.rise[at] = near.of(&rises);
                 undeformed.gap[at] = (span.of(&jets) + elsewhere) / scale;
             }
-            let velocities = found.map(|at| wheel.velocity(&at, motion));
-            set_slip(grid, strip, motion, interpolation, tangent, &velocities, undeformed);
+            self.slips[strip] = slips_of(tangent, &found.map(|at| wheel.velocity(&at, motion)));
+            let still = WheelsetMotion::default();
+            let velocity_rises = found.map(|at| wheel.velocity_change(&at, &point, motion, (&up, &still)));
+            self.slip_rises[strip] = slips_of(tangent, &velocity_rises);
+            set_slip(grid, strip, motion, interpolation, &self.slips[strip], undeformed);
             self.points[strip] = point;
             self.nodes[strip] = found;
         }
@@ -199,6 +224,26 @@ impl WindowGeometry {
         self.points.copy_from_slice(&other.points);
         self.nodes.copy_from_slice(&other.nodes);
         self.rise.copy_from_slice(&other.rise);
+        self.slips.copy_from_slice(&other.slips);
+        self.slip_rises.copy_from_slice(&other.slip_rises);
+    }
+
+    /// Sets the rigid slip to that of a wheel that stands higher by `rise` `m` than in the position of the geometry.
+    pub fn raise_slip(
+        &self,
+        operators: &SurfaceOperators,
+        place: &Place,
+        motion: &WheelsetMotion,
+        rise: f64,
+        undeformed: &mut Undeformed,
+    ) {
+        let grid = &operators.of(place).grid;
+        for (strip, (slips, rises)) in self.slips.iter().zip(&self.slip_rises).enumerate() {
+            let raised = [0, 1].map(|component: usize| {
+                std::array::from_fn(|node| slips[component][node] + rise * rises[component][node])
+            });
+            set_slip(grid, strip, motion, &operators.along, &raised, undeformed);
+        }
     }
 
     /// Sets the change of gap and rigid slip with a change of the pose.
@@ -220,35 +265,29 @@ impl WindowGeometry {
                 undeformed.gap[at] = near.of(&distances) / scale;
             }
             let velocities = nodes.map(|at| wheel.velocity_change(&at, point, &pose.motion, both));
-            let tangent = point.tangent();
-            set_slip(
-                grid,
-                strip,
-                &pose.motion,
-                interpolation,
-                tangent,
-                &velocities,
-                undeformed,
-            );
+            let slips = slips_of(point.tangent(), &velocities);
+            set_slip(grid, strip, &pose.motion, interpolation, &slips, undeformed);
         }
     }
 }
 
-/// Sets the rigid slip of a strip, or its change, half way from each cell to the one ahead of it: that of the rail relative to the wheel's material,
-/// whose velocity is given at the nodes.
+/// Rigid slip over the nodes of a strip, or its change: that of the rail relative to the wheel's material, whose velocity is given.
+fn slips_of(tangent: [f64; 2], velocities: &[[f64; 3]; NODES]) -> NodeSlips {
+    [
+        velocities.map(|[x, ..]| -x),
+        velocities.map(|[_, y, z]| -(y * tangent[0] + z * tangent[1])),
+    ]
+}
+
+/// Sets the rigid slip of a strip, or its change, half way from each cell to the one ahead of it, from that over the nodes.
 fn set_slip(
     grid: &Grid,
     strip: usize,
     motion: &WheelsetMotion,
     interpolation: &Interpolation,
-    tangent: [f64; 2],
-    velocities: &[[f64; 3]; NODES],
+    slips: &NodeSlips,
     undeformed: &mut Undeformed,
 ) {
-    let slips = [
-        velocities.map(|[x, ..]| -x),
-        velocities.map(|[_, y, z]| -(y * tangent[0] + z * tangent[1])),
-    ];
     // The cell ahead is the next one for V ≥ 0, else the one before.
     let behind = usize::from(motion.velocity[0] < 0.0);
     for (cell, near) in interpolation.ends.iter().enumerate() {

@@ -141,9 +141,16 @@ pub fn solve(
         return Ok(TractionChange::NONE);
     }
     press(problem, fields, solvers, tolerance)?;
+    let motion = problem.pose().motion;
+    let lowered = fields.approach[0] - solvers.reference;
     let mut change = TractionChange::NONE;
     for (window, place) in fields.used() {
         let own = &mut solvers.windows[window];
+        if !problem.is_height_given() {
+            let undeformed = &mut own.patch.undeformed;
+            own.geometry
+                .raise_slip(problem.operators, &place, &motion, -lowered, undeformed);
+        }
         let set_changed = own.patch.contact != own.contact_before;
         let patch = problem.of(&place);
         let own_change = mechanics::follow(

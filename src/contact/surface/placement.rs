@@ -1,6 +1,6 @@
-//! Placement of the windows at the beginning of a step: about the regions in which wheel and rail overlap.
+//! Placement of the windows at the beginning of a step: about the contacts of the step before, and those that begin.
 
-use super::contacts::{self, CONTACTS, Wanted};
+use super::contacts::{self, CONTACTS, Expected, Wanted};
 use super::fields::SurfaceFields;
 use super::mechanics::SurfaceProblem;
 use super::operators::SurfaceOperators;
@@ -13,11 +13,12 @@ use crate::error::{Error, Result};
 use crate::geometry::unrolled::{PlacedWheel, WheelsetPosition};
 use crate::mechanics::patch::normal::is_free;
 
-/// Approach for which windows are placed over that which is expected.
+/// Approach that windows are placed for, over the expected one.
 const AHEAD: f64 = 1.03;
-/// Distance of two regions, in parts of their mean breadth, below which they share a window.
+/// Distance of two regions, over their mean breadth, below which they share a window that resolves both.
 const NEAR: f64 = 0.5;
-/// Distance below which they do so in any case. The regions have a margin: those of contacts that touch overlap.
+/// Distance, over the mean breadth, below which they share one in any case: regions are larger than their contacts, and those of contacts that
+/// touch overlap.
 const TOUCHES: f64 = -0.05;
 /// Strips that the smaller of two regions must have left in a window of both.
 const LEAST_STRIPS: f64 = 8.0;
@@ -146,16 +147,12 @@ fn want(problem: &SurfaceProblem, source: Option<&SurfaceFields>, approach: f64,
     let room = problem.conditions.room;
     if let Some(source) = source.filter(|source| source.approach[0] > 0.0) {
         let load_ratio = (approach / source.approach[0]).powf(1.5);
-        let growth = room * load_ratio.cbrt().max(1.0);
-        contacts::find(
-            problem.operators,
-            source,
-            (growth, load_ratio),
-            approach * AHEAD,
-            search,
-            apart,
-            wanted,
-        );
+        let expected = Expected {
+            growth: room * load_ratio.cbrt().max(1.0),
+            load_ratio,
+            approach: approach * AHEAD,
+        };
+        contacts::find(problem.operators, source, expected, search, apart, wanted);
     }
     if wanted.is_empty() {
         // The overlaps come from the field side to the gauge side.

@@ -7,7 +7,7 @@
 use super::operators::SurfaceOperators;
 use super::windows::Region;
 use crate::geometry::hertz::HertzEllipse;
-use crate::geometry::unrolled::{PlacedWheel, WheelsetPosition};
+use crate::geometry::unrolled::{PlacedWheel, RailPoint, WheelsetPosition};
 
 /// Regions that a search may find.
 pub const REGIONS: usize = 8;
@@ -87,13 +87,40 @@ impl Search {
             }
             height -= room;
             if room.abs() <= LINEAR {
-                for point in &mut self.points {
-                    point.distance -= room * point.rise;
-                }
+                self.lower(room);
+                height -= self.sharpen(operators, &WheelsetPosition { height, ..*position });
                 break;
             }
         }
         height
+    }
+
+    /// Lowers the wheel over the points by a small way, `m`.
+    fn lower(&mut self, way: f64) {
+        for point in &mut self.points {
+            point.distance -= way * point.rise;
+        }
+    }
+
+    /// Finds the points exactly about the first one that touches, at the position at which the others are to the first order, and lowers the wheel by what
+    /// it may still be lowered, which is returned, `m`.
+    fn sharpen(&mut self, operators: &SurfaceOperators, position: &WheelsetPosition) -> f64 {
+        let inner = 1..self.points.len() - 1;
+        let Some((middle, _)) = self.first().filter(|(point, _)| inner.contains(point)) else {
+            return 0.0;
+        };
+        let wheel = PlacedWheel::new(&operators.wheel, position);
+        for number in middle - 1..=middle + 1 {
+            let Closest { along, distance, .. } = self.points[number];
+            let (arc, point) = &operators.scan[number];
+            self.points[number] = closest(&wheel, *arc, point, (along, distance));
+        }
+        let room = self.room();
+        if !room.is_finite() {
+            return 0.0;
+        }
+        self.lower(room);
+        room
     }
 
     /// Number of the point of the scan at which the bodies touch first, and its place along the rail, `m`; none where they do not.
@@ -166,21 +193,10 @@ impl Search {
     /// Finds the closest places of all points.
     fn scan(&mut self, operators: &SurfaceOperators, position: &WheelsetPosition) {
         let wheel = PlacedWheel::new(&operators.wheel, position);
-        let rise = WheelsetPosition {
-            height: 1.0,
-            ..WheelsetPosition::default()
-        };
         let mut guess = (0.0, 0.0);
         for (found, (arc, point)) in self.points.iter_mut().zip(&operators.scan) {
-            let (along, at) = wheel.closest(point, guess);
-            guess = (along, at.distance);
-            *found = Closest {
-                arc: *arc,
-                along,
-                distance: at.distance,
-                rise: wheel.distance_change(&at, &rise),
-                curvature: at.curvature_along,
-            };
+            *found = closest(&wheel, *arc, point, guess);
+            guess = (found.along, found.distance);
         }
     }
 
@@ -248,6 +264,22 @@ impl Search {
             }
         }
         0.5 * (low + high)
+    }
+}
+
+/// Wheel over a point of the rail's profile, where it is closest along the rail, from a guess of the place and the distance.
+fn closest(wheel: &PlacedWheel, arc: f64, point: &RailPoint, guess: (f64, f64)) -> Closest {
+    let rise = WheelsetPosition {
+        height: 1.0,
+        ..WheelsetPosition::default()
+    };
+    let (along, at) = wheel.closest(point, guess);
+    Closest {
+        arc,
+        along,
+        distance: at.distance,
+        rise: wheel.distance_change(&at, &rise),
+        curvature: at.curvature_along,
     }
 }
 

@@ -6,7 +6,7 @@
 
 use super::apart::Apart;
 use super::fields::SurfaceFields;
-use super::geometry::WindowGeometry;
+use super::geometry::{Pose, WindowGeometry};
 use super::mechanics::{SurfaceProblem, vertical_forces};
 use super::operators::SurfaceOperators;
 use super::search::Search;
@@ -131,16 +131,15 @@ impl SurfaceTangent {
         }
         self.unit.clear();
         self.unit.copy_places(fields);
-        for (window, _) in fields.used() {
+        let (pose, operators) = (problem.pose(), problem.operators);
+        let wheel = PlacedWheel::new(&operators.wheel, &pose.at_height(problem.height(fields)));
+        let lowered = Pose::lowered(operators.shapes[0].scales.displacement);
+        for (window, place) in fields.used() {
             let own = &mut self.windows[window];
-            own.patch
-                .undeformed
-                .rigid_slip
-                .iter_mut()
-                .for_each(|slip| slip.fill(0.0));
-            for (gap, rise) in own.gap.iter_mut().zip(&own.geometry.rise) {
-                *gap = -rise;
-            }
+            let undeformed = &mut own.patch.undeformed;
+            own.geometry
+                .set_change(operators, &place, &wheel, (&pose, &lowered), undeformed);
+            own.gap.copy_from_slice(&undeformed.gap);
         }
         let tolerance =
             <SurfaceOperators as crate::contact::engine::Engine>::sensitivity_settings(problem.settings).tolerance;

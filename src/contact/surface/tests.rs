@@ -1,3 +1,4 @@
+use super::apart::Apart;
 use super::geometry::{Pose, WindowGeometry};
 use super::operators::SurfaceOperators;
 use super::transfer::Transfer;
@@ -120,6 +121,61 @@ fn the_change_of_the_geometry_is_its_difference() {
                     }
                 }
             }
+        }
+    }
+}
+
+/// The displacement of one window by the pressure of another is the sum over its cells as point forces, to the second order in the size of a block over
+/// the distance: of a/r, the interpolation between places that are d from each other leaves d²/4r² or less, the block as much.
+#[test]
+fn windows_displace_each_other_as_their_cells_do() {
+    let parameters = parameters(Control::Load);
+    let operators = SurfaceOperators::build(&parameters).unwrap();
+    let inputs = Inputs {
+        normal_load: 20e3,
+        vertical_displacement: 0.0,
+        ..displaced(5e-3)
+    };
+    let state = run(&parameters, &inputs, 0);
+    let own = fields(&state);
+    let loaded = |window: &usize| own.windows[*window].pressure.iter().any(|&pressure| pressure > 0.0);
+    assert_eq!(own.used().filter(|(window, _)| loaded(window)).count(), 2);
+    let mut apart = Apart::new(&operators);
+    apart.set_resultants(&operators, own);
+    for (window, place) in own.used() {
+        apart.displace(&operators, window, &place);
+        let patch = operators.of(&place);
+        let unit = operators.pair.normal() * patch.scales.pressure / patch.scales.displacement;
+        let at = |place: &super::windows::Place, strip: usize, cell: usize| {
+            let grid = &operators.of(place).grid;
+            [place.middle_along(grid) + grid.x(cell), place.arc(grid, strip)]
+        };
+        let touching = (0..patch.grid.strips).flat_map(|strip| (0..patch.grid.cells).map(move |cell| (strip, cell)));
+        for (strip, cell) in
+            touching.filter(|(strip, cell)| own.windows[window].pressure[patch.grid.place(*strip, *cell)] > 0.0)
+        {
+            let [x, y] = at(&place, strip, cell);
+            let (mut sum, mut nearest) = (0.0, f64::INFINITY);
+            for (other, from) in own.used().filter(|(other, _)| *other != window) {
+                let grid = &operators.of(&from).grid;
+                for (row, column) in (0..grid.strips).flat_map(|row| (0..grid.cells).map(move |column| (row, column))) {
+                    let [u, v] = at(&from, row, column);
+                    let force = own.windows[other].pressure[grid.place(row, column)] * grid.cell_area();
+                    let distance = (x - u).hypot(y - v);
+                    sum += force / distance;
+                    if force > 0.0 {
+                        nearest = f64::min(nearest, distance);
+                    }
+                }
+            }
+            let found = apart.displacement[window][patch.grid.place(strip, cell)];
+            let block = f64::max(6.0 * patch.grid.length, 4.0 * patch.grid.breadth);
+            let allowed = (0.5 * (block / nearest).powi(2)).min(0.1);
+            assert!(
+                (found / (unit * sum) - 1.0).abs() < allowed,
+                "{strip} {cell}: {found} {} {allowed}",
+                unit * sum
+            );
         }
     }
 }
