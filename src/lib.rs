@@ -136,8 +136,8 @@ pub use geometry::profile::files as profile_files;
 pub use geometry::profile::{Body, CurvePoint, HeightFunction, Profile};
 pub use geometry::wheelset as contact_geometry;
 pub use parameters::{
-    ContactModel, Control, FrictionLaw, INTEGER_PARAMETERS, MeshKind, NormalSolver, Parameters, REAL_PARAMETERS, Side,
-    SlipSource, TEXT_PARAMETERS, Wheel, WheelHeating,
+    ContactModel, Control, FrictionLaw, INTEGER_PARAMETERS, MeshKind, NormalSolver, Parameters, PatchGeometry,
+    REAL_PARAMETERS, Side, SlipSource, TEXT_PARAMETERS, Wheel, WheelHeating,
 };
 pub use settings::Settings;
 pub use signals::{ContactOutputs, INPUTS, Inputs, OUTPUTS, Outputs};

@@ -10,7 +10,7 @@
 //! where the symbol is that of the equations, where there is one. The order is that of the table and of a saved state.
 //!
 //! An input that only one slip_source uses has the column `by creepage` or `by vehicle_speed`, one that only a given height
-//! uses `by height`; one that not every contact model takes has the column `only […]` with those that do. The end of its
+//! uses `by height`, one that only a patch of given geometry uses `by geometry`; one that not every contact model takes has the column `only […]` with those that do. The end of its
 //! description follows from these columns. What each of up to [`CONTACTS`] contacts has is a table of its own: a row there is
 //! a field of [`ContactOutputs`], and as many rows of [`OUTPUTS`] as there are contacts.
 
@@ -24,7 +24,7 @@ mod tests;
 mod totals;
 
 use crate::error::{Error, Result};
-use crate::parameters::{ContactModel, Control, Parameters, SlipSource, check_range};
+use crate::parameters::{ContactModel, Control, Parameters, PatchGeometry, SlipSource, check_range};
 use serde::{Deserialize, Serialize};
 
 use motion::LARGEST_SPEED;
@@ -72,6 +72,8 @@ pub enum UsedBy {
     SlipSource(SlipSource),
     /// Choice of `control`.
     Control(Control),
+    /// Choice of `patch_geometry`.
+    PatchGeometry(PatchGeometry),
 }
 
 impl UsedBy {
@@ -80,6 +82,11 @@ impl UsedBy {
         match self {
             UsedBy::SlipSource(source) => ("slip_source", source as i32 + 1, SlipSource::NAMES[source as usize]),
             UsedBy::Control(control) => ("control", control as i32 + 1, Control::NAMES[control as usize]),
+            UsedBy::PatchGeometry(geometry) => (
+                "patch_geometry",
+                geometry as i32 + 1,
+                PatchGeometry::NAMES[geometry as usize],
+            ),
         }
     }
 
@@ -88,6 +95,7 @@ impl UsedBy {
         match self {
             UsedBy::SlipSource(_) => UsedBy::SlipSource(parameters.slip_source),
             UsedBy::Control(_) => UsedBy::Control(parameters.control),
+            UsedBy::PatchGeometry(_) => UsedBy::PatchGeometry(parameters.patch_geometry),
         }
     }
 }
@@ -193,6 +201,19 @@ inputs! {
     rail_lateral_speed: "m/s", start 0.0, range [-100.0, 100.0], nominal 0.1, only [profiles];
     /// Vertical velocity of the rail, positive upward
     rail_vertical_speed: "m/s", start 0.0, range [-100.0, 100.0], nominal 0.1, only [profiles];
+    /// Rolling radius of the wheel at the contact
+    rolling_radius "r": "m", by geometry, start 0.46, range [0.05, 5.0], nominal 0.5;
+    /// Sum of the curvatures of wheel and rail along the rail at the contact
+    longitudinal_curvature "1/R_x": "1/m", by geometry, start 1.0 / 0.46, range [1e-3, 1e3], nominal 1.0;
+    /// Sum of the curvatures of wheel and rail across the rail at the contact
+    transverse_curvature "1/R_y": "1/m", by geometry, start 1.0 / 0.3, range [1e-3, 1e3], nominal 1.0;
+    /// Penetration of the undeformed wheel into the undeformed rail along the normal of the contact, negative where they are apart
+    contact_penetration: "m" shown in "µm", by height, start 0.0, range [-0.1, 1e-2], nominal 1e-4, only [patch];
+    /// Rate of contact_penetration, for normal_damping
+    contact_penetration_speed: "m/s", by height, start 0.0, range [-100.0, 100.0], nominal 0.1, only [patch];
+    /// Inclination of the contact to the plane of the track, about the axis along the track, positive where its left side is
+    /// higher: force_y and force_z are the contact's forces turned by it
+    contact_inclination "δ": "rad" shown in "deg", start 0.0, range [-1.6, 1.6], nominal 0.1, only [patch];
 }
 
 outputs! {
@@ -255,11 +276,11 @@ outputs! {
     /// Wear number: creep forces and spin moment times their creepages, work per distance rolled
     wear_number "Tγ": "N", Instantaneous, nominal 100.0, only [patch, profiles];
     /// Force of the contacts on the wheelset along the track, positive forward
-    force_x "F_x": "N" shown in "kN", Instantaneous, nominal 1e4, only [profiles];
+    force_x "F_x": "N" shown in "kN", Instantaneous, nominal 1e4, only [patch, profiles];
     /// Force of the contacts on the wheelset across the track, positive to the left
-    force_y: "N" shown in "kN", Instantaneous, nominal 1e4, only [profiles];
+    force_y: "N" shown in "kN", Instantaneous, nominal 1e4, only [patch, profiles];
     /// Force of the contacts on the wheelset perpendicular to the track, positive upward
-    force_z "F_z": "N" shown in "kN", Instantaneous, nominal 6e4, only [profiles];
+    force_z "F_z": "N" shown in "kN", Instantaneous, nominal 6e4, only [patch, profiles];
     /// Moment of the contacts on the wheelset about the axis through its centre along the track
     moment_x "M_x": "N.m" shown in "kN.m", Instantaneous, nominal 1e4, only [profiles];
     /// Moment of the contacts on the wheelset about the axis through its centre across the track, to the left
@@ -268,6 +289,8 @@ outputs! {
     moment_z: "N.m" shown in "kN.m", Instantaneous, nominal 1e4, only [profiles];
     /// Number of contacts
     contacts: "1", Counted, at least 0.0, nominal 1.0, only [profiles];
+    /// Normal force of the contact, of profiles the sum over the contacts; with normal_damping where control is height
+    normal_force "N": "N" shown in "kN", Instantaneous, at least 0.0, nominal 6e4;
 }
 
 contact_outputs! {

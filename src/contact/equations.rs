@@ -34,8 +34,10 @@ impl<E: Engine> Problem<'_, E> {
             Control::Penetration => {
                 Constraint::Penetration(self.parameters.prescribed_penetration / self.operators.displacement_scale())
             }
-            // The height is in the gap.
-            Control::Height => Constraint::Penetration(0.0),
+            // Of profiles it is 0: the height is in their gap.
+            Control::Height => Constraint::Penetration(
+                self.conditions.inputs.contact_penetration / self.operators.displacement_scale(),
+            ),
         }
     }
 

@@ -5,7 +5,7 @@ use super::on_wheelset::OneContact;
 use super::problem::StepConditions;
 use super::rim;
 use crate::friction;
-use crate::parameters::{ContactModel, Parameters};
+use crate::parameters::{ContactModel, Control, Parameters};
 use crate::signals::{ContactOutputs, Inputs, Motion, Outputs, Totals};
 
 impl Integrals {
@@ -37,14 +37,19 @@ impl Integrals {
         }
     }
 
-    /// Writes the outputs that a patch has and a line contact does not: forces across the rail and about its normal, the contact's
-    /// extent across.
-    fn add_patch(&self, motion: &Motion, outputs: &mut Outputs) {
+    /// Writes the outputs that a patch has and a line contact does not: forces across the rail and about its normal, and in the axes of the track, the
+    /// contact's extent across.
+    fn add_patch(&self, parameters: &Parameters, inputs: &Inputs, motion: &Motion, outputs: &mut Outputs) {
+        outputs.normal_force *= damping(parameters, inputs.contact_penetration_speed);
         let force = self.unit_force();
         outputs.lateral_force = -force * self.sums.lateral_shear;
         outputs.spin_moment = -force * self.sums.spin_moment;
         outputs.contact_breadth = self.contact_breadth;
         outputs.contact_area = self.contact_area;
+        let (sine, cosine) = inputs.contact_inclination.sin_cos();
+        outputs.force_x = outputs.traction_force;
+        outputs.force_y = cosine * outputs.lateral_force - sine * outputs.normal_force;
+        outputs.force_z = sine * outputs.lateral_force + cosine * outputs.normal_force;
         // The signs are those of the forces on the wheel and of its motion; |V| makes it the work per distance either way.
         outputs.wear_number = (outputs.traction_force * motion.rigid_slip
             - outputs.lateral_force * motion.lateral_speed
@@ -55,6 +60,10 @@ impl Integrals {
     /// Writes the outputs that profiles have: forces on the wheelset, the contacts one by one.
     fn add_profiles(&self, ambient: f64, outputs: &mut Outputs) {
         let all = &self.on_wheelset;
+        outputs.normal_force = all.contacts[..all.count]
+            .iter()
+            .map(|contact| contact.normal_force)
+            .sum();
         [outputs.force_x, outputs.force_y, outputs.force_z] = all.force;
         [outputs.moment_x, outputs.moment_y, outputs.moment_z] = all.moment;
         outputs.friction_torque = all.torque;
@@ -102,7 +111,8 @@ impl Integrals {
         let free = friction::coefficient(parameters, ambient + self.peak_rise).0 * inputs.friction_scale;
         let mut outputs = Outputs {
             traction_force,
-            friction_torque: -(traction_force * parameters.wheel_radius + load * offset),
+            normal_force: load,
+            friction_torque: -(traction_force * inputs.radius(parameters) + load * offset),
             peak_temperature: ambient + self.peak_rise,
             traction_coefficient: -sums.per_pressure(sums.shear),
             slip_creepage: creepage(&motion),
@@ -137,7 +147,7 @@ impl Integrals {
         };
         match parameters.contact_model {
             ContactModel::Line => {}
-            ContactModel::Patch => self.add_patch(&motion, &mut outputs),
+            ContactModel::Patch => self.add_patch(parameters, inputs, &motion, &mut outputs),
             ContactModel::Profiles => self.add_profiles(ambient, &mut outputs),
         }
         outputs
@@ -156,6 +166,15 @@ impl Integrals {
     /// Totals at the end of a step that began with those of `before`.
     pub fn totals_after(&self, parameters: &Parameters, conditions: &StepConditions, before: &Totals) -> Totals {
         before.grown(&self.total_rates(parameters, &conditions.inputs), conditions.duration)
+    }
+}
+
+/// Factor on the normal force of a contact at the speed of its approach, `m/s` (Hunt and Crossley, J. Appl. Mech. 42, 1975): the force is continuous where
+/// the contact begins, and never pulls.
+pub fn damping(parameters: &Parameters, speed: f64) -> f64 {
+    match parameters.control {
+        Control::Height => (1.0 + parameters.normal_damping * speed).max(0.0),
+        Control::Load | Control::Penetration => 1.0,
     }
 }
 

@@ -197,6 +197,12 @@ impl<'a> PlacedWheel<'a> {
         add(motion.velocity, cross(self.angular_velocity(motion), at.arm), 1.0)
     }
 
+    /// Speed at which the wheelset approaches a rail's point along its normal, `m/s`: its turning about the axle moves no surface.
+    pub fn approach_speed(&self, at: &Distance, point: &RailPoint, motion: &WheelsetMotion) -> f64 {
+        let [_, across, up] = self.velocity(at, &WheelsetMotion { spin: 0.0, ..*motion });
+        -(across * point.normal[0] + up * point.normal[1])
+    }
+
     /// Change of that velocity over a rail's point with those of position and motion, `m/s`.
     pub fn velocity_change(
         &self,

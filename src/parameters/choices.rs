@@ -38,7 +38,8 @@ choices! {
         Load "load",
         /// The penetration is given, the load follows (the paper's case).
         Penetration "penetration",
-        /// The height of the wheelset is given, the load follows: how a multibody code couples. Of profiles alone.
+        /// The height of the wheelset over profiles is given, or at each instant the penetration of a patch; the load follows: how a
+        /// multibody code couples.
         Height "height",
     }
 
@@ -85,6 +86,14 @@ choices! {
         /// Elastic, the default: its compliance adds to the rail's (`body::pair`). Of the rail's material it rolls freely at
         /// creepage 0.
         Elastic "elastic",
+    }
+
+    /// Geometry of a patch.
+    PatchGeometry {
+        /// The parameters': constant.
+        Parameters "parameters",
+        /// The inputs' at each instant, for a vehicle code that searches the contacts itself.
+        Inputs "inputs",
     }
 
     /// Side of the track.

@@ -20,7 +20,9 @@ mod text;
 mod validation;
 
 pub use crate::geometry::hertz::HertzEllipse;
-pub use choices::{ContactModel, Control, FrictionLaw, MeshKind, NormalSolver, Side, SlipSource, Wheel, WheelHeating};
+pub use choices::{
+    ContactModel, Control, FrictionLaw, MeshKind, NormalSolver, PatchGeometry, Side, SlipSource, Wheel, WheelHeating,
+};
 pub use range::check_range;
 pub use source::{ProfileSource, path_of};
 pub use table::{

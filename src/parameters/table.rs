@@ -10,7 +10,7 @@
 //! where the symbol is that of the equations, where there is one. The order is that of the table and of a saved state.
 
 use super::choices::{
-    ContactModel, Control, FrictionLaw, MeshKind, NormalSolver, Side, SlipSource, Wheel, WheelHeating,
+    ContactModel, Control, FrictionLaw, MeshKind, NormalSolver, PatchGeometry, Side, SlipSource, Wheel, WheelHeating,
 };
 use super::range::check_range;
 use super::text::check_text;
@@ -151,8 +151,8 @@ enum ParameterRow {
 
 parameters! {
     /// What is prescribed in the normal direction: 1 load (input normal_load), 2 penetration (parameter
-    /// prescribed_penetration; not where contact_model is profiles), 3 height (input vertical_displacement; only where
-    /// contact_model is profiles)
+    /// prescribed_penetration; not where contact_model is profiles), 3 height (input vertical_displacement where
+    /// contact_model is profiles, input contact_penetration where it is patch)
     control: Control = choice { Control::Load }
     /// Which inputs define the motion: 1 creepage (wheel_speed and creepage), 2 vehicle_speed (wheel_speed and
     /// vehicle_speed)
@@ -301,6 +301,13 @@ parameters! {
     /// Rise of the inclination beyond gauge_face_angle over which gauge_face_friction_scale comes to act in full, used where
     /// contact_model is profiles
     gauge_face_blend: f64 = real { "rad" shown in "deg", std::f64::consts::PI / 18.0, 1e-3, std::f64::consts::FRAC_PI_2 }
+    /// Geometry of the bodies, used where contact_model is patch: 1 parameters (wheel_radius, rail_transverse_curvature and
+    /// wheel_transverse_curvature), 2 inputs (rolling_radius, longitudinal_curvature and transverse_curvature; the parameters
+    /// and largest_load size the contact window)
+    patch_geometry: PatchGeometry = choice { PatchGeometry::Parameters }
+    /// Damping of the approach, used where control is height: the normal force is multiplied by 1 + normal_damping times the
+    /// speed of the approach; friction, heat and wear do not see it
+    normal_damping: f64 = real { "s/m", 0.0, 0.0, 1e3, tunable }
 }
 
 /// The start values of the friction table: the default piecewise linear law, its hot end repeated.
@@ -540,6 +547,7 @@ mod tests {
         assert_eq!(lower(Wheel::ALL), Wheel::NAMES);
         assert_eq!(lower(WheelHeating::ALL), WheelHeating::NAMES);
         assert_eq!(lower(Side::ALL), Side::NAMES);
+        assert_eq!(lower(PatchGeometry::ALL), PatchGeometry::NAMES);
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! Checks of the parameters, once, before a model is built.
 
-use super::choices::{ContactModel, Control, FrictionLaw, MeshKind, NormalSolver, SlipSource};
+use super::choices::{ContactModel, Control, FrictionLaw, MeshKind, NormalSolver, PatchGeometry, SlipSource};
 use super::source::ProfileSource;
 use super::table::{INTEGER_PARAMETERS, Parameters, REAL_PARAMETERS, TEXT_PARAMETERS};
 use crate::error::{Error, Result};
@@ -36,6 +36,13 @@ impl Parameters {
         }
         self.validate_friction()?;
         self.validate_control()?;
+        if self.patch_geometry == PatchGeometry::Inputs && self.contact_model != ContactModel::Patch {
+            return combination(
+                ("patch_geometry", f64::from(self.patch_geometry as i32 + 1)),
+                self.model(),
+                "only contact_model = 2 (patch) takes its geometry from inputs; patch_geometry must be 1 (parameters) without it",
+            );
+        }
         match self.contact_model {
             ContactModel::Line => {
                 let window = self.window_half_width();
@@ -136,14 +143,14 @@ impl Parameters {
         Ok(())
     }
 
-    /// Refuses a height where there are no profiles, and a penetration where there are.
+    /// Refuses a height of a line contact, and a penetration where there are profiles.
     fn validate_control(&self) -> Result<()> {
         let control = ("control", f64::from(self.control as i32 + 1));
         match (self.control, self.contact_model) {
-            (Control::Height, ContactModel::Line | ContactModel::Patch) => combination(
+            (Control::Height, ContactModel::Line) => combination(
                 control,
                 self.model(),
-                "only contact_model = 3 (profiles) has a height; control must be 1 (load) or 2 (penetration) without it",
+                "a line contact has no height; control must be 1 (load) or 2 (penetration) with contact_model = 1 (line)",
             ),
             (Control::Penetration, ContactModel::Profiles) => combination(
                 control,

@@ -2,7 +2,7 @@
 
 use super::Inputs;
 use crate::error::Result;
-use crate::parameters::{Parameters, SlipSource, check_range};
+use crate::parameters::{Parameters, PatchGeometry, SlipSource, check_range};
 
 /// Reason why a speed is too large, as [`Parameters::largest_speed`] has it.
 pub const LARGEST_SPEED: &str = "the limit is 5 % of the speed of Rayleigh waves, up to which the compliance of rail and \
@@ -50,9 +50,17 @@ impl Inputs {
         )
     }
 
+    /// Rolling radius of the wheel, `m`: the parameter, or the input of a patch of given geometry.
+    pub fn radius(&self, parameters: &Parameters) -> f64 {
+        match parameters.patch_geometry {
+            PatchGeometry::Parameters => parameters.wheel_radius,
+            PatchGeometry::Inputs => self.rolling_radius,
+        }
+    }
+
     /// The motion that the inputs define: V, ω r₀ − V, v_y and ω_z.
     pub fn motion(&self, parameters: &Parameters) -> Motion {
-        let circumferential = self.wheel_speed * parameters.wheel_radius;
+        let circumferential = self.wheel_speed * self.radius(parameters);
         let rolling_speed = match parameters.slip_source {
             SlipSource::Creepage => circumferential / (1.0 + self.creepage),
             SlipSource::VehicleSpeed => self.vehicle_speed,
@@ -79,7 +87,11 @@ impl Inputs {
 
     /// The change of [`Inputs::motion`] with that of the inputs: dV, d(ω r₀ − V), dv_y and dω_z.
     pub fn motion_tangent(&self, change: &Inputs, parameters: &Parameters) -> Motion {
-        let circumferential = change.wheel_speed * parameters.wheel_radius;
+        let radius_change = match parameters.patch_geometry {
+            PatchGeometry::Parameters => 0.0,
+            PatchGeometry::Inputs => change.rolling_radius,
+        };
+        let circumferential = change.wheel_speed * self.radius(parameters) + self.wheel_speed * radius_change;
         let (rolling_speed, lateral_speed, spin_rate) = match parameters.slip_source {
             SlipSource::VehicleSpeed => (change.vehicle_speed, change.lateral_speed, change.spin_rate),
             SlipSource::Creepage => {

@@ -34,6 +34,9 @@ macro_rules! used_by {
     (height) => {
         Some(UsedBy::Control(Control::Height))
     };
+    (geometry) => {
+        Some(UsedBy::PatchGeometry(PatchGeometry::Inputs))
+    };
 }
 
 /// Writes what the column `by` says at the end of an input's description.
@@ -43,6 +46,9 @@ macro_rules! used_where {
     };
     (height) => {
         ", used where control is height"
+    };
+    (geometry) => {
+        ", used where patch_geometry is inputs"
     };
     ($source:ident) => {
         concat!(", used where slip_source is ", stringify!($source))

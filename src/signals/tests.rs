@@ -1,6 +1,6 @@
 use super::{CONTACTS, INPUTS, Inputs, OUTPUTS, Outputs, UsedBy};
 use crate::error::Error;
-use crate::parameters::{ContactModel, Control, Parameters, REAL_PARAMETERS, SlipSource};
+use crate::parameters::{ContactModel, Control, Parameters, PatchGeometry, REAL_PARAMETERS, SlipSource};
 
 /// A parameter is named in the refusal of an input exactly where it narrows the input's range.
 #[test]
@@ -82,6 +82,19 @@ fn the_motion_follows_from_the_inputs_that_its_source_uses() {
                     );
                     let words = format!("used where control is {}", Control::NAMES[user as usize]);
                     assert!(signal.description.contains(&words), "{}", signal.description);
+                }
+                Some(UsedBy::PatchGeometry(user)) => {
+                    assert_eq!(
+                        (user, moves, refused.is_ok()),
+                        (PatchGeometry::Inputs, false, false),
+                        "{}",
+                        signal.name
+                    );
+                    assert!(
+                        signal.description.contains("used where patch_geometry is inputs"),
+                        "{}",
+                        signal.description
+                    );
                 }
                 None => {
                     assert!(

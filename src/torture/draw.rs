@@ -2,7 +2,7 @@
 
 use super::random::Random;
 use crate::parameters::{
-    ContactModel, Control, FrictionLaw, Parameters, SlipSource, TABLE_POINTS, Wheel, WheelHeating,
+    ContactModel, Control, FrictionLaw, Parameters, Side, SlipSource, TABLE_POINTS, Wheel, WheelHeating,
 };
 
 /// Factor by which the contact window may be widened within the limits of [`Parameters::validate`]: for runs with a window wider
@@ -15,7 +15,8 @@ pub fn parameters(random: &mut Random, contact_model: ContactModel) -> Parameter
         let mut drawn = draw(random);
         match contact_model {
             ContactModel::Line => layer(random, &mut drawn),
-            ContactModel::Patch | ContactModel::Profiles => patch(random, &mut drawn),
+            ContactModel::Patch => patch(random, &mut drawn),
+            ContactModel::Profiles => profiles(random, &mut drawn),
         }
         if drawn.validate().is_ok() && with_window(&drawn, WIDEST_WINDOW).validate().is_ok() {
             return drawn;
@@ -111,16 +112,46 @@ fn patch(random: &mut Random, parameters: &mut Parameters) {
         _ => -random.decades(0.1, 10.0),
     };
     parameters.rail_transverse_curvature = sum - parameters.wheel_transverse_curvature;
-    // Few cells more often than many: they are the hard ones, and fast.
+    cells(random, parameters);
+    // The bulge of a hot rail adds to the load here, too.
+    let approach = parameters.hertz_ellipse(parameters.largest_load).approach;
+    parameters.prescribed_penetration = random.between(0.1, 0.3) * approach;
+}
+
+/// Draws the cells of a patch: few more often than many, because they are the hard ones, and fast.
+fn cells(random: &mut Random, parameters: &mut Parameters) {
     (parameters.patch_nodes, parameters.patch_strips) = match random.count(0, 5) {
         0 => (Parameters::default().patch_nodes, Parameters::default().patch_strips),
         1 => (random.count(20, 60), random.count(9, 31)),
         _ => (random.count(8, 26), random.count(3, 15)),
     };
-    // The bulge of a hot rail adds to the load here, too.
-    let approach = parameters.hertz_ellipse(parameters.largest_load).approach;
-    parameters.prescribed_penetration = random.between(0.1, 0.3) * approach;
 }
+
+/// Draws the parameters of profiles: those that are built in on both sides of the track, gauges and inclinations beyond what is usual, under a load and at a
+/// height.
+fn profiles(random: &mut Random, parameters: &mut Parameters) {
+    parameters.contact_model = ContactModel::Profiles;
+    parameters.slip_source = SlipSource::VehicleSpeed;
+    parameters.control = if random.chance(0.2) {
+        Control::Height
+    } else {
+        Control::Load
+    };
+    parameters.rail_profile = (*random.one_of(&RAILS)).to_owned();
+    parameters.wheel_profile = (*random.one_of(&WHEELS)).to_owned();
+    parameters.side = random.one_of(Side::ALL);
+    parameters.gauge = random.between(1.430, 1.450);
+    parameters.flange_back_distance = random.between(1.357, 1.363);
+    parameters.rail_inclination = random.one_of(&[0.0, 1.0 / 40.0, 1.0 / 20.0]);
+    parameters.gauge_face_friction_scale = random.one_of(&[1.0, 0.3]);
+    parameters.gauge_face_angle = random.between(0.3, 1.0);
+    parameters.normal_damping = random.one_of(&[0.0, 0.3]);
+    cells(random, parameters);
+}
+
+/// Rails and wheels of the runs with profiles.
+const RAILS: [&str; 5] = ["60E1", "60E2", "54E1", "49E1", "UIC60"];
+const WHEELS: [&str; 6] = ["S1002", "S1002", "cone20", "UIC519A", "UIC519B", "UIC519H"];
 
 /// The steepest friction of a table, `1/K`: the paper's. Where the coefficient rises much faster, a contact has several temperatures, and a
 /// step of any length may have to jump from one to another.

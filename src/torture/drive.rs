@@ -3,7 +3,7 @@
 //! is lifted.
 
 use super::random::Random;
-use crate::parameters::{ContactModel, Parameters, SlipSource};
+use crate::parameters::{ContactModel, Control, Parameters, SlipSource};
 use crate::signals::{INPUTS, Inputs};
 
 /// Largest rolling speed, `m/s`.
@@ -84,6 +84,9 @@ impl<'a> Drive<'a> {
         }
         if self.parameters.contact_model == ContactModel::Patch && random.chance(0.7) {
             set_lateral_motion(random, self.parameters, &mut inputs);
+        }
+        if self.parameters.contact_model == ContactModel::Profiles && random.chance(0.8) {
+            set_place(random, self.parameters, &mut inputs);
         }
         if random.chance(0.6) {
             inputs.normal_load = match random.count(0, 19) {
@@ -169,7 +172,7 @@ fn set_motion(random: &mut Random, parameters: &Parameters, inputs: &mut Inputs)
             _ => random.between(0.0, LARGEST_SPEED),
         };
     // A patch, whose pressure is higher, soon glows where it slides as fast as a line may.
-    let calm = parameters.contact_model == ContactModel::Patch && random.chance(0.8);
+    let calm = parameters.contact_model != ContactModel::Line && random.chance(0.8);
     let creepage = match random.count(0, 9) {
         0 => 0.0,
         1 if !calm => -1.0,
@@ -199,6 +202,36 @@ fn set_motion(random: &mut Random, parameters: &Parameters, inputs: &mut Inputs)
             inputs.creepage = creepage.max(-0.99);
             inputs.wheel_speed = speed * (1.0 + inputs.creepage) / parameters.wheel_radius;
         }
+    }
+}
+
+/// Draws place and motion of a wheelset over its track: hunting, flange climbing and now and then beyond the rail, yaw up to 60 mrad, irregularities of the
+/// rail; at a given height from lifted to pressed into the rail.
+fn set_place(random: &mut Random, parameters: &Parameters, inputs: &mut Inputs) {
+    let signed = |random: &mut Random, low: f64, high: f64| random.sign() * random.decades(low, high);
+    inputs.lateral_displacement = match random.count(0, 19) {
+        0 => random.between(-0.03, 0.03),
+        1..=5 => random.sign() * random.between(4e-3, 9e-3),
+        _ => random.between(-5e-3, 5e-3),
+    };
+    inputs.yaw_angle = match random.count(0, 3) {
+        0 => 0.0,
+        1 => random.between(-0.06, 0.06),
+        _ => signed(random, 1e-5, 0.02),
+    };
+    inputs.lateral_speed = signed(random, 1e-4, 0.3);
+    inputs.yaw_rate = signed(random, 1e-4, 0.3);
+    inputs.rail_lateral_displacement = random.one_of(&[0.0, 1e-3, -2e-3]);
+    inputs.rail_lateral_speed = random.one_of(&[0.0, 0.02]);
+    if parameters.control == Control::Height {
+        // About the height at which tread and head touch: where the flange does, the load may be more than is carried, and refused.
+        inputs.vertical_displacement = random.between(-3e-4, 2e-4);
+        inputs.vertical_speed = signed(random, 1e-4, 0.1);
+        inputs.roll_angle = 0.0;
+    } else {
+        inputs.roll_angle = random.one_of(&[0.0, 1.0]) * random.between(-0.01, 0.01);
+        inputs.roll_rate = signed(random, 1e-4, 0.1);
+        inputs.rail_roll_angle = random.one_of(&[0.0, 2e-3]);
     }
 }
 

@@ -41,7 +41,9 @@ pub enum Engines {
     Line,
     /// The patch.
     Patch,
-    /// Both in turn.
+    /// Profiles.
+    Profiles,
+    /// Line and patch in turn.
     #[default]
     Both,
 }
@@ -148,6 +150,7 @@ impl Torture {
         let contact_model = match self.engines {
             Engines::Line => ContactModel::Line,
             Engines::Patch => ContactModel::Patch,
+            Engines::Profiles => ContactModel::Profiles,
             Engines::Both if model.is_multiple_of(2) => ContactModel::Line,
             Engines::Both => ContactModel::Patch,
         };
@@ -239,7 +242,9 @@ impl Torture {
                 });
                 run.reach.push(reach(model, &parameters, &state));
             }
-            if outcome.is_err() || is_hot(&state) {
+            // A wheel that is off the rail stays where it was, until it is on the rail again.
+            let off_the_rail = matches!(outcome, Err((_, Error::WheelOffRail { .. })));
+            if outcome.is_err() && !off_the_rail || is_hot(&state) {
                 run.replaced += 1;
                 state = model
                     .initial_state(&mut workspace, drive.inputs())
@@ -264,9 +269,14 @@ fn is_too_hot(model: &Model, before: &State, step: &DriveStep) -> bool {
     outcome.is_ok() && is_hot(&state)
 }
 
-/// Whether the step was one to be refused: the bulge of a hot rail makes a given penetration take more than the largest load.
+/// Whether the step was one to be refused: the bulge of a hot rail makes a given penetration take more than the largest load, or a wheelset is
+/// pressed into the rails as deep; or the wheel has climbed over the rail or fallen off it.
 fn is_refused(model: &Model, error: &Error) -> bool {
-    model.parameters().control == Control::Penetration && matches!(error, Error::ContactLeavesWindow { .. })
+    match error {
+        Error::ContactLeavesWindow { .. } | Error::ContactOutgrowsWindow => model.parameters().control != Control::Load,
+        Error::WheelOffRail { .. } => true,
+        _ => false,
+    }
 }
 
 /// Whether the rail is hotter than the model answers for.
@@ -301,20 +311,12 @@ fn check(model: &Model, state: &State) -> Result<(), RunFailure> {
 /// Extent of the contact along the rail, its load and its temperature.
 fn reach(model: &Model, parameters: &Parameters, state: &State) -> Reach {
     let nodes = model.contact_nodes(state);
-    let pressed = || nodes.iter().filter(|node| node.pressure > 0.0);
-    let force: f64 = pressed().map(|node| node.pressure).sum();
-    let outermost = pressed().map(|node| node.position.abs()).fold(0.0, f64::max);
-    let spacing = nodes[1].position - nodes[0].position;
+    let pressed = nodes.iter().filter(|node| node.pressure > 0.0);
+    let outermost = pressed.map(|node| node.position.abs()).fold(0.0, f64::max);
     let (half_length, _) = parameters.contact_half_axes(parameters.largest_load);
-    let breadth = match parameters.contact_model {
-        ContactModel::Line => parameters.contact_width,
-        ContactModel::Patch | ContactModel::Profiles => {
-            nodes[model.parameters().patch_nodes].lateral_position - nodes[0].lateral_position
-        }
-    };
     Reach {
         outermost: outermost / half_length,
-        load: force * spacing * breadth / parameters.largest_load,
+        load: state.outputs.normal_force / parameters.largest_load,
         temperature: state.outputs.peak_temperature,
     }
 }

@@ -16,6 +16,7 @@ pub mod equivalent_conicity;
 pub mod explicit_master;
 pub mod falling_friction;
 pub mod flash_temperature;
+pub mod given_geometry;
 pub mod groove;
 pub mod hertz;
 pub mod kalker;
@@ -199,6 +200,10 @@ pub const CHECKS: &[Check] = &[
     Check {
         name: "Patch: Hertz's ellipses",
         rows: patch_hertz::rows,
+    },
+    Check {
+        name: "Patch: geometry by inputs",
+        rows: given_geometry::rows,
     },
     Check {
         name: "Patch: Kalker's coefficients",

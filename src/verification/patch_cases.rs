@@ -66,6 +66,11 @@ impl Rolling {
         })
     }
 
+    /// The model.
+    pub fn model(&self) -> &Arc<Model> {
+        &self.model
+    }
+
     /// The parameters.
     pub fn parameters(&self) -> &Parameters {
         self.model.parameters()

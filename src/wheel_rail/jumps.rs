@@ -14,7 +14,7 @@ impl Model {
         // Creepage at which the whole contact slides, μ a / r₀.
         let load = from.normal_load.max(to.normal_load);
         let (half_length, half_breadth) = self.parameters.contact_half_axes(load);
-        let saturation = friction::largest_coefficient(&self.parameters) * half_length / self.parameters.wheel_radius;
+        let saturation = friction::largest_coefficient(&self.parameters) * half_length / to.radius(&self.parameters);
         // Slip along and across the rail, and that of the spin at the contact's side.
         let slips = |motion: &Motion, inputs: &Inputs| {
             [
@@ -40,12 +40,21 @@ impl Model {
             .max(self.change_of_place(from, to))
     }
 
-    /// Largest change of the wheelset's place over the rail, relative to what changes the contacts appreciably; 0 where there are no profiles.
+    /// Largest change of the wheelset's place over the rail, or of the given geometry of a patch, relative to what changes the contacts appreciably.
     fn change_of_place(&self, from: &Inputs, to: &Inputs) -> f64 {
         /// Way across the track over which the contacts become others, `m`.
         const LATERAL: f64 = 5e-3;
-        if self.parameters.contact_model != ContactModel::Profiles {
-            return 0.0;
+        let approach = || self.parameters.hertz_ellipse(self.parameters.largest_load).approach;
+        match self.parameters.contact_model {
+            ContactModel::Line => return 0.0,
+            ContactModel::Patch => {
+                let penetration = (to.contact_penetration - from.contact_penetration).abs() / approach();
+                let relative = |from: f64, to: f64| dense::relative((to - from).abs(), from.max(to));
+                return penetration
+                    .max(relative(from.longitudinal_curvature, to.longitudinal_curvature))
+                    .max(relative(from.transverse_curvature, to.transverse_curvature));
+            }
+            ContactModel::Profiles => {}
         }
         let lateral = |inputs: &Inputs| inputs.lateral_displacement - inputs.rail_lateral_displacement;
         let place = (lateral(to) - lateral(from)).abs() / LATERAL;
@@ -53,8 +62,7 @@ impl Model {
             return place;
         }
         let height = |inputs: &Inputs| inputs.vertical_displacement - inputs.rail_vertical_displacement;
-        let approach = self.parameters.hertz_ellipse(self.parameters.largest_load).approach;
-        place.max((height(to) - height(from)).abs() / approach)
+        place.max((height(to) - height(from)).abs() / approach())
     }
 
     /// Time in which rail material crosses the contact window, `s`; infinite at rest.

@@ -2,8 +2,8 @@
 
 use wheelrail::error::Error;
 use wheelrail::parameters::{
-    ContactModel, Control, FrictionLaw, INTEGER_PARAMETERS, MeshKind, NormalSolver, Parameters, REAL_PARAMETERS,
-    SlipSource,
+    ContactModel, Control, FrictionLaw, INTEGER_PARAMETERS, MeshKind, NormalSolver, Parameters, PatchGeometry,
+    REAL_PARAMETERS, SlipSource,
 };
 use wheelrail::signals::{INPUTS, InputSignal, Inputs};
 use wheelrail::simulation::Simulation as Run;
@@ -109,7 +109,7 @@ fn motion_that_a_contact_model_does_not_know_is_refused() {
             .iter()
             .filter(|signal| !signal.is_taken_by(contact_model))
             .collect();
-        assert_eq!(others.len(), if contact_model == ContactModel::Line { 16 } else { 12 });
+        assert_eq!(others.len(), if contact_model == ContactModel::Line { 19 } else { 12 });
         for signal in others {
             let mut inputs = Inputs::default();
             (signal.set)(&mut inputs, 0.001);
@@ -223,15 +223,14 @@ fn combinations_that_profiles_cannot_have_are_refused() {
                 control: Control::Height,
                 ..Parameters::default()
             },
-            ["control = 3", "contact_model = 1", "contact_model = 3 (profiles)"],
+            ["control = 3", "contact_model = 1", "1 (load) or 2 (penetration)"],
         ),
         (
             Parameters {
-                control: Control::Height,
-                contact_model: ContactModel::Patch,
-                ..Parameters::default()
+                patch_geometry: PatchGeometry::Inputs,
+                ..profiles()
             },
-            ["control = 3", "contact_model = 2", "contact_model = 3 (profiles)"],
+            ["patch_geometry = 2", "contact_model = 3", "1 (parameters)"],
         ),
     ] {
         assert_combination(&changed, &parts);

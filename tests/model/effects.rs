@@ -2,8 +2,8 @@
 //! scenarios that switch everything on. What fails names the file in which something was forgotten.
 
 use wheelrail::parameters::{
-    ContactModel, Control, FrictionLaw, INTEGER_PARAMETERS, Parameters, REAL_PARAMETERS, Side, SlipSource,
-    TABLE_POINTS, Wheel, WheelHeating,
+    ContactModel, Control, FrictionLaw, INTEGER_PARAMETERS, Parameters, PatchGeometry, REAL_PARAMETERS, Side,
+    SlipSource, TABLE_POINTS, Wheel, WheelHeating,
 };
 use wheelrail::signals::{INPUTS, Inputs, OUTPUTS, Outputs};
 use wheelrail::simulation::Simulation;
@@ -12,8 +12,8 @@ use wheelrail::wheel_rail::Model;
 /// Parameters, and inputs that are held under them.
 type Scenario = (Parameters, Inputs);
 
-/// Rolling with lateral slip and spin by the creepages and by the speeds, on a small patch.
-fn patches() -> [Scenario; 2] {
+/// Rolling with lateral slip and spin by the creepages and by the speeds, on a small patch; and one of given geometry and penetration.
+fn patches() -> [Scenario; 3] {
     let creepages = Inputs {
         wheel_speed: 40.0,
         creepage: 2e-3,
@@ -40,7 +40,19 @@ fn patches() -> [Scenario; 2] {
         spin_rate: motion.spin_rate,
         ..creepages
     };
-    [(parameters, creepages), (speeds, driven)]
+    let pressed = Parameters {
+        control: Control::Height,
+        patch_geometry: PatchGeometry::Inputs,
+        normal_damping: 0.5,
+        ..parameters.clone()
+    };
+    let approaching = Inputs {
+        contact_penetration: 6e-5,
+        contact_penetration_speed: 0.2,
+        contact_inclination: 0.1,
+        ..creepages
+    };
+    [(parameters, creepages), (speeds, driven), (pressed, approaching)]
 }
 
 /// A wheel on a rail by their profiles, where it touches at the gauge corner and the flange, under a load and at a height, on small windows.

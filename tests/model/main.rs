@@ -7,6 +7,7 @@ mod defaults;
 mod derivatives;
 mod effects;
 mod falling_friction;
+mod given_geometry;
 mod lift_off;
 mod paper_mesh;
 mod profiles;

@@ -43,7 +43,9 @@ enum ContactModels {
     Line,
     /// The patch
     Patch,
-    /// Both in turn
+    /// Profiles
+    Profiles,
+    /// Line and patch in turn
     Both,
 }
 
@@ -100,6 +102,7 @@ impl Options {
             engines: match self.model {
                 ContactModels::Line => Engines::Line,
                 ContactModels::Patch => Engines::Patch,
+                ContactModels::Profiles => Engines::Profiles,
                 ContactModels::Both => Engines::Both,
             },
         };

@@ -7,11 +7,12 @@ use super::integrals;
 use super::linearisation::Solution;
 use super::march_tangent;
 use super::mechanics;
-use super::operators::PatchOperators;
+use super::operators::{PatchOperators, relaxation_length_of};
 use super::problem::PatchProblem;
 use super::profiles;
 use super::solvers::PatchSolvers;
 use super::tangent::PatchTangent;
+use crate::body::half_space::HalfSpaces;
 use crate::contact::engine::{Along, Direction, Engine, Linearised, MaterialPath, OneWindow};
 use crate::contact::fields::Fields;
 use crate::contact::integrals::Integrals;
@@ -26,7 +27,7 @@ use crate::friction::memory::Memory;
 use crate::mechanics::normal::normal_problem::Constraint;
 use crate::mechanics::normal_tangential::TractionChange;
 use crate::mechanics::patch::normal;
-use crate::parameters::Parameters;
+use crate::parameters::{Control, Parameters, PatchGeometry};
 use crate::settings::{SensitivitySettings, Settings, SplitSettings};
 
 impl Engine for PatchOperators {
@@ -86,8 +87,12 @@ impl Engine for PatchOperators {
         self.scales.displacement * self.strip_kernels[0][self.grid.stride()]
     }
 
-    /// Scales the relaxation length at the largest load by the ratio of the contact's lengths.
+    /// Scales the relaxation length at the largest load by the ratio of the contact's lengths; of a contact of given geometry it is that of its extent.
     fn relaxation_length(problem: &PatchProblem, fields: &PatchFields) -> f64 {
+        if problem.parameters.patch_geometry == PatchGeometry::Inputs {
+            let pair = HalfSpaces::of_pair(problem.parameters);
+            return relaxation_length_of(problem, &pair, &fields.pressure);
+        }
         let load = problem.load(fields);
         let ratio = (load / problem.parameters.largest_load).cbrt().min(1.0);
         problem.operators.relaxation_length * if load > 0.0 { ratio } else { 1.0 }
@@ -118,6 +123,7 @@ impl Engine for PatchOperators {
         if let Some(before) = before {
             now.relaxation_length = Self::relaxation_length(problem, before);
         }
+        solvers.undeformed.set_gap(problem, &problem.conditions.inputs);
         solvers.undeformed.set_slip(problem, &problem.conditions.motion);
         begin::begin(problem, before, now, solvers)
     }
@@ -249,6 +255,7 @@ impl Engine for PatchOperators {
     }
 
     fn begin_linearisation(problem: &PatchProblem, fields: &PatchFields, solvers: &mut PatchSolvers) {
+        solvers.undeformed.set_gap(problem, &problem.conditions.inputs);
         solvers.undeformed.set_slip(problem, &problem.conditions.motion);
         begin::begin_linearisation(problem, fields, solvers);
     }
@@ -276,6 +283,7 @@ impl Engine for PatchOperators {
         tangent: &mut PatchTangent,
     ) {
         change.clear();
+        tangent.undeformed.set_gap(problem, &direction.inputs);
         tangent.undeformed.set_slip(problem, &direction.motion);
         march_tangent::begin(problem, fields, direction, change, tangent);
     }
@@ -289,6 +297,9 @@ impl Engine for PatchOperators {
         let load = along.direction.inputs.normal_load / at.problem.unit_force();
         let constraint = match at.problem.constraint() {
             Constraint::Total(_) => Constraint::Total(load),
+            Constraint::Penetration(_) if at.problem.parameters.control == Control::Height => Constraint::Penetration(
+                along.direction.inputs.contact_penetration / at.problem.operators.scales.displacement,
+            ),
             Constraint::Penetration(_) => Constraint::Penetration(0.0),
         };
         at.tangent

@@ -1,7 +1,9 @@
 //! Operators of a patch: everything that is computed once, at initialisation.
 
 use super::expansion::Expansion;
+use super::extent::extent;
 use super::kernels::Kernels;
+use super::problem::PatchProblem;
 use crate::body::compliance::Scales;
 use crate::body::grid::Grid;
 use crate::body::half_space::HalfSpaces;
@@ -130,7 +132,11 @@ impl PatchOperators {
                 scales.displacement,
             ),
             edge_factors: edge_factors(&pair, layer / (unit * grid.length)),
-            gap: undeformed_gap(parameters, &grid, &scales),
+            gap: {
+                let mut gap = vec![0.0; grid.len()];
+                gap_of_curvatures(&grid, &scales, parameters.gap_curvatures(), &mut gap);
+                gap
+            },
             strips: Strips::new(&mesh.x, mesh.window(), grid.strips, grid.breadth),
             incoming: Incoming::new(&mesh.depth, &basis, parameters.skin_depth),
             depth: mesh.depth,
@@ -182,18 +188,13 @@ fn edge_factors(pair: &HalfSpaces, layer: f64) -> [f64; 2] {
     [1.0 + edge, pair.direct / pair.normal() + edge]
 }
 
-/// Undeformed gap of the cells, scaled, on the grid.
-fn undeformed_gap(parameters: &Parameters, grid: &Grid, scales: &Scales) -> Vec<f64> {
-    let curvature = parameters.rail_transverse_curvature + parameters.wheel_transverse_curvature;
-    let radius = parameters.wheel_radius;
-    let mut gap = vec![0.0; grid.len()];
+/// Computes the undeformed gap A x² + B y² of the cells, or its change with that of the curvatures, scaled, on the grid.
+pub fn gap_of_curvatures(grid: &Grid, scales: &Scales, (along, across): (f64, f64), gap: &mut [f64]) {
     for strip in 0..grid.strips {
         for (cell, gap) in gap[grid.row(strip)].iter_mut().enumerate() {
-            let place = [grid.x(cell), grid.y(strip)];
-            *gap = gap::of_curvatures(radius, curvature, place) / scales.displacement;
+            *gap = gap::of_curvatures((along, across), [grid.x(cell), grid.y(strip)]) / scales.displacement;
         }
     }
-    gap
 }
 
 /// Columns and depths of the strips: the cells in the window, graded outside of it and downwards.
@@ -224,6 +225,17 @@ pub fn relaxation_length(pair: &HalfSpaces, layer: f64, (a, b): (f64, f64)) -> f
     }
     let with_layer = displacement + layer / (PI * a * b);
     RELAXATION_FACTOR * with_layer / (1.0 / stiffness + 0.375 * layer / (a * a * b))
+}
+
+/// Relaxation length of the contact of the given pressure, `m`; that of the largest load where there is none.
+pub fn relaxation_length_of(problem: &PatchProblem, pair: &HalfSpaces, pressure: &[f64]) -> f64 {
+    let extent = extent(problem.operators, pressure);
+    if extent.length > 0.0 && extent.breadth > 0.0 {
+        let half_axes = (0.5 * extent.length, 0.5 * extent.breadth);
+        relaxation_length(pair, problem.parameters.layer_compliance, half_axes)
+    } else {
+        problem.operators.relaxation_length
+    }
 }
 
 /// Mean displacement of a circle along an elliptic shear τ ∝ √(1 − r²/c²) on it, per force, `m/N`. Of one half-space u_x =

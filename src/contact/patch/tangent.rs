@@ -131,14 +131,14 @@ impl PatchTangent {
                 tangent.friction[place] = if touches { static_friction } else { 0.0 };
             }
         }
-        let total = match constraint {
-            Constraint::Total(total) => total,
-            Constraint::Penetration(_) => 0.0,
+        let given = match constraint {
+            Constraint::Total(total) => total / self.point.contact.cells() as f64,
+            Constraint::Penetration(penetration) => penetration / operators.normal_influence.diagonal,
         };
         let size = [
             largest(&tangent.pressure),
             largest(&self.gap) / operators.normal_influence.diagonal,
-            total.abs() / self.point.contact.cells() as f64,
+            given.abs(),
         ];
         let size = size.into_iter().fold(LEAST_CHANGE, f64::max);
         let data = normal_problem(

@@ -1,10 +1,11 @@
 //! Wheel and rail undeformed, as the cells of a patch see them: the gap between them and their rigid slip, or a change of these.
 
-use super::operators::PatchOperators;
+use super::operators::{PatchOperators, gap_of_curvatures};
 use super::problem::PatchProblem;
 use crate::body::grid::Grid;
 use crate::mechanics::kinematics;
-use crate::signals::Motion;
+use crate::parameters::PatchGeometry;
+use crate::signals::{Inputs, Motion};
 
 /// Gap and rigid slip of the cells, or a change of them.
 #[derive(Debug, Clone)]
@@ -30,6 +31,16 @@ impl Undeformed {
         Undeformed {
             gap: operators.gap.clone(),
             ..Undeformed::none(&operators.grid)
+        }
+    }
+
+    /// Sets the gap to that of bodies of the given curvatures, or to its change with them: of the inputs of a patch of given geometry. Other patches
+    /// keep that of the parameters.
+    pub fn set_gap(&mut self, problem: &PatchProblem, inputs: &Inputs) {
+        if problem.parameters.patch_geometry == PatchGeometry::Inputs {
+            let curvatures = (0.5 * inputs.longitudinal_curvature, 0.5 * inputs.transverse_curvature);
+            let PatchOperators { grid, scales, .. } = problem.operators;
+            gap_of_curvatures(grid, scales, curvatures, &mut self.gap);
         }
     }
 

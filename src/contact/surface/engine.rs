@@ -13,9 +13,8 @@ use crate::contact::fields::EngineState;
 use crate::contact::integrals::Integrals;
 use crate::contact::interface::Interface;
 use crate::contact::memory;
-use crate::contact::patch::extent::extent;
-use crate::contact::patch::operators::{PatchOperators, relaxation_length};
-use crate::contact::patch::{self, begin, heat_and_wear, march_tangent};
+use crate::contact::patch::operators::{PatchOperators, relaxation_length_of};
+use crate::contact::patch::{self, begin, heat_and_wear};
 use crate::contact::profiles::{ContactNode, Profiles};
 use crate::contact::rim::HeatedNode;
 use crate::contact::work::Iterations;
@@ -47,13 +46,7 @@ fn begin_windows(
     let before = before.map(|before| at_places(*moved, carried, before));
     for (window, place) in now.used() {
         let (patch, own) = (problem.of(&place), &mut now.windows[window]);
-        let extent = extent(patch.operators, &own.pressure);
-        own.relaxation_length = if extent.length > 0.0 && extent.breadth > 0.0 {
-            let half_axes = (0.5 * extent.length, 0.5 * extent.breadth);
-            relaxation_length(&problem.operators.pair, problem.parameters.layer_compliance, half_axes)
-        } else {
-            patch.operators.relaxation_length
-        };
+        own.relaxation_length = relaxation_length_of(&patch, &problem.operators.pair, &own.pressure);
         let before = before.map(|before| &before.windows[window]);
         begin::begin(&patch, before, own, &mut windows[window].patch)?;
     }
@@ -401,10 +394,7 @@ impl Engine for SurfaceOperators {
     }
 
     fn march_tangent(at: &mut Linearised<Self>, along: &Along, change: &mut SurfaceFields) -> Result<()> {
-        tangent::in_windows(at, along, change, |at, along, change| {
-            march_tangent::wear(at, along.direction, change);
-            march_tangent::heat(at, along, change)
-        })
+        tangent::march(at, along, change)
     }
 
     fn finalise_tangent(at: &mut Linearised<Self>, direction: &Direction, change: &mut SurfaceFields) {

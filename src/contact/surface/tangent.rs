@@ -213,16 +213,14 @@ fn vertical_force(operators: &SurfaceOperators, fields: &SurfaceFields) -> f64 {
     forces.map(|[normal, friction]| normal + friction).sum()
 }
 
-/// Runs a part of the linearised step of a patch in each window: calls it with the window's own problem as that of a patch.
-pub fn in_windows(
+/// Takes each window's own problem as that of a patch, by its number and with a buffer for its part of a change of the interface vector.
+fn each_window(
     at: &mut Linearised<SurfaceOperators>,
-    along: &Along,
     change: &mut SurfaceFields,
-    run: impl Fn(&mut Linearised<PatchOperators>, &Along, &mut PatchFields) -> Result<()>,
-) -> Result<()> {
+    mut run: impl FnMut(&mut Linearised<PatchOperators>, usize, &mut Interface, &mut PatchFields),
+) {
     for (window, place) in at.fields.used() {
         let own = &mut at.tangent.windows[window];
-        own.interface.take_window(along.interface, window);
         let from = &mut at.solvers.windows[window];
         let mut patch = Linearised {
             problem: &at.problem.of(&place),
@@ -233,30 +231,35 @@ pub fn in_windows(
             tangent: &mut own.patch,
             tolerance: at.tolerance,
         };
+        run(&mut patch, window, &mut own.interface, &mut change.windows[window]);
+    }
+}
+
+/// Change of wear and heat along a direction and a change of the interface vector.
+///
+/// # Errors
+/// A linear system that cannot be solved.
+pub fn march(at: &mut Linearised<SurfaceOperators>, along: &Along, change: &mut SurfaceFields) -> Result<()> {
+    let mut result = Ok(());
+    each_window(at, change, |at, window, interface, change| {
+        interface.take_window(along.interface, window);
         let along = Along {
             direction: along.direction,
-            interface: &own.interface,
+            interface,
         };
-        run(&mut patch, &along, &mut change.windows[window])?;
-    }
-    Ok(())
+        march_tangent::wear(at, along.direction, change);
+        if result.is_ok() {
+            result = march_tangent::heat(at, &along, change);
+        }
+    });
+    result
 }
 
 /// Change of the heat under the surface and of the rail behind the windows.
 pub fn finalise(at: &mut Linearised<SurfaceOperators>, direction: &Direction, change: &mut SurfaceFields) {
-    for (window, place) in at.fields.used() {
-        let from = &mut at.solvers.windows[window];
-        let mut patch = Linearised {
-            problem: &at.problem.of(&place),
-            interface: &from.interface,
-            touches: touches(&at.fields.windows[window]),
-            fields: &mut at.fields.windows[window],
-            solvers: &mut from.patch,
-            tangent: &mut at.tangent.windows[window].patch,
-            tolerance: at.tolerance,
-        };
-        march_tangent::finalise(&mut patch, direction, &mut change.windows[window]);
-    }
+    each_window(at, change, |at, _, _, change| {
+        march_tangent::finalise(at, direction, change);
+    });
 }
 
 /// Change of the tractions along a direction, with the height of the wheel that keeps the load.

@@ -6,7 +6,7 @@ use super::operators::SurfaceOperators;
 use crate::contact::engine::Engine;
 use crate::contact::integrals::{Integrals, NodeSums};
 use crate::contact::on_wheelset::{OnWheelset, OneContact};
-use crate::contact::outputs::LEAST_CREEPAGE_SPEED;
+use crate::contact::outputs::{LEAST_CREEPAGE_SPEED, damping};
 use crate::contact::patch;
 use crate::contact::patch::operators::PatchOperators;
 use crate::contact::profiles::ContactNode;
@@ -136,6 +136,18 @@ fn on_wheelset(problem: &SurfaceProblem, fields: &SurfaceFields) -> OnWheelset {
         contact.positions = [point.place[0] - operators.rail.top(), wheel.profile_position(&at)];
         contact.inclination = (-point.normal[0]).atan2(point.normal[1]);
         let [ahead, y, z] = wheel.velocity(&at, &pose.motion);
+        let approach_speed = wheel.approach_speed(&at, &point, &pose.motion);
+        let added = contact.normal_force * (damping(problem.parameters, approach_speed) - 1.0);
+        if added != 0.0 {
+            contact.normal_force += added;
+            let force = [added * point.normal[0], added * point.normal[1]];
+            let arm = [point.place[0] - pose.position.lateral, point.place[1] - height];
+            all.force[1] += force[0];
+            all.force[2] += force[1];
+            all.moment[0] += arm[0] * force[1] - arm[1] * force[0];
+            all.moment[1] -= x * force[1];
+            all.moment[2] += x * force[0];
+        }
         let tangent = point.tangent();
         let speed = pose.motion.velocity[0].abs().max(LEAST_CREEPAGE_SPEED);
         contact.creepages = [
