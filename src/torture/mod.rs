@@ -242,9 +242,10 @@ impl Torture {
                 });
                 run.reach.push(reach(model, &parameters, &state));
             }
-            // A wheel that is off the rail stays where it was, until it is on the rail again.
-            let off_the_rail = matches!(outcome, Err((_, Error::WheelOffRail { .. })));
-            if outcome.is_err() && !off_the_rail || is_hot(&state) {
+            // A wheel that is off the rail, or pressed too deep into it, stays where it was until it can be again where it should.
+            let stays = matches!(&outcome, Err((_, error)) if is_refused(model, error));
+            let by_place = model.parameters().contact_model == ContactModel::Profiles;
+            if outcome.is_err() && !(stays && by_place) || is_hot(&state) {
                 run.replaced += 1;
                 state = model
                     .initial_state(&mut workspace, drive.inputs())

@@ -15,7 +15,7 @@ pub const CONTACTS: usize = 3 * WINDOWS;
 const GROWTH: f64 = 1.08;
 /// Extent about such a region, over that of the region, in which no other contact is looked for: the window there finds it by itself, and so near a
 /// contact the sinking of the surface is not known well.
-const BESIDE: f64 = 1.8;
+pub const BESIDE: f64 = 1.8;
 /// Breadth of a contact over (∫f ds)²/∫f² ds of its force per breadth f: of an ellipse.
 const ELLIPSE: f64 = 1.2;
 /// Least depth, over the approach, by which the bodies overlap more than the surface sinks where a contact begins: the sinking is known to a few per cent of

@@ -34,11 +34,15 @@ const APPROACHES: usize = 40;
 const USUAL_APPROACHES: usize = 8;
 /// Error of the load that is not worth another approach, relative: the pressure has more.
 const LOAD_TOLERANCE: f64 = 1e-9;
+/// Error of the load, relative, that is accepted where no approach has a smaller one: it is far below what the mesh resolves.
+const ACCEPTED: f64 = 1e-6;
 /// Change of the excess of load over the error of the pressure that shows the stiffness.
 const SHOWS_STIFFNESS: f64 = 5.0;
-/// Least and largest relative change of the load with a relative one of the approach: Hertz's is 3/2. The windows' influence on each
-/// other, which lags behind, may make it seem to be anything.
-const STIFFNESSES: [f64; 2] = [0.7, 4.0];
+/// Least and largest relative change of the load with a relative one of the approach: Hertz's is 3/2, that of a contact which begins far
+/// below the height of the first touch, on a worn rail, is many times as much.
+const STIFFNESSES: [f64; 2] = [0.3, 100.0];
+/// Cells whose mean pressure, under a load, the error of the pressure is measured by.
+const FEW_CELLS: f64 = 10.0;
 /// Error of the pressure at the first approach, relative.
 const FIRST_TOLERANCE: f64 = 1e-3;
 /// Error of the pressure at an approach over that of the load at the one before.
@@ -198,6 +202,14 @@ pub fn approach_of_pressure(
     Some(fields.approach[0])
 }
 
+/// Error of the load, relative, that the least error of a pressure makes: a negligible load is known by fewer digits.
+fn least_load_error(problem: &SurfaceProblem, search: &Approaches) -> f64 {
+    let force = FEW_CELLS * FEW_CELLS * problem.operators.shapes[0].unit_force();
+    search
+        .load
+        .map_or(0.0, |load| problem.settings.patch.least_tolerance * force / load)
+}
+
 /// Vertical force of all windows, `N`.
 fn carried(problem: &SurfaceProblem, fields: &SurfaceFields) -> f64 {
     fields
@@ -218,7 +230,7 @@ fn press(
 ) -> Result<()> {
     let mut search = Approaches::new(problem, fields, solvers);
     solvers.apart.set_resultants(problem.operators, fields);
-    let tolerance_of_load = tolerance.max(LOAD_TOLERANCE);
+    let tolerance_of_load = tolerance.max(LOAD_TOLERANCE).max(least_load_error(problem, &search));
     let mut left = f64::INFINITY;
     // The pressure need not be better than the approach is.
     let mut own_tolerance = tolerance.max(FIRST_TOLERANCE);
@@ -240,6 +252,10 @@ fn press(
             return check_room(problem, fields, solvers);
         }
         search.next(excess, error);
+    }
+    if left <= ACCEPTED {
+        search.end(fields);
+        return check_room(problem, fields, solvers);
     }
     Err(Error::NormalNotConverged {
         solver: "height of the wheel",
@@ -291,7 +307,7 @@ impl Approaches {
             last: None,
             // Hertz's load is as the approach to the power of 3/2.
             stiffness: if fields.stiffness > 0.0 {
-                fields.stiffness / load
+                clamped(fields.stiffness / load, approach.max(size))
             } else {
                 1.5 / approach
             },
@@ -311,12 +327,16 @@ impl Approaches {
             && (excess - excess_before).abs() > SHOWS_STIFFNESS * error
         {
             let slope = (excess - excess_before) / (self.approach - before);
-            let [least, most] = STIFFNESSES.map(|stiffness| stiffness / self.approach.max(self.size));
-            self.stiffness = slope.clamp(least, most);
+            self.stiffness = clamped(slope, self.approach.max(self.size));
         }
         self.last = Some([self.approach, excess]);
-        // Half way to no contact at most, and to twice the approach: where another contact begins to carry, the stiffness jumps.
-        let next = self.approach - excess / self.stiffness;
+        // Half way to no contact at most, and to twice the approach: where another contact begins to carry, the stiffness jumps. Where nothing carries
+        // there is none.
+        let next = if excess > -1.0 {
+            self.approach - excess / self.stiffness
+        } else {
+            f64::INFINITY
+        };
         let size = self.approach.abs().max(self.size);
         self.approach = next.clamp(self.approach - 0.5 * size, self.approach + size);
         let [low, high] = self.bracket;
@@ -332,6 +352,12 @@ impl Approaches {
             fields.stiffness = self.stiffness * load;
         }
     }
+}
+
+/// Stiffness within what is possible at an approach, relative, `1/m`.
+fn clamped(stiffness: f64, approach: f64) -> f64 {
+    let [least, most] = STIFFNESSES.map(|stiffness| stiffness / approach);
+    stiffness.clamp(least, most)
 }
 
 /// Solves the pressure of all windows at an approach. Returns the vertical force with the friction in proportion, `N`.
@@ -377,6 +403,12 @@ fn press_window(
     let own = &mut solvers.windows[window];
     let patch = problem.of(&place);
     let scale = patch.operators.scales.displacement;
+    // The pressure under a small load is small.
+    let tolerance = if problem.is_height_given() {
+        tolerance
+    } else {
+        tolerance * (problem.vertical_load() / (FEW_CELLS * patch.operators.unit_force())).min(1.0)
+    };
     let displaced = &solvers.apart.displacement[window];
     let gaps = own.patch.undeformed.gap.iter_mut().zip(&own.gap).zip(displaced);
     for (((gap, reference), displaced), rise) in gaps.zip(&own.geometry.rise) {

@@ -1,6 +1,6 @@
 //! Placement of the windows at the beginning of a step: about the contacts of the step before, and those that begin.
 
-use super::contacts::{self, CONTACTS, Expected, Wanted};
+use super::contacts::{self, BESIDE, CONTACTS, Expected, Wanted};
 use super::fields::SurfaceFields;
 use super::mechanics::SurfaceProblem;
 use super::operators::SurfaceOperators;
@@ -153,6 +153,14 @@ fn want(problem: &SurfaceProblem, source: Option<&SurfaceFields>, approach: f64,
             approach: approach * AHEAD,
         };
         contacts::find(problem.operators, source, expected, search, apart, wanted);
+        // A wheelset that has jumped touches elsewhere: the contacts of the step before say nothing then.
+        let covers = |(point, along): (usize, f64)| {
+            let place = [along, problem.operators.scan[point].0];
+            wanted.iter().any(|wanted| wanted.region.grown(BESIDE).holds(place))
+        };
+        if !search.first().is_some_and(covers) {
+            wanted.clear();
+        }
     }
     if wanted.is_empty() {
         // The overlaps come from the field side to the gauge side.

@@ -109,6 +109,11 @@ impl Region {
     }
 
     /// Whether it has a part at an arc length.
+    pub fn holds(&self, [along, across]: [f64; 2]) -> bool {
+        (self.along[0]..=self.along[1]).contains(&along) && self.holds_across(across)
+    }
+
+    /// Whether an arc length lies in it.
     pub fn holds_across(&self, arc: f64) -> bool {
         self.across[0] <= arc && arc <= self.across[1]
     }
