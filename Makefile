@@ -268,6 +268,11 @@ site: verify $(VENV)/site
 bench: $(VENV)/ready
 	cargo bench
 	@$(PY) tools/scaling_figure.py
+	@mkdir -p results
+	cargo run --release --quiet --example error_over_time > results/error_over_time.part
+	@mv results/error_over_time.part results/error_over_time.csv
+	@$(PY) studies error_over_time
+	@cp results/error_over_time.png docs/
 
 clean:
 	rm -rf target dist $(VENV) .venv-cofmupy results .pytest_cache .ruff_cache .mypy_cache
