@@ -1,4 +1,4 @@
-"""Draw the error of the forces over the time of a point, of the patch, FASTSIM and CONTACT: results/error_over_time.png.
+"""Draw the error of the forces over the time of a point, by patch, FASTSIM and CONTACT: results/error_over_time.png.
 
     cargo run --release --example error_over_time > results/error_over_time.csv
     .venv/bin/python studies error_over_time
@@ -75,7 +75,7 @@ def draw(rows):
                 span = [1e-3 * float(row[heading]) for heading in ("least [us]", "largest [us]")]
                 axes.plot(span, [worst(row)] * 2, color=style["color"], linewidth=0.8, marker="|", alpha=0.6)
     off = {name: max(abs(own - other) for own, other in pairs) for name, pairs in PUBLISHED.items()}
-    for name, error in off.items():
+    for error in off.values():
         axes.axhline(error / FRICTION_BOUND, xmax=0.07, color="0.4")
     axes.annotate(
         f"{' and '.join(off)}: $F_x$ on profiles,\nno time published",
