@@ -1,6 +1,5 @@
 //! Grids of a patch that have a name: each with the error of its forces and the time of its step.
 
-use super::table::Parameters;
 use crate::error::{Error, Result};
 
 /// Name under which a grid is chosen where parameters are set by name; it sets `patch_nodes` and `patch_strips`.
@@ -55,37 +54,5 @@ impl PatchGrid {
     /// Number of strips across the window, `patch_strips`.
     pub fn strips(self) -> usize {
         [7, 21, 31][self as usize]
-    }
-}
-
-impl Parameters {
-    /// Chooses a grid of the patch by its name.
-    pub fn set_patch_grid(&mut self, grid: PatchGrid) {
-        self.patch_nodes = grid.nodes();
-        self.patch_strips = grid.strips();
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn grids_are_set_by_name_and_others_refused() {
-        let mut parameters = Parameters::default();
-        assert_eq!(PatchGrid::NAMES, PatchGrid::ALL.map(PatchGrid::name));
-        for grid in PatchGrid::ALL {
-            parameters.set_by_name(PATCH_GRID, grid.name()).unwrap();
-            assert_eq!(
-                (parameters.patch_nodes, parameters.patch_strips),
-                (grid.nodes(), grid.strips())
-            );
-            assert_eq!(parameters.validate(), Ok(()));
-        }
-        parameters.set_by_name(PATCH_GRID, " default ").unwrap();
-        assert_eq!(parameters, Parameters::default());
-        let refused = parameters.set_by_name(PATCH_GRID, "34").unwrap_err().to_string();
-        assert_eq!(refused, "patch_grid = \"34\": allowed is fast, default or fine");
-        assert_eq!(parameters, Parameters::default());
     }
 }

@@ -384,6 +384,12 @@ impl Parameters {
         fixed
     }
 
+    /// Chooses a grid of the patch by its name.
+    pub fn set_patch_grid(&mut self, grid: PatchGrid) {
+        self.patch_nodes = grid.nodes();
+        self.patch_strips = grid.strips();
+    }
+
     /// Sets a parameter, or an element of an array, by its name from text, as `--set name=value` on the command line does; a choice by its
     /// number or by its name. [`PATCH_GRID`] sets `patch_nodes` and `patch_strips` to those of a [`PatchGrid`].
     ///
@@ -468,6 +474,25 @@ mod tests {
             (entry.set)(&mut parameters, "other".to_owned());
             assert_eq!((entry.get)(&parameters), "other", "{}", entry.name);
         }
+    }
+
+    #[test]
+    fn grids_are_set_by_name_and_others_refused() {
+        let mut parameters = Parameters::default();
+        assert_eq!(PatchGrid::NAMES, PatchGrid::ALL.map(PatchGrid::name));
+        for grid in PatchGrid::ALL {
+            parameters.set_by_name(PATCH_GRID, grid.name()).unwrap();
+            assert_eq!(
+                (parameters.patch_nodes, parameters.patch_strips),
+                (grid.nodes(), grid.strips())
+            );
+            assert_eq!(parameters.validate(), Ok(()));
+        }
+        parameters.set_by_name(PATCH_GRID, " default ").unwrap();
+        assert_eq!(parameters, Parameters::default());
+        let refused = parameters.set_by_name(PATCH_GRID, "34").unwrap_err().to_string();
+        assert_eq!(refused, "patch_grid = \"34\": allowed is fast, default or fine");
+        assert_eq!(parameters, Parameters::default());
     }
 
     #[test]
