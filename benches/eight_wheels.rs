@@ -99,6 +99,9 @@ impl Times {
     }
 }
 
+/// Way of taking so many steps of all wheels.
+type Drive = fn(Vec<Wheel>, usize) -> Times;
+
 /// One wheel after the other.
 fn on_one_thread(mut wheels: Vec<Wheel>, steps: usize) -> Times {
     let step = |step: usize| {
@@ -153,7 +156,7 @@ fn main() {
             rows,
         });
     }
-    let runs: [(usize, fn(Vec<Wheel>, usize) -> Times); 2] = [(1, on_one_thread), (2, on_two_threads)];
+    let runs: [(usize, Drive); 2] = [(1, on_one_thread), (2, on_two_threads)];
     let round = || -> Vec<[Times; 2]> {
         let of = |setting: &Setting| runs.map(|(_, run)| run(setting.wheels(), setting.steps()));
         settings.iter().map(of).collect()
