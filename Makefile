@@ -16,6 +16,7 @@
 #   make docs    the generated tables and pictures of README.md and of the documentation
 #   make site    the documentation as a site: target/site/index.html
 #   make bench   run times: a step, a cold start, saving; against the number of contact nodes and the targets
+#   make bench-check  iterations of a step on the rough track against recorded ones, whatever the machine
 #   make clean   removes everything that the above made
 
 SHELL := /bin/bash
@@ -51,7 +52,7 @@ install = $(PY) -m uv pip install --quiet --python $(PY) -r $(1) \
 COUPLINGS := longitudinal stiff multibody train sweep hunting adhesion maintenance
 WHEELSET := target/Wheelset.fmu
 
-.PHONY: fmu fmu3 platforms wheel demo measurements measurements-docs test test-debug soak derivatives bits docs site bench clean lint rust-test verify python-test hosts library command couplings packages
+.PHONY: fmu fmu3 platforms wheel demo measurements measurements-docs test test-debug soak derivatives bits docs site bench bench-check clean lint rust-test verify python-test hosts library command couplings packages
 .PHONY: pytest couplings-set-up couplings-docs sweep-scaling description $(addprefix coupling-,$(COUPLINGS))
 
 # ---- set-up -------------------------------------------------------------------------------------------------------
@@ -268,6 +269,16 @@ site: verify $(VENV)/site
 bench: $(VENV)/ready
 	cargo bench
 	@$(PY) tools/scaling_figure.py
+	@mkdir -p results
+	cargo run --release --quiet --example error_over_time > results/error_over_time.part
+	@mv results/error_over_time.part results/error_over_time.csv
+	@$(PY) studies error_over_time
+	@cp results/error_over_time.png docs/
+
+# Iterations a step on the rough track against recorded ones, which do not hang on the machine; a part of `make test` as well.
+bench-check: $(VENV)/build
+	$(call say,Iterations on the rough track)
+	$(CARGO) test --test model rough_track -- --nocapture
 
 clean:
 	rm -rf target dist $(VENV) .venv-cofmupy results .pytest_cache .ruff_cache .mypy_cache

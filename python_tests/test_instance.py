@@ -282,6 +282,26 @@ def test_values_and_names(running, either):
         Instance(either, **{"friction_table.temperature": [300.0] * 50})
 
 
+def test_grids_of_a_patch_by_name(either):
+    """A grid sets cells and strips where the instance is made, later where the version allows it; none is half set."""
+    grids = {name: Instance(either, contact_model="patch", patch_grid=name) for name in ("fast", "default", "fine")}
+    cells = {name: instance.get("patch_nodes", "patch_strips") for name, instance in grids.items()}
+    assert cells["default"] == Instance(either).get("patch_nodes", "patch_strips")
+    assert cells["fast"] == [10, 7]
+    assert cells["fine"] > cells["default"] > cells["fast"]
+    instance = grids["default"]
+    if either.endswith("Contact.fmu"):
+        instance.set(patch_grid="fast")
+        assert instance.get("patch_nodes", "patch_strips") == [10, 7]
+    else:
+        with pytest.raises(ValueError, match="length of arrays"):
+            instance.set(patch_grid="fast")
+    before = instance.get("patch_nodes", "patch_strips")
+    with pytest.raises(ValueError, match="patch_grid = 'fat': choose one of fast, default, fine; did you mean"):
+        instance.set(patch_grid="fat")
+    assert instance.get("patch_nodes", "patch_strips") == before
+
+
 def test_parameters_make_the_same_instance(running):
     """What `parameters` returns is what an instance is made with."""
     again = Instance(running.fmu, **running.parameters())

@@ -132,6 +132,16 @@ pub enum Error {
         /// "a real number" or "an integer".
         expected: &'static str,
     },
+    /// The text is none of the names that there are.
+    #[error("{name} = {text:?}: allowed is {}", either(allowed))]
+    UnknownChoice {
+        /// Name of the choice.
+        name: &'static str,
+        /// Text that was given.
+        text: String,
+        /// Names that are allowed.
+        allowed: &'static [&'static str],
+    },
     /// The stiffness matrix has no Cholesky factor.
     #[error("the stiffness matrix could not be factorised ({unknowns} unknowns): it is not positive definite")]
     StiffnessNotPositiveDefinite {
@@ -264,6 +274,15 @@ fn after(separator: &str, part: &str) -> String {
         String::new()
     } else {
         format!("{separator}{part}")
+    }
+}
+
+/// Names in a row: "one, two or three".
+fn either(names: &[&str]) -> String {
+    match names {
+        [] => String::new(),
+        [one] => (*one).to_owned(),
+        [others @ .., last] => format!("{} or {last}", others.join(", ")),
     }
 }
 

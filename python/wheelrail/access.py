@@ -14,7 +14,7 @@ from fmpy.model_description import ModelVariable
 from .arguments import names_of, plain
 from .errors import SimulationError, SimulationWarning
 from .native import FMU3Component, Phase
-from .variables import bounds, choices, near, shape, start_values
+from .variables import PATCH_GRID, bounds, choices, near, shape, start_values, with_grid
 
 # Why a call cannot be, and what can.
 WAY_OUT = {
@@ -142,7 +142,7 @@ class Access:
         """Set variables: lengths of arrays first, then choices and counts, at last all quantities in one call."""
         given = {
             name: value if self._variable(name, True).type == "String" else plain(name, value)
-            for name, value in values.items()
+            for name, value in with_grid(self.fmu, values).items()
         }
         calls: dict[str, tuple[list[int], list[Any]]] = {}
         lengths = {}
@@ -171,6 +171,8 @@ class Access:
         """Whether a value is surely one of a real input: the quick way for those that are set before each step."""
         bounds_of = self._bounds.get(name)
         if bounds_of is None:
+            if name == PATCH_GRID:
+                return False
             variable = self._variable(name, True)
             real = variable.type in ("Real", "Float64") and variable.causality == "input" and not variable.dimensions
             bounds_of = self._bounds[name] = bounds(variable) if real else NONE

@@ -16,6 +16,9 @@ from fmpy.model_description import ModelDescription, ModelVariable
 from .archive import AnyPath, description, fmu_path
 from .arguments import finite
 
+# Name under which a grid of the patch is chosen.
+PATCH_GRID = "patch_grid"
+
 
 def variables(fmu: AnyPath | None = None) -> pd.DataFrame:
     """Inputs, outputs and parameters of the component.
@@ -101,6 +104,7 @@ def settable(fmu: AnyPath, name: str, causalities: tuple[str, ...]) -> ModelVari
     known = by_name(fspath(fmu))
     if name not in known:
         candidates = [other for other, variable in known.items() if variable.causality in causalities]
+        candidates += [PATCH_GRID] if "parameter" in causalities else []
         raise ValueError(f"there is no variable {name}{near(name, candidates)}")
     variable = known[name]
     if variable.causality not in causalities:
@@ -186,10 +190,42 @@ def allowed(variable: ModelVariable, low: float, high: float) -> str:
     return f"allowed is {low:g} to {high:g}{of}"
 
 
+def patch_grids(fmu: AnyPath) -> dict[str, dict[str, int]]:
+    """Grids of a patch by name, each as values of `patch_nodes` and `patch_strips`.
+
+    The description of the former has them: "…: fast 10 x 7 (…), default 34 x 21 (…), …".
+    """
+    variable = by_name(fspath(fmu)).get("patch_nodes")
+    found = re.findall(r"(?:: |, )(\w+) (\d+) x (\d+) \(", (variable and variable.description) or "")
+    return {name: {"patch_nodes": int(nodes), "patch_strips": int(strips)} for name, nodes, strips in found}
+
+
+def with_grid(fmu: AnyPath, given: Mapping[str, Any]) -> dict[str, Any]:
+    """The same values with the cells and strips of `patch_grid` in its place.
+
+    Raises
+    ------
+    ValueError
+        There is no grid of this name, or its cells or strips are given as well.
+    """
+    values = dict(given)
+    if PATCH_GRID not in values:
+        return values
+    name, grids = values.pop(PATCH_GRID), patch_grids(fmu)
+    if not isinstance(name, str) or name not in grids:
+        hint = near(name, grids) if isinstance(name, str) else ""
+        expected = f"choose one of {', '.join(grids)}" if grids else "this FMU has no grids by name"
+        raise ValueError(f"{PATCH_GRID} = {name!r}: {expected}{hint}")
+    if twice := grids[name].keys() & values.keys():
+        raise ValueError(f"{PATCH_GRID} = {name!r} sets {' and '.join(sorted(twice))}, which is given as well")
+    return values | grids[name]
+
+
 def start_values(fmu: AnyPath, given: Mapping[str, Any]) -> dict[str, Any]:
     """Parameters and constant inputs as the component takes them.
 
     The points of a table may be given in one: `{"friction_table.temperature": [300.0, 400.0]}`. A text may be a path.
+    `patch_grid` becomes the cells and strips of the grid of that name.
 
     Raises
     ------
@@ -201,7 +237,7 @@ def start_values(fmu: AnyPath, given: Mapping[str, Any]) -> dict[str, Any]:
     values: dict[str, Any] = {}
     known = by_name(fspath(fmu))
     kinds = ("parameter", "structuralParameter", "input")
-    for name, value in given.items():
+    for name, value in with_grid(fmu, given).items():
         if not isinstance(name, str):
             raise TypeError(f"parameters: {name!r} is no name of a variable")
         if name in known and known[name].type == "String":

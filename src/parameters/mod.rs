@@ -5,7 +5,7 @@
 //! read; `rows` has the macros that make these three of one declaration.
 //! `choices` are the types of those that choose, `derived` what follows from the values by a formula, `validation` what must
 //! hold between them, `text` what a text must be, `source` what
-//! that of a profile names.
+//! that of a profile names; `grids` are names for pairs of `patch_nodes` and `patch_strips`.
 
 // First, because `table` is written in its macros.
 #[macro_use]
@@ -13,6 +13,7 @@ mod rows;
 
 mod choices;
 mod derived;
+mod grids;
 mod range;
 mod source;
 mod table;
@@ -23,6 +24,7 @@ pub use crate::geometry::hertz::HertzEllipse;
 pub use choices::{
     ContactModel, Control, FrictionLaw, MeshKind, NormalSolver, PatchGeometry, Side, SlipSource, Wheel, WheelHeating,
 };
+pub use grids::{PATCH_GRID, PatchGrid};
 pub use range::check_range;
 pub use source::{ProfileSource, path_of};
 pub use table::{

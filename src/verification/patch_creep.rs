@@ -103,6 +103,34 @@ pub fn largest_deviation(patch_nodes: usize, patch_strips: usize) -> Result<f64>
     Ok(deviations.0.into_iter().fold(0.0, larger))
 }
 
+/// Largest deviation of F_x/(μN), F_y/(μN) and M_z/(μN √(ab)) from the limits, ξ, η and φ alone and combined on all ellipses, with so many
+/// cells and strips.
+///
+/// # Errors
+/// A solver that did not converge.
+pub fn largest_deviations(patch_nodes: usize, patch_strips: usize) -> Result<[f64; 3]> {
+    let mut deviations = Deviations::default();
+    for ellipse in 0..3 {
+        let rolling = Rolling::new(Parameters {
+            patch_nodes,
+            patch_strips,
+            ..patch_cases::parameters(ellipse, 1)
+        })?;
+        let axis = patch_cases::mean_axis(rolling.parameters());
+        for limit in LIMITS.iter().filter(|limit| limit.ellipse == ellipse) {
+            let [longitudinal, lateral, spin] = limit.creepages;
+            let shares = rolling.shares([longitudinal, lateral, spin / axis])?;
+            deviations.take(shares, limit.forces.map(Some));
+        }
+        if ellipse == CIRCLE {
+            for (creepages, expected) in points() {
+                deviations.take(rolling.shares(creepages)?, expected);
+            }
+        }
+    }
+    Ok(deviations.0)
+}
+
 /// CONTACT's own, at n = 40.
 pub fn largest_deviation_of_contact() -> f64 {
     let points = LONGITUDINAL.iter().chain(&LATERAL);
@@ -129,4 +157,34 @@ pub fn curve() -> Result<Vec<Vec<f64>>> {
         }
     }
     Ok(curve)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::parameters::{INTEGER_PARAMETERS, PatchGrid};
+
+    /// Descriptions of cells and strips name each grid with its error: rounded to the last digit that stands there.
+    #[test]
+    fn errors_of_the_grids_are_those_of_their_descriptions() {
+        for grid in PatchGrid::ALL {
+            let (nodes, strips) = (grid.nodes(), grid.strips());
+            let error = largest_deviations(nodes, strips).unwrap().into_iter().fold(0.0, larger);
+            println!("{}: {error}", grid.name());
+            for (parameter, cells) in [
+                ("patch_nodes", format!("{nodes} x {strips}")),
+                ("patch_strips", strips.to_string()),
+            ] {
+                let row = INTEGER_PARAMETERS.iter().find(|row| row.name == parameter).unwrap();
+                let before = format!("{} {cells} (error ", grid.name());
+                let (_, rest) = row
+                    .description
+                    .split_once(&before)
+                    .unwrap_or_else(|| panic!("{parameter} lacks {before}"));
+                let (said, _) = rest.split_once(',').unwrap();
+                let digits = said.len() - "0.".len();
+                assert_eq!(format!("{error:.digits$}"), said, "{parameter}, {}", grid.name());
+            }
+        }
+    }
 }

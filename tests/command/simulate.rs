@@ -88,6 +88,23 @@ fn a_scenario_becomes_a_table_of_inputs_and_outputs() {
     }
 }
 
+/// A grid by its name sets both numbers of cells; a name that there is none of is refused with those that there are.
+#[test]
+fn a_grid_of_the_patch_is_chosen_by_its_name() {
+    let place = Place::new("grid", GOOD);
+    let table = |grid: &[&str]| {
+        let output = place.simulate(&[&["--set", "contact_model=2"], grid].concat());
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        read_to_string(&place.output).unwrap()
+    };
+    let named = table(&["--set", "patch_grid=fast"]);
+    assert_eq!(named, table(&["--set", "patch_nodes=10", "--set", "patch_strips=7"]));
+    assert_ne!(named, table(&["--set", "patch_grid=fast", "--set", "patch_nodes=12"]));
+    remove_file(&place.output).unwrap();
+    let meant = "patch_grid = \"fats\": allowed is fast, default or fine; did you mean fast?";
+    place.refused(&["--set", "patch_grid=fats"], &[meant]);
+}
+
 /// Lateral and spin motion moves a patch, and is refused by a line, at the line of the scenario where it is.
 #[test]
 fn a_line_takes_no_lateral_and_no_spin_motion() {

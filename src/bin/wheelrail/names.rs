@@ -1,6 +1,6 @@
 //! Names that are meant, where one is given that there is none of.
 
-use wheelrail::parameters::{INTEGER_PARAMETERS, IntegerKind, REAL_PARAMETERS, TEXT_PARAMETERS};
+use wheelrail::parameters::{INTEGER_PARAMETERS, IntegerKind, PATCH_GRID, REAL_PARAMETERS, TEXT_PARAMETERS};
 use wheelrail::{Error as ModelError, INPUTS, OUTPUTS};
 
 /// Likeness from which on a name may be meant: of six letters two may be wrong.
@@ -53,11 +53,12 @@ pub fn is_output(name: &str) -> bool {
     OUTPUTS.iter().any(|signal| signal.name == name)
 }
 
-/// The names of all parameters; of an array those of its elements.
+/// The names of all parameters, and that of the grids; of an array those of its elements.
 pub fn parameters() -> impl Iterator<Item = &'static str> {
     let reals = REAL_PARAMETERS.iter().flat_map(|row| row.elements.iter().copied());
     let integers = INTEGER_PARAMETERS.iter().map(|row| row.name);
-    reals.chain(integers).chain(TEXT_PARAMETERS.iter().map(|row| row.name))
+    let texts = TEXT_PARAMETERS.iter().map(|row| row.name);
+    reals.chain(integers).chain(texts).chain([PATCH_GRID])
 }
 
 /// Returns what helps after a refusal of a parameter's name or value, as the end of the message; empty where the
@@ -69,6 +70,7 @@ pub fn hint(error: &ModelError) -> String {
         }
         ModelError::UnknownParameter { name } if is_output(name) => format!("; {name} is an output, which is computed"),
         ModelError::UnknownParameter { name } => did_you_mean(name, parameters()),
+        ModelError::UnknownChoice { text, allowed, .. } => did_you_mean(text, allowed.iter().copied()),
         ModelError::NotANumber { name, text, .. } => {
             let row = INTEGER_PARAMETERS.iter().find(|row| row.name == *name);
             let names: &[&str] = match row.map(|row| row.kind) {

@@ -1,0 +1,128 @@
+//! The rough track (`rough_track.csv`, written by `tools/rough_track.py`), and what the steps of a wheel on it took.
+
+// Each benchmark uses a part of this.
+#![allow(dead_code)]
+
+use crate::timing::thread_time;
+use wheelrail::wheel_rail::Iterations;
+use wheelrail::{Inputs, Parameters, Simulation};
+
+/// Communication step, `s`.
+pub const STEP: f64 = 1e-3;
+/// Steps before the measurement.
+pub const WARM_UP: usize = 50;
+
+/// Inputs at the communication points.
+pub fn track() -> Vec<Inputs> {
+    let rows = include_str!("../rough_track.csv").lines().skip(1);
+    rows.map(|line| {
+        let mut cells = line.split(',').map(|cell| cell.parse().expect("a number"));
+        let [_, wheel_speed, vehicle_speed, normal_load, lateral_speed, spin_rate] =
+            std::array::from_fn(|_| cells.next().expect("six columns"));
+        Inputs {
+            wheel_speed,
+            vehicle_speed,
+            normal_load,
+            lateral_speed,
+            spin_rate,
+            ..Inputs::default()
+        }
+    })
+    .collect()
+}
+
+/// The same inputs without motion across the rail, which a line contact does not have.
+pub fn straight(track: &[Inputs]) -> Vec<Inputs> {
+    let without = |inputs: &Inputs| Inputs {
+        lateral_speed: 0.0,
+        spin_rate: 0.0,
+        ..*inputs
+    };
+    track.iter().map(without).collect()
+}
+
+/// What the steps of a model took.
+pub struct Run {
+    /// Ascending, `µs`.
+    times: Vec<f64>,
+    /// Sweeps of the split.
+    sweeps: usize,
+    before: Iterations,
+    after: Iterations,
+}
+
+impl Run {
+    /// Steps along the whole track.
+    pub fn new(parameters: &Parameters, track: &[Inputs]) -> Run {
+        let mut simulation = Simulation::new(parameters, &track[0]).expect("a model");
+        let mut run = Run {
+            times: Vec::with_capacity(track.len()),
+            sweeps: 0,
+            before: Iterations::default(),
+            after: Iterations::default(),
+        };
+        for (step, inputs) in track.iter().enumerate().skip(1) {
+            if step == WARM_UP {
+                run.before = simulation.workspace.iterations();
+            }
+            let start = thread_time();
+            simulation.step(inputs, STEP).expect("a step");
+            let time = thread_time() - start;
+            if step >= WARM_UP {
+                run.times.push(1e6 * time);
+                run.sweeps += simulation.state.convergence.iterations;
+            }
+        }
+        run.after = simulation.workspace.iterations();
+        run.times.sort_by(f64::total_cmp);
+        run
+    }
+
+    /// Number of steps measured.
+    pub fn steps(&self) -> usize {
+        self.times.len()
+    }
+
+    /// The time that a share of the steps does not exceed, `µs`.
+    pub fn quantile(&self, share: f64) -> f64 {
+        self.times[((self.times.len() - 1) as f64 * share) as usize]
+    }
+
+    /// Headings of the table that [`Run::print`] writes a line of.
+    pub fn print_headings(first: &str, ratio: &str) {
+        println!(
+            "{first:>9} {:>9} {:>9} {:>9} {:>9} {ratio:>9} {:>8} {:>8} {:>8} {:>8} {:>8}",
+            "median", "99 %", "99.9 %", "worst", "sweeps", "Newton", "Krylov", "factors", "CG"
+        );
+    }
+
+    /// Prints a line of the table: times, the ratio of the median to another one, iterations a step.
+    pub fn print(&self, name: &str, other: f64) {
+        let per_step =
+            |count: fn(&Iterations) -> u64| (count(&self.after) - count(&self.before)) as f64 / self.times.len() as f64;
+        let [median, most, nearly_all, worst] = [0.5, 0.99, 0.999, 1.0].map(|share| self.quantile(share));
+        println!(
+            "{name:>9} {median:>9.1} {most:>9.1} {nearly_all:>9.1} {worst:>9.1} {:>9.2} {:>8.2} {:>8.2} {:>8.1} {:>8.2} {:>8.1}",
+            median / other,
+            self.sweeps as f64 / self.times.len() as f64,
+            per_step(|iterations| iterations.newton),
+            per_step(|iterations| iterations.krylov),
+            per_step(|iterations| iterations.factorisations),
+            per_step(|iterations| iterations.gradients),
+        );
+    }
+}
+
+/// Runs each in turn, in so many rounds, and keeps of each the one with the least median.
+pub fn fastest<T>(rounds: usize, runs: &[T], run: impl Fn(&T) -> Run) -> Vec<Run> {
+    let mut best: Vec<Run> = runs.iter().map(&run).collect();
+    for _ in 1..rounds {
+        for (best, setting) in best.iter_mut().zip(runs) {
+            let next = run(setting);
+            if next.quantile(0.5) < best.quantile(0.5) {
+                *best = next;
+            }
+        }
+    }
+    best
+}
