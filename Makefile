@@ -265,9 +265,11 @@ site: verify $(VENV)/site
 	$(call say,Documentation)
 	@$(PY) tools/build_site.py
 
-bench: $(VENV)/ready
+bench: fmu $(VENV)/ready
 	cargo bench
 	@$(PY) tools/scaling_figure.py
+	@$(PY) studies manchester
+	@cp results/manchester.png docs/
 
 clean:
 	rm -rf target dist $(VENV) .venv-cofmupy results .pytest_cache .ruff_cache .mypy_cache
