@@ -57,7 +57,7 @@ from helpers import show
 
 STEP = 1e-3  # s: 17 mm of way
 # Derivatives are renewed where the force that they foretold is off by this, and after so many steps.
-MISSED, SLOPES_EVERY = 1.5e3, 40  # N, steps
+MISSED, SLOPES_EVERY = 1.5e3, 80  # N, steps
 SIDES_IN_TURN = tuple(SIDES.values())
 COORDINATES, RATES = exudyn.OutputVariableType.Coordinates, exudyn.OutputVariableType.Coordinates_t
 DIFFERENCE = 1e-6
