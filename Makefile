@@ -49,7 +49,7 @@ say = @printf '\n\033[1m== %s\033[0m\n' '$(1)'
 install = $(PY) -m uv pip install --quiet --python $(PY) -r $(1) \
 	|| $(PY) -m pip install --quiet --disable-pip-version-check -r $(1)
 
-COUPLINGS := longitudinal stiff multibody train sweep hunting adhesion maintenance
+COUPLINGS := longitudinal stiff multibody train sweep hunting adhesion maintenance height curve
 WHEELSET := target/Wheelset.fmu
 
 .PHONY: fmu fmu3 platforms wheel demo measurements measurements-docs test test-debug soak derivatives bits docs site bench bench-check clean lint rust-test verify python-test hosts library command couplings packages
@@ -181,7 +181,7 @@ HUNTING := $(addsuffix .png,hunting_stability hunting_cycle hunting_curve huntin
 # The pictures of the pages in docs/couplings/, and their tables where they are generated; commit what changes.
 couplings-docs: couplings
 	@$(PY) tools/update_docs.py couplings
-	@cp $(addprefix results/,longitudinal.png stiff.png stiff_stop.png multibody.png train.png creep_curves.png $(HUNTING) adhesion.png maintenance.png) docs/couplings/
+	@cp $(addprefix results/,longitudinal.png stiff.png stiff_stop.png multibody.png train.png creep_curves.png $(HUNTING) adhesion.png maintenance.png height.png curve.png curve_above.png) docs/couplings/
 
 # The time that the sweep takes on two workers against one.
 sweep-scaling: couplings-set-up
@@ -266,7 +266,7 @@ site: verify $(VENV)/site
 	$(call say,Documentation)
 	@$(PY) tools/build_site.py
 
-bench: $(VENV)/ready
+bench: fmu $(VENV)/ready
 	cargo bench
 	@$(PY) tools/scaling_figure.py
 	@mkdir -p results
@@ -274,6 +274,8 @@ bench: $(VENV)/ready
 	@mv results/error_over_time.part results/error_over_time.csv
 	@$(PY) studies error_over_time
 	@cp results/error_over_time.png docs/
+	@$(PY) studies manchester
+	@cp results/manchester.png docs/
 
 # Iterations a step on the rough track against recorded ones, which do not hang on the machine; a part of `make test` as well.
 bench-check: $(VENV)/build
