@@ -209,13 +209,19 @@ impl Torture {
 
     /// Takes the steps of a run.
     fn follow(&self, model: &Model, run: &mut Run) -> Result<(), RunFailure> {
+        let by_place = model.parameters().contact_model == ContactModel::Profiles;
         // Those without the wider window.
         let parameters = self.parameters(run.number);
         let mut drive = self.drive(run.number, &parameters);
         let mut workspace = model.workspace();
-        let mut state = model
-            .initial_state(&mut workspace, drive.inputs())
-            .map_err(RunFailure::Model)?;
+        let mut state = loop {
+            match model.initial_state(&mut workspace, drive.inputs()) {
+                Ok(state) => break state,
+                // A wheelset that begins off the rails or deep in them has not begun yet.
+                Err(error) if by_place && is_refused(model, &error) => drive.step(),
+                Err(error) => return Err(RunFailure::Model(error)),
+            };
+        };
         for number in 0..self.steps {
             run.length = number;
             let step = drive.step();
@@ -244,7 +250,6 @@ impl Torture {
             }
             // A wheel that is off the rail, or pressed too deep into it, stays where it was until it can be again where it should.
             let stays = matches!(&outcome, Err((_, error)) if is_refused(model, error));
-            let by_place = model.parameters().contact_model == ContactModel::Profiles;
             if outcome.is_err() && !(stays && by_place) || is_hot(&state) {
                 run.replaced += 1;
                 state = model

@@ -41,6 +41,9 @@ const SHOWS_STIFFNESS: f64 = 5.0;
 /// Least and largest relative change of the load with a relative one of the approach: Hertz's is 3/2, that of a contact which begins far
 /// below the height of the first touch, on a worn rail, is many times as much.
 const STIFFNESSES: [f64; 2] = [0.3, 100.0];
+/// Part of an excess of load that is left where an approach was chosen too small, and the factor on the stiffness then.
+const SLOW: f64 = 0.5;
+const SOFTER: f64 = 0.4;
 /// Cells whose mean pressure, under a load, the error of the pressure is measured by.
 const FEW_CELLS: f64 = 10.0;
 /// Error of the pressure at the first approach, relative.
@@ -323,11 +326,14 @@ impl Approaches {
         if excess.abs() > SHOWS_STIFFNESS * error {
             self.bracket[usize::from(excess > 0.0)] = self.approach;
         }
-        if let Some([before, excess_before]) = self.last
-            && (excess - excess_before).abs() > SHOWS_STIFFNESS * error
-        {
-            let slope = (excess - excess_before) / (self.approach - before);
-            self.stiffness = clamped(slope, self.approach.max(self.size));
+        if let Some([before, excess_before]) = self.last {
+            if (excess - excess_before).abs() > SHOWS_STIFFNESS * error {
+                let slope = (excess - excess_before) / (self.approach - before);
+                self.stiffness = clamped(slope, self.approach.max(self.size));
+            } else if excess * excess_before > SLOW * excess_before * excess_before {
+                // The way was too small to show the stiffness, which is therefore less than it was taken for.
+                self.stiffness *= SOFTER;
+            }
         }
         self.last = Some([self.approach, excess]);
         // Half way to no contact at most, and to twice the approach: where another contact begins to carry, the stiffness jumps. Where nothing carries
