@@ -264,7 +264,12 @@ fn a_combination_that_cannot_be_is_an_error_at_the_end_of_the_initialization() {
                 "strip_half_length",
             ),
             (&[], &[("wheel_speed", 200.0), ("wheel_radius", 5.0)], "rolling speed"),
-            (&[("control", 3)], &[], "control = 3"),
+            (&[("contact_model", 1), ("control", 3)], &[], "control = 3"),
+            (
+                &[("contact_model", 1), ("patch_geometry", 2)],
+                &[],
+                "patch_geometry = 2",
+            ),
             (&[("contact_model", 3), ("slip_source", 1)], &[], "slip_source = 1"),
             (
                 &[("contact_model", 3), ("slip_source", 2), ("control", 2)],

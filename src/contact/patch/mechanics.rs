@@ -45,7 +45,12 @@ pub fn solve(
         lift_off(problem, interface, fields, solvers);
         return Ok(TractionChange::NONE);
     }
-    let set_changed = solve_normal(problem, problem.constraint(), interface, fields, solvers, tolerance)?;
+    let solved = solve_normal(problem, problem.constraint(), interface, fields, solvers, tolerance);
+    if solved.is_err() {
+        // Friction must not go on with what it has of the cells that were under pressure before.
+        solvers.friction.start_contact();
+    }
+    let set_changed = solved?;
     follow(problem, interface, fields, solvers, set_changed, tolerance)
 }
 

@@ -44,6 +44,8 @@ const STIFFNESSES: [f64; 2] = [0.3, 100.0];
 /// Part of an excess of load that is left where an approach was chosen too small, and the factor on the stiffness then.
 const SLOW: f64 = 0.5;
 const SOFTER: f64 = 0.4;
+/// Longest step of the approach over the usual one.
+const LONGEST_REACH: f64 = 16.0;
 /// Cells whose mean pressure, under a load, the error of the pressure is measured by.
 const FEW_CELLS: f64 = 10.0;
 /// Error of the pressure at the first approach, relative.
@@ -147,7 +149,14 @@ pub fn solve(
         }
         return Ok(TractionChange::NONE);
     }
-    press(problem, fields, solvers, tolerance)?;
+    let pressed = press(problem, fields, solvers, tolerance);
+    if pressed.is_err() {
+        // Friction must not go on with what it has of the cells that were under pressure before.
+        for own in &mut solvers.windows {
+            own.patch.friction.start_contact();
+        }
+    }
+    pressed?;
     let motion = problem.pose().motion;
     let lowered = fields.approach[0] - solvers.reference;
     let mut change = TractionChange::NONE;
@@ -280,6 +289,8 @@ struct Approaches {
     stiffness: f64,
     /// Approaches known to be too small and too large, `m`.
     bracket: [f64; 2],
+    /// Longest step over the usual one.
+    reach: f64,
     /// Approach that counts for the size of a step at least, `m`: a rail that bulges carries at an approach of nothing, and below.
     size: f64,
 }
@@ -295,6 +306,7 @@ impl Approaches {
                 last: None,
                 stiffness: 0.0,
                 bracket,
+                reach: 1.0,
                 size,
             };
         }
@@ -306,6 +318,7 @@ impl Approaches {
             load: Some(load),
             approach,
             bracket,
+            reach: 1.0,
             size,
             last: None,
             // Hertz's load is as the approach to the power of 3/2.
@@ -343,8 +356,15 @@ impl Approaches {
         } else {
             f64::INFINITY
         };
-        let size = self.approach.abs().max(self.size);
-        self.approach = next.clamp(self.approach - 0.5 * size, self.approach + size);
+        let size = self.reach * self.approach.abs().max(self.size);
+        let within = next.clamp(self.approach - 0.5 * size, self.approach + size);
+        // What is farther away is reached in steps that grow.
+        self.reach = if within == next {
+            1.0
+        } else {
+            (2.0 * self.reach).min(LONGEST_REACH)
+        };
+        self.approach = within;
         let [low, high] = self.bracket;
         if low.is_finite() && high.is_finite() && !(low < self.approach && self.approach < high) {
             self.approach = 0.5 * (low + high);
