@@ -1,10 +1,13 @@
 //! Beginning of a step of one window of cells, for the gap and the rigid slip of the undeformed bodies that its solvers hold.
 
+use super::extent::extent;
 use super::fields::PatchFields;
 use super::heat_and_wear;
 use super::mechanics;
+use super::operators::relaxation_length;
 use super::problem::PatchProblem;
 use super::solvers::PatchSolvers;
+use crate::body::half_space::HalfSpaces;
 use crate::contact::memory;
 use crate::error::Result;
 
@@ -54,4 +57,15 @@ pub fn begin_linearisation(problem: &PatchProblem, fields: &PatchFields, solvers
         }
     }
     heat_and_wear::take_all_wear(problem, fields, solvers);
+}
+
+/// Relaxation length of the contact of the given pressure, `m`; that of the largest load where there is none.
+pub fn relaxation_length_of(problem: &PatchProblem, pair: &HalfSpaces, pressure: &[f64]) -> f64 {
+    let extent = extent(problem.operators, pressure);
+    if extent.length > 0.0 && extent.breadth > 0.0 {
+        let half_axes = (0.5 * extent.length, 0.5 * extent.breadth);
+        relaxation_length(pair, problem.parameters.layer_compliance, half_axes)
+    } else {
+        problem.operators.relaxation_length
+    }
 }

@@ -7,7 +7,7 @@ use super::integrals;
 use super::linearisation::Solution;
 use super::march_tangent;
 use super::mechanics;
-use super::operators::{PatchOperators, relaxation_length_of};
+use super::operators::PatchOperators;
 use super::problem::PatchProblem;
 use super::profiles;
 use super::solvers::PatchSolvers;
@@ -91,7 +91,7 @@ impl Engine for PatchOperators {
     fn relaxation_length(problem: &PatchProblem, fields: &PatchFields) -> f64 {
         if problem.parameters.patch_geometry == PatchGeometry::Inputs {
             let pair = HalfSpaces::of_pair(problem.parameters);
-            return relaxation_length_of(problem, &pair, &fields.pressure);
+            return begin::relaxation_length_of(problem, &pair, &fields.pressure);
         }
         let load = problem.load(fields);
         let ratio = (load / problem.parameters.largest_load).cbrt().min(1.0);

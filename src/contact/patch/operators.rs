@@ -1,9 +1,7 @@
 //! Operators of a patch: everything that is computed once, at initialisation.
 
 use super::expansion::Expansion;
-use super::extent::extent;
 use super::kernels::Kernels;
-use super::problem::PatchProblem;
 use crate::body::compliance::Scales;
 use crate::body::grid::Grid;
 use crate::body::half_space::HalfSpaces;
@@ -225,17 +223,6 @@ pub fn relaxation_length(pair: &HalfSpaces, layer: f64, (a, b): (f64, f64)) -> f
     }
     let with_layer = displacement + layer / (PI * a * b);
     RELAXATION_FACTOR * with_layer / (1.0 / stiffness + 0.375 * layer / (a * a * b))
-}
-
-/// Relaxation length of the contact of the given pressure, `m`; that of the largest load where there is none.
-pub fn relaxation_length_of(problem: &PatchProblem, pair: &HalfSpaces, pressure: &[f64]) -> f64 {
-    let extent = extent(problem.operators, pressure);
-    if extent.length > 0.0 && extent.breadth > 0.0 {
-        let half_axes = (0.5 * extent.length, 0.5 * extent.breadth);
-        relaxation_length(pair, problem.parameters.layer_compliance, half_axes)
-    } else {
-        problem.operators.relaxation_length
-    }
 }
 
 /// Mean displacement of a circle along an elliptic shear τ ∝ √(1 − r²/c²) on it, per force, `m/N`. Of one half-space u_x =

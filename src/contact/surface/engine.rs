@@ -13,7 +13,7 @@ use crate::contact::fields::EngineState;
 use crate::contact::integrals::Integrals;
 use crate::contact::interface::Interface;
 use crate::contact::memory;
-use crate::contact::patch::operators::{PatchOperators, relaxation_length_of};
+use crate::contact::patch::operators::PatchOperators;
 use crate::contact::patch::{self, begin, heat_and_wear};
 use crate::contact::profiles::{ContactNode, Profiles};
 use crate::contact::rim::HeatedNode;
@@ -46,7 +46,7 @@ fn begin_windows(
     let before = before.map(|before| at_places(*moved, carried, before));
     for (window, place) in now.used() {
         let (patch, own) = (problem.of(&place), &mut now.windows[window]);
-        own.relaxation_length = relaxation_length_of(&patch, &problem.operators.pair, &own.pressure);
+        own.relaxation_length = begin::relaxation_length_of(&patch, &problem.operators.pair, &own.pressure);
         let before = before.map(|before| &before.windows[window]);
         begin::begin(&patch, before, own, &mut windows[window].patch)?;
     }
