@@ -107,7 +107,7 @@ fn wheels_wear_and_are_measured() {
         assert!(text.lines().any(|found| found == line), "{text}");
     }
     let depths = file("depths.csv");
-    fs::write(&depths, "arc_length [mm],depth [mm]\n85,0\n95,2\n115,2\n125,0\n").unwrap();
+    fs::write(&depths, "arc_length [mm],depth [mm]\n75,0\n85,2\n105,2\n115,0\n").unwrap();
     let (worn, measures) = (file("worn.prw"), file("measures.csv"));
     let [depths, worn, measures] = [&depths, &worn, &measures].map(|path| path.to_str().unwrap());
     let (_, beside) = said(&["profile", "S1002", "--worn-by", depths, "-o", worn]);
