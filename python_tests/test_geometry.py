@@ -47,6 +47,48 @@ def test_points_and_files(tmp_path):
         package.Profile.from_points(exact["y"], exact["z"], body="rail")
 
 
+def test_a_wheel_wears_and_is_measured(tmp_path):
+    """Flange of S1002 as EN 13715 has it; a hollow of its tread and a thinner flange, in measures, area and file."""
+    new = package.Profile("S1002")
+    measures = new.measures()
+    assert measures.flange_height == pytest.approx(28e-3, abs=1e-9)
+    assert measures.flange_thickness == pytest.approx(32.5e-3, abs=1e-6)
+    assert measures.flange_gradient == pytest.approx(10.794e-3, abs=1e-6)
+    assert measures.hollow_depth == 0.0
+    # 2 mm on the running circle, over 20 mm on either side.
+    middle = np.interp(0.0, new.points["y"], new.points["arc_length"])
+    over = np.linspace(-20e-3, 20e-3, 401)
+    depth = 2e-3 * (1 - (over / 20e-3) ** 2) ** 2
+    worn = new.worn_by(middle + over, depth)
+    assert (worn.name, worn.source) == ("S1002", "EN 13715, worn")
+    assert worn.measures().flange_height == pytest.approx(30e-3, abs=2e-6)
+    wear = worn.worn_against(new)
+    assert wear.tread_depth == pytest.approx(2e-3, abs=2e-6)
+    assert wear.largest_depth == pytest.approx(2e-3, abs=2e-6)
+    assert abs(wear.largest_depth_position) < 0.3e-3
+    # The area of what the normals pass, with the curvature towards the material.
+    curvature = np.interp(middle + over, new.points["arc_length"], new.points["curvature"])
+    area = np.trapezoid(depth - curvature * depth**2 / 2, over)
+    assert worn.worn_area("S1002") == pytest.approx(area, rel=2e-4)
+    again = worn.worn_by(middle + over, depth)
+    assert again.source == "EN 13715, worn"
+    assert again.worn_area(new) == pytest.approx(2 * wear.worn_area, rel=1e-2)
+    worn.write(tmp_path / "worn.prw")
+    assert package.Profile(tmp_path / "worn.prw").worn_area(worn) == pytest.approx(0.0, abs=1e-11)
+    same = new.worn_by(0.01, 0.0)
+    assert same.source == "EN 13715"
+    np.testing.assert_array_equal(same.points["z"], new.points["z"])
+    for call, words in [
+        (lambda: package.Profile("60E1").measures(), "a wheel is needed"),
+        (lambda: package.Profile("cone20").measures(), "no flange of 12 mm"),
+        (lambda: new.worn_against("60E1"), "a wheel is needed"),
+        (lambda: new.worn_by([0.02, 0.01], 1e-3), "must ascend"),
+        (lambda: new.worn_by(0.01, 13e-3), "where its radius is"),
+    ]:
+        with pytest.raises(ValueError, match=words):
+            call()
+
+
 def test_contact_geometry_is_a_table():
     """A profile of one's own, inclined and smoothed, gives what the names give."""
     named = package.contact_geometry("60E1", "S1002", lateral=(-4e-3, 4e-3), step=5e-4)

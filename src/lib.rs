@@ -133,7 +133,7 @@ pub mod wheel_rail;
 pub use error::{Error, ProfileError};
 pub use geometry::profile::built_in as built_in_profiles;
 pub use geometry::profile::files as profile_files;
-pub use geometry::profile::{Body, CurvePoint, HeightFunction, Profile};
+pub use geometry::profile::{Body, CurvePoint, HeightFunction, Profile, WheelMeasures, WheelWear};
 pub use geometry::wheelset as contact_geometry;
 pub use parameters::{
     ContactModel, Control, FrictionLaw, INTEGER_PARAMETERS, MeshKind, NormalSolver, Parameters, PatchGeometry,

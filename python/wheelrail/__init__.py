@@ -5,7 +5,8 @@
 - `creep_curves`: steady forces over longitudinal, lateral and spin creepage.
 - `preset`: a named set of parameters, for a wet rail for example.
 - `Instance`: the component step by step, for a master written by hand; `SavedState`: what it can go back to.
-- `Profile`, `contact_geometry`: profiles of wheels and rails, and where a wheelset touches its track.
+- `Profile`, `contact_geometry`: profiles of wheels and rails, and where a wheelset touches its track;
+  `WheelMeasures`, `WheelWear`: what is measured on a wheel.
 - `variables`: what there is to set and to read.
 - `wheelrail.plots`: pictures of a braking manoeuvre, of the patch in plan view, of creep curves, of profiles
   in contact.
@@ -19,7 +20,7 @@ from typing import TYPE_CHECKING, Any
 from .archive import example, fmu_path, preset
 from .creep import creep_curves
 from .errors import InstanceClosedError, SimulationError, SimulationWarning
-from .geometry import Profile, contact_geometry
+from .geometry import Profile, WheelMeasures, WheelWear, contact_geometry
 from .instance import Instance
 from .simulation import simulate
 from .states import SavedState
@@ -36,6 +37,8 @@ __all__ = [
     "SavedState",
     "SimulationError",
     "SimulationWarning",
+    "WheelMeasures",
+    "WheelWear",
     "contact_geometry",
     "creep_curves",
     "example",

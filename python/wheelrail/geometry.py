@@ -7,6 +7,7 @@ import subprocess
 import sysconfig
 import tempfile
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from functools import cache
 from os import PathLike, fspath
 from pathlib import Path
@@ -85,6 +86,50 @@ def table_of(path: Path) -> pd.DataFrame:
     return table
 
 
+@dataclass(frozen=True)
+class WheelMeasures:
+    """Measures of a wheel's profile by EN 15313, about the running circle 70 mm from the flange's back [m].
+
+    Attributes
+    ----------
+    flange_height
+        Sh: of the flange's tip from the running circle.
+    flange_thickness
+        Sd: from the flange's back to its face 10 mm below the running circle.
+    flange_gradient
+        qR: along the axle, between the face 2 mm above the tip and 10 mm below the running circle.
+    hollow_depth
+        The largest radius to the field side of a place, less the radius there, at the place where that is most.
+    """
+
+    flange_height: float
+    flange_thickness: float
+    flange_gradient: float
+    hollow_depth: float
+
+
+@dataclass(frozen=True)
+class WheelWear:
+    """Difference of a wheel's profile to the new one, both with the flange's back and tip at the same place.
+
+    Attributes
+    ----------
+    worn_area
+        Area of the cross-section that is gone, from the tip of the flange to the field side [m²].
+    tread_depth
+        Depth at the running circle, along the radius [m].
+    largest_depth
+        Largest depth along the new profile's normal [m].
+    largest_depth_position
+        Lateral position of that depth on the new profile [m].
+    """
+
+    worn_area: float
+    tread_depth: float
+    largest_depth: float
+    largest_depth_position: float
+
+
 class Profile:
     """Profile of a wheel or a rail, built in or from a file.
 
@@ -129,8 +174,8 @@ class Profile:
     Examples
     --------
     >>> rail = Profile("60E1", inclination=1 / 40)
-    >>> rail.points["z"].max()
-    0.0
+    >>> abs(float(rail.points["z"].max())) < 1e-9
+    True
     """
 
     def __init__(
@@ -149,20 +194,23 @@ class Profile:
         """Read it."""
         given = {"body": body, "unit": unit, "y_to": y_to, "z": z, "part": part, "smoothing": smoothing}
         given |= {"flange_back_position": flange_back_position, "inclination": inclination}
-        self._arguments = ["profile", fspath(profile), *options(given)]
+        self._read(["profile", fspath(profile), *options(given)])
+        self._built_in = self.name if inclination is None and self.name in built_in_names() else None
+
+    def _read(self, arguments: list[str]) -> None:
+        """Take the profile of these arguments of the command."""
         with tempfile.TemporaryDirectory() as folder:
             table = Path(folder) / "profile.csv"
-            said = run(*self._arguments, "--output", str(table)).stderr.strip()
+            said = run(*arguments, "--output", str(table)).stderr.strip()
             self.points = table_of(table)
             # As a file that says itself how it is turned, for `contact_geometry` and `write`.
             found = re.fullmatch(r"(.*): (rail|wheel), (.*)", said)
             if found is None:
-                raise ValueError(f"{profile}: {said}")
+                raise ValueError(f"{arguments[1]}: {said}")
             self.name, self.body, self.source = found.groups()
             own = Path(folder) / f"profile{ENDINGS[self.body]}"
-            run(*self._arguments, "--output", str(own))
+            run(*arguments, "--output", str(own))
             self._text = own.read_text(encoding="utf-8")
-        self._built_in = self.name if inclination is None and self.name in built_in_names() else None
 
     @classmethod
     def from_points(cls, y: Any, z: Any, *, body: str, smoothing: float | None = None) -> "Profile":
@@ -192,6 +240,87 @@ class Profile:
         """Write a file: SIMPACK (.prr, .prw), MiniProf (.ban, .whl, .mpt), VAMPIRE (.rai, .whe), or CSV of `points`."""
         with tempfile.TemporaryDirectory() as folder:
             run("profile", self.argument(Path(folder), "profile"), "--output", fspath(path))
+
+    def worn_by(self, arc_length: Any, depth: Any) -> "Profile":
+        """Profile that has worn by depths along its normal.
+
+        Parameters
+        ----------
+        arc_length
+            Places, ascending, as in `points` [m].
+        depth
+            Depth at each of them, or one for all: positive where material is gone. Between the places it is a monotone
+            cubic, before the first one and behind the last it is theirs [m].
+
+        Raises
+        ------
+        ValueError
+            The places do not ascend or lie beyond the profile; the depth reaches the radius of curvature.
+
+        Examples
+        --------
+        >>> wheel = Profile("S1002")
+        >>> worn = wheel.worn_by([0.09, 0.1, 0.11], [0.0, 1e-3, 0.0])
+        >>> round(1e3 * worn.measures().flange_height, 2)
+        28.26
+        """
+        places = np.atleast_1d(np.asarray(arc_length, dtype=float))
+        rows = np.column_stack([places, np.broadcast_to(np.asarray(depth, dtype=float), places.shape)])
+        worn = Profile.__new__(Profile)
+        with tempfile.TemporaryDirectory() as name:
+            folder = Path(name)
+            table = folder / "depths.csv"
+            # As many digits as read back to the same number.
+            np.savetxt(table, rows, fmt="%.17g", delimiter=",", header="arc_length [m],depth [m]", comments="")
+            worn._read(["profile", self.argument(folder, "profile"), f"--worn-by={table}"])
+        suffix = ", worn" if np.any(rows[:, 1]) and not self.source.endswith(", worn") else ""
+        worn.name, worn.source, worn._built_in = self.name, self.source + suffix, None
+        return worn
+
+    def measures(self) -> WheelMeasures:
+        """Measures of a wheel by EN 15313: height, thickness and gradient of its flange, hollow of its tread.
+
+        Raises
+        ------
+        ValueError
+            It is a rail, has no flange of 12 mm, or begins on it before its tip.
+
+        Examples
+        --------
+        >>> round(1e3 * Profile("S1002").measures().flange_thickness, 2)
+        32.5
+        """
+        with tempfile.TemporaryDirectory() as name:
+            return WheelMeasures(**self._measured(Path(name)))
+
+    def worn_against(self, new: "AnyProfile") -> WheelWear:
+        """Wear of a wheel against its new profile: back and tip of the flange, which no rail touches, agree.
+
+        Parameters
+        ----------
+        new
+            The new profile: a name, the path of a file that says how it is turned, or a `Profile`.
+
+        Raises
+        ------
+        ValueError
+            One of both has no measures of a wheel.
+        """
+        with tempfile.TemporaryDirectory() as name:
+            folder = Path(name)
+            other = new.argument(folder, "new") if isinstance(new, Profile) else fspath(new)
+            found = self._measured(folder, f"--against={other}")
+        return WheelWear(**{key: value for key, value in found.items() if key in WheelWear.__annotations__})
+
+    def worn_area(self, new: "AnyProfile") -> float:
+        """Area of the cross-section that a wheel has lost against its new profile, as in `worn_against` [m²]."""
+        return self.worn_against(new).worn_area
+
+    def _measured(self, folder: Path, *against: str) -> dict[str, float]:
+        """What the command measures, by name."""
+        table = folder / "measures.csv"
+        run("profile", self.argument(folder, "profile"), "--measures", *against, "--output", str(table))
+        return {str(name): float(value) for name, value in table_of(table).iloc[0].items()}
 
     def argument(self, folder: Path, name: str) -> str:
         """What the command is given for this profile: its name, or a file of the given name in a folder."""

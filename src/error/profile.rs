@@ -50,6 +50,22 @@ pub enum ProfileError {
         /// Reason in words, with the values that made it.
         reason: String,
     },
+    /// Wear that leaves no profile.
+    #[error("{name} cannot wear so: {reason}")]
+    NoWear {
+        /// Profile.
+        name: String,
+        /// Reason in words, with the values that made it.
+        reason: String,
+    },
+    /// A wheel without the places that its measures are taken at.
+    #[error("{name} cannot be measured: {reason}")]
+    NotMeasured {
+        /// Profile.
+        name: String,
+        /// Reason in words, with the values that made it.
+        reason: String,
+    },
     /// A file that cannot be read or written.
     #[error("{path}: {reason}")]
     File {

@@ -94,8 +94,48 @@ fn profiles_go_through_files() {
     assert!(list.lines().any(|line| line.starts_with("49E1    rail")), "{list}");
 }
 
+/// S1002 as EN 13715 has it, to be read and as CSV, and worn by 2 mm on the tread: the flange becomes as much higher.
+#[test]
+fn wheels_wear_and_are_measured() {
+    let (text, _) = said(&["profile", "S1002", "--measures"]);
+    for line in [
+        "flange height Sh                  28.000 mm",
+        "flange thickness Sd               32.500 mm",
+        "flange gradient qR                10.794 mm",
+        "hollow of the tread                0.000 mm",
+    ] {
+        assert!(text.lines().any(|found| found == line), "{text}");
+    }
+    let depths = file("depths.csv");
+    fs::write(&depths, "arc_length [mm],depth [mm]\n75,0\n85,2\n105,2\n115,0\n").unwrap();
+    let (worn, measures) = (file("worn.prw"), file("measures.csv"));
+    let [depths, worn, measures] = [&depths, &worn, &measures].map(|path| path.to_str().unwrap());
+    let (_, beside) = said(&["profile", "S1002", "--worn-by", depths, "-o", worn]);
+    assert!(beside.contains("S1002: wheel, EN 13715, worn"), "{beside}");
+    said(&["profile", worn, "--measures", "--against", "S1002", "-o", measures]);
+    let table = fs::read_to_string(measures).unwrap();
+    let only = |name: &str| column(&table, name)[0];
+    for (name, expected, allowed) in [
+        ("flange_height [m]", 30e-3, 1e-5),
+        ("tread_depth [m]", 2e-3, 1e-5),
+        ("largest_depth [m]", 2e-3, 1e-5),
+        // A monotone cubic over 10 mm rises by 2 mm, and falls again.
+        ("worn_area [m2]", 60e-6, 1e-6),
+    ] {
+        assert!((only(name) - expected).abs() < allowed, "{name}: {}", only(name));
+    }
+    let (text, _) = said(&["profile", worn, "--measures", "--against", "S1002"]);
+    assert!(text.contains("worn area                         60."), "{text}");
+    assert!(text.contains("mm²"), "{text}");
+    let (text, _) = said(&["profile", "S1002", "--measures", "--against", "s1002"]);
+    assert!(text.contains("worn area                          0.000 mm²"), "{text}");
+}
+
 #[test]
 fn what_cannot_be_is_refused() {
+    let bare = file("bare.csv");
+    fs::write(&bare, "arc_length,depth\n0.01,1\n").unwrap();
+    let bare = bare.to_str().unwrap();
     let rough = file("rough.csv");
     fs::write(&rough, "y [mm],z [mm]\n-70,-20\n-60,-28\n").unwrap();
     let rough = rough.to_str().unwrap();
@@ -135,6 +175,22 @@ fn what_cannot_be_is_refused() {
         ),
         (&["geometry", "--smoothing", "0.002"], "all profiles are built in"),
         (&["geometry", "--outlines-at", "0.002"], "--outlines"),
+        (&["profile", "60E1", "--measures"], "a wheel is needed"),
+        (&["profile", "cone20", "--measures"], "it has no flange of 12 mm"),
+        (&["profile", "S1002", "--against", "S1002"], "--measures"),
+        (
+            &["profile", "S1002", "--measures", "--against", "S1003"],
+            "did you mean S1002",
+        ),
+        (
+            &["profile", "S1002", "--measures", "--against", "60E1"],
+            "a wheel is needed",
+        ),
+        (
+            &["profile", "S1002", "--worn-by", bare],
+            "bare.csv, columns, line 1: its headings have no unit",
+        ),
+        (&["profile", "S1002", "--worn-by", "missing.csv"], "missing.csv"),
     ] {
         let done = wheelrail(arguments);
         let beside = String::from_utf8_lossy(&done.stderr).into_owned();

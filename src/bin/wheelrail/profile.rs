@@ -5,7 +5,7 @@ use crate::table::{self, Table, heading};
 use clap::{Args, ValueEnum};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
-use wheelrail::profile_files::{Lateral, LengthUnit, ReadOptions};
+use wheelrail::profile_files::{Lateral, LengthUnit, ReadOptions, read_depths};
 use wheelrail::{Body, Profile, ProfileError, built_in_profiles};
 
 /// Options of `profile`.
@@ -39,6 +39,15 @@ pub struct Options {
     /// Inclination that a rail is given, as a slope.
     #[arg(long, value_name = "SLOPE", allow_negative_numbers = true, requires = "profile")]
     inclination: Option<f64>,
+    /// Table of depths by which the profile is worn along its normal, `arc_length [mm],depth [mm]`: positive where material is gone.
+    #[arg(long, value_name = "DEPTHS.csv", requires = "profile")]
+    worn_by: Option<PathBuf>,
+    /// Measures of a wheel by EN 15313, in mm: height, thickness and gradient of the flange, hollow of the tread. With `--output` as CSV.
+    #[arg(long, requires = "profile")]
+    measures: bool,
+    /// New profile, by its name or file, that the worn area and depths are measured against.
+    #[arg(long, value_name = "NAME|FILE", requires = "measures")]
+    against: Option<String>,
     /// File for the profile: SIMPACK's (.prr, .prw), MiniProf's (.ban, .whl, .mpt), VAMPIRE's (.rai, .whe), or CSV with arc length,
     /// inclination and curvature; without it the CSV goes to the standard output.
     #[arg(short, long, value_name = "OUT", requires = "profile")]
@@ -181,7 +190,13 @@ impl Options {
         if let Some(slope) = self.inclination {
             profile = profile.inclined(slope.atan())?;
         }
+        if let Some(path) = &self.worn_by {
+            profile = profile.worn_by(&read_depths(path)?)?;
+        }
         eprintln!("{}: {}, {}", profile.name(), profile.body().name(), profile.source());
+        if self.measures {
+            return self.write_measures(&profile);
+        }
         let ending = self.output.as_deref().and_then(Path::extension);
         match (
             &self.output,
@@ -193,6 +208,71 @@ impl Options {
                 Ok(profile.write(path)?)
             }
             (path, _) => write(path.as_deref(), &profile),
+        }
+    }
+
+    /// Writes the measures of a wheel, and its wear where a new profile is given: to be read, or as CSV where a file is given.
+    fn write_measures(&self, profile: &Profile) -> Result<(), Error> {
+        let measures = profile.measures()?;
+        let mut rows = vec![
+            Measure::length("flange_height", "flange height Sh", measures.flange_height),
+            Measure::length("flange_thickness", "flange thickness Sd", measures.flange_thickness),
+            Measure::length("flange_gradient", "flange gradient qR", measures.flange_gradient),
+            Measure::length("hollow_depth", "hollow of the tread", measures.hollow_depth),
+        ];
+        if let Some(new) = &self.against {
+            let new = named(new, Body::Wheel, self.smoothing)?;
+            let wear = profile.worn_against(&new)?;
+            rows.extend([
+                Measure {
+                    name: "worn_area",
+                    words: "worn area",
+                    value: wear.area,
+                    units: [("m2", 1.0), ("mm²", 1e6)],
+                },
+                Measure::length("tread_depth", "depth at the running circle", wear.tread_depth),
+                Measure::length("largest_depth", "largest depth along the normal", wear.largest_depth),
+                Measure::length(
+                    "largest_depth_position",
+                    "  at the lateral position",
+                    wear.largest_depth_position,
+                ),
+            ]);
+        }
+        if let Some(path) = &self.output {
+            let headings = rows.iter().map(|row| heading(row.name, row.units[0].0));
+            let mut table = Table::open(Some(path), headings)?;
+            table.write(rows.iter().map(|row| row.value))?;
+            return Ok(table.finish()?);
+        }
+        let mut out = io::stdout().lock();
+        for row in rows {
+            let (unit, scale) = row.units[1];
+            // No minus before a zero that is one by rounding.
+            let value = (1e3 * scale * row.value).round() / 1e3 + 0.0;
+            writeln!(out, "{:31}{value:9.3} {unit}", row.words)?;
+        }
+        Ok(())
+    }
+}
+
+/// A measure of a wheel as it is written.
+struct Measure {
+    name: &'static str,
+    words: &'static str,
+    /// Value in the unit of tables.
+    value: f64,
+    /// Unit of tables and unit for reading, with what a value in the first is in it.
+    units: [(&'static str, f64); 2],
+}
+
+impl Measure {
+    fn length(name: &'static str, words: &'static str, value: f64) -> Measure {
+        Measure {
+            name,
+            words,
+            value,
+            units: [("m", 1.0), ("mm", 1e3)],
         }
     }
 }

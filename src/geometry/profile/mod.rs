@@ -15,10 +15,13 @@ mod curve;
 pub mod files;
 mod height;
 mod measured;
+mod measures;
 mod norm;
 mod outline;
+mod worn;
 
 pub use height::HeightFunction;
+pub use measures::{WheelMeasures, WheelWear};
 
 use crate::error::ProfileError;
 use curve::Curve;

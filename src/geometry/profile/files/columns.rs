@@ -27,7 +27,7 @@ pub fn read(text: &str, name: &str) -> Result<Raw, ProfileError> {
                 headed = true;
                 unit = heading_unit(content).map_err(|reason| refused(line, reason))?;
             }
-            _ => return Err(refused(line, format!("{content:?} is no row y z"))),
+            _ => return Err(refused(line, format!("{content:?} is no row of two numbers"))),
         }
     }
     if points.is_empty() {
@@ -51,7 +51,7 @@ fn heading_unit(content: &str) -> Result<Option<LengthUnit>, String> {
         return Ok(None);
     };
     if second.is_some_and(|second| second != first) {
-        return Err(format!("{content:?}: y and z have different units"));
+        return Err(format!("{content:?}: the columns have different units"));
     }
     let unit = LengthUnit::named(first);
     unit.map(Some)

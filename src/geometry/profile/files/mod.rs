@@ -139,25 +139,8 @@ impl Profile {
     /// # Errors
     /// The file cannot be read, is not of its format, does not say what it must, or is no profile of the body that is needed.
     pub fn read(path: &Path, options: &ReadOptions) -> Result<Profile, ProfileError> {
-        let failed = |reason: String| ProfileError::File {
-            path: path.display().to_string(),
-            reason,
-        };
-        let length = std::fs::metadata(path)
-            .map_err(|error| failed(error.to_string()))?
-            .len();
-        if length > LONGEST {
-            return Err(failed(format!(
-                "{length} bytes, more than {LONGEST}: no profile is as long"
-            )));
-        }
-        let bytes = std::fs::read(path).map_err(|error| failed(error.to_string()))?;
-        // Titles of stations are in all kinds of alphabets; numbers are not.
-        let text = String::from_utf8_lossy(&bytes);
-        let name = path
-            .file_name()
-            .map_or_else(String::new, |name| name.to_string_lossy().into_owned());
-        Profile::parse(&text, &name, Format::of(path, &text), options)
+        let text = text_of(path)?;
+        Profile::parse(&text, &name_of(path), Format::of(path, &text), options)
     }
 
     /// Profile from the text of a file.
@@ -220,6 +203,51 @@ impl Profile {
         let source = format!("{} file {name}{found}", format.name());
         Profile::from_weighted(body, name, &source, points, options.smoothing)
     }
+}
+
+/// Text of a file; letters that are no UTF-8 are replaced.
+fn text_of(path: &Path) -> Result<String, ProfileError> {
+    let failed = |reason: String| ProfileError::File {
+        path: path.display().to_string(),
+        reason,
+    };
+    let length = std::fs::metadata(path)
+        .map_err(|error| failed(error.to_string()))?
+        .len();
+    if length > LONGEST {
+        return Err(failed(format!(
+            "{length} bytes, more than {LONGEST}: no profile is as long"
+        )));
+    }
+    let bytes = std::fs::read(path).map_err(|error| failed(error.to_string()))?;
+    // Titles of stations are in all kinds of alphabets; numbers are not.
+    Ok(String::from_utf8_lossy(&bytes).into_owned())
+}
+
+/// Name of a file without its folder.
+fn name_of(path: &Path) -> String {
+    path.file_name()
+        .map_or_else(String::new, |name| name.to_string_lossy().into_owned())
+}
+
+/// Depths over the arc length, for [`Profile::worn_by`], from a table of two columns below headings with a unit, `arc_length [mm],depth [mm]`: rows of both, `m`.
+///
+/// # Errors
+/// The file cannot be read, is no such table, or its headings have no unit.
+pub fn read_depths(path: &Path) -> Result<Vec<[f64; 2]>, ProfileError> {
+    let name = name_of(path);
+    let table = columns::read(&text_of(path)?, &name)?;
+    let unit = table.unit.ok_or_else(|| ProfileError::Content {
+        name,
+        format: "columns",
+        line: 1,
+        reason: "its headings have no unit: arc_length [mm],depth [mm]".to_owned(),
+    })?;
+    Ok(table
+        .points
+        .iter()
+        .map(|row| row.place.map(|value| unit * value))
+        .collect())
 }
 
 /// Numbers of a line, separated by blanks, tabs, commas or semicolons; `None` where a part is no number. With semicolons or tabs a comma

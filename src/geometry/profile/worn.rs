@@ -1,0 +1,260 @@
+//! Profiles that have worn, by a depth over the arc length that is measured along the normal.
+//!
+//! With the normal n into the material and the depth d(s), the worn curve is P + d n. Its derivatives over the arc length of the old curve
+//! follow from those of the old one, with the curvature κ towards n:
+//!
+//! P′ = (1 − κ d) t + d′ n, P″ = −(κ′ d + 2 κ d′) t + ((1 − κ d) κ + d″) n
+//!
+//! Each cell keeps its curvature at either end, so that what jumps there still jumps at one place. Where the curvature jumps by Δκ and the depth has a slope, the
+//! worn curve has a kink of d d′ Δκ; the cells on either side of it take the mean direction. The area between the two curves is
+//! ∫ (d − κ d²/2) ds.
+
+use super::curve::{Curve, Piece};
+use super::{Body, CurvePoint, Profile};
+use crate::error::ProfileError;
+
+/// Shortest part, `m`, into which a row of depths divides a cell: however often a profile wears, it has no more than 20 nodes a mm.
+const SHORTEST_PART: f64 = 0.05e-3;
+/// Part of its length that a place must keep where the profile is convex: beyond its radius of curvature an outline crosses itself.
+const LEAST_STRETCH: f64 = 0.02;
+/// Turn, rad, below which the old profile has no kink between two cells.
+const SMOOTH: f64 = 1e-4;
+/// Distance, `m`, that the two sides of a kink may move apart by wear at it; the curve closes it.
+const WIDEST_GAP: f64 = 1e-6;
+
+/// Depth over the arc length: piecewise cubic through rows, once differentiable and without overshoot, by the slopes of F. N. Fritsch
+/// and J. Butland (*SIAM Journal on Scientific and Statistical Computing* 5, 1984). Before the first row and behind the last it is constant.
+struct Depths<'a> {
+    rows: &'a [[f64; 2]],
+    slopes: Vec<f64>,
+}
+
+impl<'a> Depths<'a> {
+    fn new(rows: &'a [[f64; 2]]) -> Depths<'a> {
+        let mut slopes = vec![0.0; rows.len()];
+        for (slope, three) in slopes.iter_mut().skip(1).zip(rows.windows(3)) {
+            let [before, after] = [0, 1].map(|k| three[k + 1][0] - three[k][0]);
+            let [left, right] = [(0, before), (1, after)].map(|(k, length)| (three[k + 1][1] - three[k][1]) / length);
+            if left * right > 0.0 {
+                // Harmonic mean, weighted by the lengths.
+                let [first, second] = [before + 2.0 * after, 2.0 * before + after];
+                *slope = (first + second) / (first / right + second / left);
+            }
+        }
+        Depths { rows, slopes }
+    }
+
+    /// Depth with its first and second derivative at an arc length, the second one as in the piece that holds another arc length, `within`.
+    fn at(&self, arc: f64, within: f64) -> [f64; 3] {
+        let [depth, slope, _] = self.piece(arc, arc);
+        [depth, slope, self.piece(arc, within)[2]]
+    }
+
+    /// Depth with its derivatives at an arc length, by the cubic of the piece that holds another one.
+    fn piece(&self, arc: f64, within: f64) -> [f64; 3] {
+        let next = self.rows.partition_point(|row| row[0] <= within);
+        if next == 0 || next == self.rows.len() {
+            return [self.rows[next.saturating_sub(1)][1], 0.0, 0.0];
+        }
+        let [[from, first], [to, second]] = [self.rows[next - 1], self.rows[next]];
+        let [a, b] = [self.slopes[next - 1], self.slopes[next]];
+        let length = to - from;
+        let (part, mean) = ((arc - from) / length, (second - first) / length);
+        // The depth is first + length (a part + c part² + e part³).
+        let (c, e) = (3.0 * mean - 2.0 * a - b, a + b - 2.0 * mean);
+        [
+            first + length * part * (a + part * (c + part * e)),
+            a + part * (2.0 * c + 3.0 * part * e),
+            (2.0 * c + 6.0 * part * e) / length,
+        ]
+    }
+
+    /// Whether nothing is worn between two arc lengths.
+    fn is_zero(&self, from: f64, to: f64) -> bool {
+        let first = self.rows.partition_point(|row| row[0] <= from).saturating_sub(1);
+        let last = self.rows.partition_point(|row| row[0] < to).min(self.rows.len() - 1);
+        self.rows[first..=last].iter().all(|row| row[1] == 0.0)
+    }
+}
+
+/// Worn curve at an arc length of the old one, with its length there over that of the old one.
+struct Worn {
+    point: CurvePoint,
+    stretch: f64,
+    speed: f64,
+}
+
+/// Wears a place of a cell; `side` is 1 where the material is to the left of the curve, −1 where it is to the right.
+fn worn(curve: &Curve, cell: usize, arc: f64, depth: [f64; 3], side: f64) -> Worn {
+    let here = curve.within(cell, arc);
+    let step = 1e-3 * (curve.arcs()[cell + 1] - curve.arcs()[cell]);
+    let [before, after] = [-step, step].map(|step| curve.within(cell, arc + step).curvature);
+    let curvature_slope = (after - before) / (2.0 * step);
+    // To the left of the curve, as its curvature.
+    let [left, slope, second] = depth.map(|value| side * value);
+    let (curvature, [ty, tz]) = (here.curvature, here.tangent);
+    let stretch = 1.0 - curvature * left;
+    let (along, across) = (
+        -(curvature_slope * left + 2.0 * curvature * slope),
+        stretch * curvature + second,
+    );
+    let speed = stretch.hypot(slope);
+    Worn {
+        point: CurvePoint {
+            place: [here.place[0] - left * tz, here.place[1] + left * ty],
+            tangent: [(stretch * ty - slope * tz) / speed, (stretch * tz + slope * ty) / speed],
+            curvature: (stretch * across - slope * along) / speed.powi(3),
+        },
+        stretch,
+        speed,
+    }
+}
+
+impl Profile {
+    /// Profile that has worn by depths along its normal: `rows` of arc length and depth, both in `m`, ascending by arc length. A positive
+    /// depth removes material, a negative one adds some.
+    ///
+    /// Between the rows the depth is a monotone cubic, which does not overshoot; before the first row and behind the last it is theirs, so that a
+    /// single row wears all of the profile by one depth. The origin moves with the surface: a rail's to its new highest point, a
+    /// wheel's to the new height of its running circle. A place at which nothing is worn stays as it is.
+    ///
+    /// # Errors
+    /// There is no row, or one is not finite, beyond the profile or not in order; the depth reaches the radius of curvature where material
+    /// is convex; more than a micrometre would open at a kink; or a wheel is worn beyond its running circle.
+    pub fn worn_by(&self, rows: &[[f64; 2]]) -> Result<Profile, ProfileError> {
+        check(rows, self.length()).map_err(|reason| self.no_wear(reason))?;
+        if rows.iter().all(|row| row[1] == 0.0) {
+            return Ok(self.clone());
+        }
+        let depths = Depths::new(rows);
+        let side = match self.body {
+            Body::Wheel => 1.0,
+            Body::Rail => -1.0,
+        };
+        let mut pieces: Vec<Piece> = Vec::new();
+        for (cell, arcs) in self.curve.arcs().windows(2).enumerate() {
+            let is_smooth = cell > 0 && self.turn(cell).abs() < SMOOTH;
+            for (number, part) in parts(&depths, [arcs[0], arcs[1]]).windows(2).enumerate() {
+                let mut piece = worn_piece(&self.curve, cell, [part[0], part[1]], &depths, side)
+                    .map_err(|reason| self.no_wear(reason))?;
+                if let Some(before) = pieces.last_mut() {
+                    let gap = meet(before, &mut piece, number > 0 || is_smooth);
+                    if gap > WIDEST_GAP {
+                        return Err(self.no_wear(format!(
+                            "at the arc length {:.3} mm it would open the two sides of a kink by {:.3} mm",
+                            1e3 * part[0],
+                            1e3 * gap
+                        )));
+                    }
+                }
+                pieces.push(piece);
+            }
+        }
+        let curve = Curve::of_pieces(pieces, 0.0);
+        let curve = curve.ok_or_else(|| self.no_wear("nothing is left of a part of it".to_owned()))?;
+        let source = format!("{}{WORN}", self.source.strip_suffix(WORN).unwrap_or(&self.source));
+        Profile::of_curve(self.body, &self.name, &source, curve)
+    }
+
+    fn no_wear(&self, reason: String) -> ProfileError {
+        ProfileError::NoWear {
+            name: self.name.clone(),
+            reason,
+        }
+    }
+
+    /// Change of direction, rad, between a cell and the one before it.
+    fn turn(&self, cell: usize) -> f64 {
+        let arc = self.curve.arcs()[cell];
+        let [before, after] = [cell - 1, cell].map(|cell| self.curve.within(cell, arc).tangent);
+        before[0] * after[1] - before[1] * after[0]
+    }
+}
+
+/// Refuses rows of arc length and depth that do not serve on a profile of a length, `m`, with the reason.
+fn check(rows: &[[f64; 2]], length: f64) -> Result<(), String> {
+    if rows.is_empty() {
+        return Err("no depth is given".to_owned());
+    }
+    // Round-off of a table that was written in mm.
+    let allowed = -1e-9..=length + 1e-9;
+    for (number, &[arc, depth]) in (1..).zip(rows) {
+        if !allowed.contains(&arc) || !depth.is_finite() {
+            return Err(format!(
+                "row {number} is the depth {depth} m at the arc length {arc} m: allowed are finite depths between 0 and {length} m"
+            ));
+        }
+    }
+    match rows.windows(2).position(|pair| pair[1][0] <= pair[0][0]) {
+        Some(row) => Err(format!(
+            "the arc lengths of rows {} and {} are {} and {} m: they must ascend",
+            row + 1,
+            row + 2,
+            rows[row][0],
+            rows[row + 1][0]
+        )),
+        None => Ok(()),
+    }
+}
+
+/// Wears a part of a cell; else the reason why nothing is left of it.
+fn worn_piece(curve: &Curve, cell: usize, ends: [f64; 2], depths: &Depths, side: f64) -> Result<Piece, String> {
+    let within = 0.5 * (ends[0] + ends[1]);
+    let place = |arc: f64| worn(curve, cell, arc, depths.at(arc, within), side);
+    let mut nodes = Vec::with_capacity(2);
+    let length = if depths.is_zero(ends[0], ends[1]) {
+        ends[1] - ends[0]
+    } else {
+        Curve::arc_length(ends[0], ends[1], |arc| place(arc).speed)
+    };
+    for arc in ends {
+        let worn = place(arc);
+        if worn.stretch < LEAST_STRETCH {
+            return Err(format!(
+                "{} mm are worn at the arc length {:.3} mm, where its radius is {:.3} mm: nothing is left of it",
+                1e3 * depths.at(arc, within)[0],
+                1e3 * arc,
+                1e3 / curve.within(cell, arc).curvature.abs()
+            ));
+        }
+        nodes.push((length, worn.point));
+    }
+    Ok(Piece { nodes })
+}
+
+/// Distance of two pieces that follow each other, `m`. Both get the mean of their directions where they are `smooth`.
+fn meet(before: &mut Piece, after: &mut Piece, smooth: bool) -> f64 {
+    let (Some((_, end)), Some((_, begin))) = (before.nodes.last_mut(), after.nodes.first_mut()) else {
+        return 0.0;
+    };
+    if smooth && end.tangent != begin.tangent {
+        let [y, z] = [0, 1].map(|k| end.tangent[k] + begin.tangent[k]);
+        end.tangent = [y / y.hypot(z), z / y.hypot(z)];
+        begin.tangent = end.tangent;
+    }
+    (begin.place[0] - end.place[0]).hypot(begin.place[1] - end.place[1])
+}
+
+/// End of the source of a worn profile.
+const WORN: &str = ", worn";
+
+/// Ends of the parts of a cell: the rows within it divide it, where it is worn at all and the parts are long enough.
+fn parts(depths: &Depths, [from, to]: [f64; 2]) -> Vec<f64> {
+    let mut parts = vec![from];
+    if !depths.is_zero(from, to) {
+        let first = depths.rows.partition_point(|row| row[0] <= from);
+        for [arc, _] in &depths.rows[first..] {
+            if to - arc < SHORTEST_PART {
+                break;
+            }
+            if arc - parts[parts.len() - 1] >= SHORTEST_PART {
+                parts.push(*arc);
+            }
+        }
+    }
+    parts.push(to);
+    parts
+}
+
+#[cfg(test)]
+mod tests;
