@@ -1,6 +1,7 @@
 //! Integrals over a line contact, its extent, and the profiles' values that the outputs are made of.
 
 use super::fields::LineFields;
+use super::heat_and_wear::rubbing;
 use super::mechanics::LineProblem;
 use super::operators::LineOperators;
 use crate::contact::engine::Engine;
@@ -42,6 +43,7 @@ pub fn integrals(problem: &LineProblem, fields: &LineFields) -> Integrals {
 fn nodes(problem: &LineProblem, fields: &LineFields) -> impl Iterator<Item = Node> {
     let mesh = &problem.operators.mesh;
     let regularisation = problem.parameters.slip_regularisation;
+    let wear = problem.pointwise_wear();
     (0..mesh.contact_nodes).map(move |node| {
         let (pressure, slip) = (fields.pressure[node], fields.slip[node]);
         Node {
@@ -54,6 +56,7 @@ fn nodes(problem: &LineProblem, fields: &LineFields) -> impl Iterator<Item = Nod
             lateral_slip: 0.0,
             friction: fields.friction[node],
             heat_flux: fields.heat_flux[node],
+            wear_rate: wear.map_or(0.0, |law| law.rate(&rubbing(problem, fields, node))),
             sticks: pressure > 0.0 && coulomb::sticks(fields.utilisation[node], regularisation),
         }
     })

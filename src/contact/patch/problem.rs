@@ -1,6 +1,7 @@
 //! Parts of the equations of a patch: slip, leading edge, sliding, heat exchange.
 
 use super::fields::PatchFields;
+use super::heat_and_wear::rubbing;
 use super::operators::PatchOperators;
 use crate::friction::coulomb::Sliding;
 use crate::heat::strips::StripHeatMarch;
@@ -110,6 +111,7 @@ impl<'a> PatchProblem<'a> {
     pub fn exchange(&self, fields: &PatchFields, wheel_rise: f64, exchange: &mut [SurfaceExchange]) {
         let grid = &self.operators.grid;
         let of_slip = self.path_law().is_some();
+        let (wear, capacity) = (self.pointwise_wear(), self.parameters.volumetric_heat_capacity());
         for (strip, exchange) in exchange.chunks_exact_mut(grid.cells).enumerate() {
             let gauge_face = self.gauge_face_factor(strip);
             for (cell, (place, exchange)) in grid.row(strip).zip(exchange).enumerate() {
@@ -121,6 +123,9 @@ impl<'a> PatchProblem<'a> {
                 };
                 if of_slip && pressure > 0.0 {
                     exchange.law = fields.memory.point_law(strip * grid.cells + cell);
+                }
+                if let Some(wear) = wear.filter(|_| pressure > 0.0) {
+                    exchange.debris = capacity * wear.rate(&rubbing(self, fields, place));
                 }
                 exchange.law.share *= gauge_face;
             }
