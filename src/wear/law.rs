@@ -1,7 +1,7 @@
 //! Laws of wear beside Archard's with one coefficient: depth worn per time at a point from its own pressure p, slip speed |s| and friction power
 //! P = |τ·s|, each with its derivative beside it.
 //!
-//! **Map** (Jendel, Wear 253 (2002) 86): Archard's law with a coefficient K that has steps over slip speed and pressure,
+//! **Map** (Jendel, Wear 253 (2002) 89): Archard's law with a coefficient K that has steps over slip speed and pressure,
 //!
 //! Ẇ = K |s| p / H,  K = (1 − C) (k₁ (1 − S₁) + k₂ (S₁ − S₂) + k₃ S₂) + k₄ C,
 //!
