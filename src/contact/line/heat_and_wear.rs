@@ -43,6 +43,27 @@ impl<'a> LineProblem<'a> {
         }
     }
 
+    /// State of a contact node that wears.
+    pub fn rubbing(&self, fields: &LineFields, node: usize) -> Rubbing {
+        let scale = self.operators.scales.pressure;
+        Rubbing {
+            pressure: scale * fields.pressure[node],
+            speed: fields.slip[node].abs(),
+            power: scale * coulomb::power(fields.shear[node], fields.slip[node]),
+        }
+    }
+
+    /// Change of [`LineProblem::rubbing`] with that of the fields.
+    pub fn rubbing_tangent(&self, fields: &LineFields, tangent: &LineFields, node: usize) -> Rubbing {
+        let scale = self.operators.scales.pressure;
+        let (shear, slip) = (fields.shear[node], fields.slip[node]);
+        Rubbing {
+            pressure: scale * tangent.pressure[node],
+            speed: slip.signum() * tangent.slip[node],
+            power: scale * coulomb::power_tangent(shear, slip, tangent.shear[node], tangent.slip[node]),
+        }
+    }
+
     /// Computes what heats and cools the surface at the contact nodes with the wheel at θ_w.
     pub fn exchange(&self, fields: &LineFields, wheel_rise: f64, exchange: &mut [SurfaceExchange]) {
         let of_slip = self.path_law().is_some();
@@ -55,30 +76,9 @@ impl<'a> LineProblem<'a> {
                 exchange.law = fields.memory.point_law(node);
             }
             if let Some(wear) = wear.filter(|_| pressure > 0.0) {
-                exchange.debris = capacity * wear.rate(&rubbing(self, fields, node));
+                exchange.debris = capacity * wear.rate(&self.rubbing(fields, node));
             }
         }
-    }
-}
-
-/// State of a contact node that wears.
-pub fn rubbing(problem: &LineProblem, fields: &LineFields, node: usize) -> Rubbing {
-    let scale = problem.operators.scales.pressure;
-    Rubbing {
-        pressure: scale * fields.pressure[node],
-        speed: fields.slip[node].abs(),
-        power: scale * coulomb::power(fields.shear[node], fields.slip[node]),
-    }
-}
-
-/// Change of [`rubbing`] with that of the fields.
-pub fn rubbing_tangent(problem: &LineProblem, fields: &LineFields, change: &LineFields, node: usize) -> Rubbing {
-    let scale = problem.operators.scales.pressure;
-    let (shear, slip) = (fields.shear[node], fields.slip[node]);
-    Rubbing {
-        pressure: scale * change.pressure[node],
-        speed: slip.signum() * change.slip[node],
-        power: scale * coulomb::power_tangent(shear, slip, change.shear[node], change.slip[node]),
     }
 }
 
@@ -94,7 +94,7 @@ pub fn keep_inflow(problem: &LineProblem, before: &LineFields, now: &mut LineFie
 pub fn march_wear(problem: &LineProblem, before: &LineFields, now: &mut LineFields, solvers: &mut LineSolvers) {
     if let Some(law) = problem.pointwise_wear() {
         for (node, rate) in solvers.wear_rate.iter_mut().enumerate() {
-            *rate = law.rate(&rubbing(problem, now, node));
+            *rate = law.rate(&problem.rubbing(now, node));
         }
     } else {
         let nodes = now.pressure.iter().zip(&now.slip);
@@ -136,7 +136,7 @@ pub fn update_wear_compliance(problem: &LineProblem, now: &LineFields, solvers: 
     let law = problem.pointwise_wear();
     if let Some(law) = &law {
         for (node, per_pressure) in solvers.wear_rate.iter_mut().enumerate() {
-            *per_pressure = law.per_pressure(&rubbing(problem, now, node));
+            *per_pressure = law.per_pressure(&problem.rubbing(now, node));
         }
     }
     let (wear_coefficient, slip) = match (problem.conditions.coupling, &law) {

@@ -1,7 +1,6 @@
 //! Integrals over a line contact, its extent, and the profiles' values that the outputs are made of.
 
 use super::fields::LineFields;
-use super::heat_and_wear::rubbing;
 use super::mechanics::LineProblem;
 use super::operators::LineOperators;
 use crate::contact::engine::Engine;
@@ -56,7 +55,7 @@ fn nodes(problem: &LineProblem, fields: &LineFields) -> impl Iterator<Item = Nod
             lateral_slip: 0.0,
             friction: fields.friction[node],
             heat_flux: fields.heat_flux[node],
-            wear_rate: wear.map_or(0.0, |law| law.rate(&rubbing(problem, fields, node))),
+            wear_rate: wear.map_or(0.0, |law| law.rate(&problem.rubbing(fields, node))),
             sticks: pressure > 0.0 && coulomb::sticks(fields.utilisation[node], regularisation),
         }
     })

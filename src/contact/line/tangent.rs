@@ -1,7 +1,6 @@
 //! The change of tractions, wear and heat of a line with the inputs and the interface vector, at the point of a linearised step.
 
 use super::fields::LineFields;
-use super::heat_and_wear::{rubbing, rubbing_tangent};
 use super::mechanics::{mechanics_problem, tractions};
 use super::operators::LineOperators;
 use crate::contact::engine::{Along, Linearised};
@@ -106,8 +105,8 @@ pub fn wear(at: &mut Linearised<LineOperators>, along: &Along, change: &mut Line
     let (problem, fields, direction) = (at.problem, &*at.fields, along.direction);
     if let Some(law) = problem.pointwise_wear() {
         for (node, rate) in at.tangent.wear_rate.iter_mut().enumerate() {
-            let point_change = rubbing_tangent(problem, fields, change, node);
-            *rate = law.rate_tangent(&rubbing(problem, fields, node), &point_change, direction.speed);
+            let point_change = problem.rubbing_tangent(fields, change, node);
+            *rate = law.rate_tangent(&problem.rubbing(fields, node), &point_change, direction.speed);
         }
     } else {
         let scale = problem.wear_per_slip();
@@ -160,8 +159,8 @@ pub fn heat(at: &mut Linearised<LineOperators>, along: &Along, change: &mut Line
         let (pressure, sliding) = (fields.pressure[node] * scale, Sliding::new(slip, utilisation));
         *exchange_change = SurfaceExchange::tangent(parameters, pressure, sliding, wheel_rise, &node_change);
         if let Some(wear) = wear.filter(|_| pressure > 0.0) {
-            let point_change = rubbing_tangent(problem, fields, change, node);
-            let point = rubbing(problem, fields, node);
+            let point_change = problem.rubbing_tangent(fields, change, node);
+            let point = problem.rubbing(fields, node);
             exchange_change.debris = capacity * wear.rate_tangent(&point, &point_change, direction.speed);
         }
     }

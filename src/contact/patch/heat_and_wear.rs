@@ -9,35 +9,10 @@ use crate::error::Result;
 use crate::friction::coulomb;
 use crate::mechanics::patch::contact::Contact;
 use crate::transport::CellStep;
-use crate::wear::law::Rubbing;
 
 /// Slip speed of a cell by its place on the grid, `m/s`.
 fn slip_speed(fields: &PatchFields, place: usize) -> f64 {
     coulomb::magnitude([fields.slip[0][place], fields.slip[1][place]])
-}
-
-/// State of a cell that wears, by its place on the grid.
-pub fn rubbing(problem: &PatchProblem, fields: &PatchFields, place: usize) -> Rubbing {
-    let scale = problem.operators.scales.pressure;
-    let [shear, slip] = [&fields.shear, &fields.slip].map(|vector| [vector[0][place], vector[1][place]]);
-    Rubbing {
-        pressure: scale * fields.pressure[place],
-        speed: coulomb::magnitude(slip),
-        power: scale * coulomb::vector_power(shear, slip),
-    }
-}
-
-/// Change of [`rubbing`] with that of the fields.
-pub fn rubbing_tangent(problem: &PatchProblem, fields: &PatchFields, change: &PatchFields, place: usize) -> Rubbing {
-    let scale = problem.operators.scales.pressure;
-    let at = |vector: &[Vec<f64>; 2]| [vector[0][place], vector[1][place]];
-    let (shear, slip) = (at(&fields.shear), at(&fields.slip));
-    let (shear_change, slip_change) = (at(&change.shear), at(&change.slip));
-    Rubbing {
-        pressure: scale * change.pressure[place],
-        speed: coulomb::magnitude_tangent(slip, slip_change),
-        power: scale * coulomb::vector_power_tangent(shear, slip, shear_change, slip_change),
-    }
 }
 
 /// Wear of the step per wear rate of a cell, scaled.
@@ -53,7 +28,7 @@ fn wear_compliance<'p>(problem: &'p PatchProblem, now: &'p PatchFields) -> impl 
     let per_slip = problem.wear_per_slip() * per_rate;
     let per_rate = problem.operators.scales.pressure * per_rate;
     move |place| match &law {
-        Some(law) => per_rate * law.per_pressure(&rubbing(problem, now, place)),
+        Some(law) => per_rate * law.per_pressure(&problem.rubbing(now, place)),
         None => per_slip * slip_speed(now, place),
     }
 }
@@ -65,7 +40,7 @@ pub fn march_wear(problem: &PatchProblem, before: &PatchFields, now: &mut PatchF
     for (strip, rates) in solvers.wear_rate.chunks_exact_mut(grid.cells).enumerate() {
         for (rate, place) in rates.iter_mut().zip(grid.row(strip)) {
             *rate = match &law {
-                Some(law) => law.rate(&rubbing(problem, now, place)),
+                Some(law) => law.rate(&problem.rubbing(now, place)),
                 None => per_slip * slip_speed(now, place) * now.pressure[place],
             };
         }

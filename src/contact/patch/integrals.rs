@@ -2,7 +2,6 @@
 
 use super::extent::extent;
 use super::fields::PatchFields;
-use super::heat_and_wear::rubbing;
 use super::operators::PatchOperators;
 use super::problem::PatchProblem;
 use crate::contact::engine::Engine;
@@ -69,7 +68,7 @@ fn nodes<'f>(problem: &'f PatchProblem, fields: &'f PatchFields) -> impl Iterato
                 lateral_slip: fields.slip[1][place],
                 friction: fields.friction[place],
                 heat_flux: fields.heat.flux[strip * grid.cells + cell],
-                wear_rate: wear.map_or(0.0, |law| law.rate(&rubbing(problem, fields, place))),
+                wear_rate: wear.map_or(0.0, |law| law.rate(&problem.rubbing(fields, place))),
                 sticks: pressure > 0.0 && coulomb::sticks(utilisation * (1.0 + 1e-9), regularisation),
             }
         })

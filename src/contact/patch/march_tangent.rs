@@ -2,7 +2,6 @@
 
 use super::extent::extent;
 use super::fields::PatchFields;
-use super::heat_and_wear::{rubbing, rubbing_tangent};
 use super::operators::PatchOperators;
 use super::problem::PatchProblem;
 use super::tangent::PatchTangent;
@@ -42,8 +41,8 @@ pub fn wear(at: &mut Linearised<PatchOperators>, direction: &Direction, change: 
             let speed_change = problem.sliding_tangent(fields, change, place).speed;
             *rate = match &law {
                 Some(law) => {
-                    let point_change = rubbing_tangent(problem, fields, change, place);
-                    law.rate_tangent(&rubbing(problem, fields, place), &point_change, direction.speed)
+                    let point_change = problem.rubbing_tangent(fields, change, place);
+                    law.rate_tangent(&problem.rubbing(fields, place), &point_change, direction.speed)
                 }
                 None => per_slip * (speed_change * fields.pressure[place] + speed * change.pressure[place]),
             };
@@ -101,8 +100,8 @@ pub fn heat(at: &mut Linearised<PatchOperators>, along: &Along, change: &mut Pat
             let (pressure, sliding) = (fields.pressure[place] * scale, problem.sliding(fields, place));
             *exchange_change = SurfaceExchange::tangent(parameters, pressure, sliding, rise, &cell_change);
             if let Some(wear) = wear.filter(|_| pressure > 0.0) {
-                let point_change = rubbing_tangent(problem, fields, change, place);
-                let point = rubbing(problem, fields, place);
+                let point_change = problem.rubbing_tangent(fields, change, place);
+                let point = problem.rubbing(fields, place);
                 exchange_change.debris = capacity * wear.rate_tangent(&point, &point_change, direction.speed);
             }
         }

@@ -127,7 +127,7 @@ fn a_point_that_is_free_or_sticks_does_not_wear() {
 }
 
 proptest! {
-    /// By pressure, slip speed, power and rolling speed, from all branches and blends.
+    /// Derivatives by pressure, slip speed, power and rolling speed, on all branches and blends.
     #[test]
     fn the_tangent_is_the_derivative(
         law in prop::sample::select(&[WearLaw::ArchardMap, WearLaw::Energy][..]),
@@ -164,7 +164,7 @@ proptest! {
         prop_assert!((exact - difference).abs() <= 1e-6 * (exact.abs() + at(0.0)), "{exact} {difference}");
     }
 
-    /// What is taken into the normal problem is no less than the slope and no less than the mean slope.
+    /// The rate that is taken into the normal problem is no less than the slope and no less than the mean slope.
     #[test]
     fn the_rate_per_pressure_bounds_that_of_the_law(
         law in prop::sample::select(&[WearLaw::ArchardMap, WearLaw::Energy][..]),
