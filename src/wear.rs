@@ -1,5 +1,7 @@
-//! Archard wear (11), (24) with storage: ∂W/∂t − V ∂W/∂x₁ = k |s| p, the march of the heat without conduction.
+//! Wear (11), (24) with storage: ∂W/∂t − V ∂W/∂x₁ = k |s| p, the march of the heat without conduction. The right side is Archard's with one coefficient,
+//! or one of the laws in [`law`].
 
+pub mod law;
 // The patch engine uses it.
 #[allow(dead_code)]
 pub mod strips;

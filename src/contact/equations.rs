@@ -6,6 +6,7 @@ use crate::friction::path::{PathLaw, PathStep};
 use crate::mechanics::normal::normal_problem::Constraint;
 use crate::mechanics::transient::Transient;
 use crate::parameters::Control;
+use crate::wear::law::PointwiseLaw;
 
 impl<E: Engine> Problem<'_, E> {
     /// Law by which friction depends on slip and on what a particle has met before; none where it does not.
@@ -56,7 +57,12 @@ impl<E: Engine> Problem<'_, E> {
         E::carried_load(self, fields)
     }
 
-    /// Wear depth per time at a slip of 1 m/s under a scaled pressure of 1.
+    /// Law of wear that depends on more than the coefficient of [`Problem::wear_per_slip`]; none where it is Archard's with that.
+    pub fn pointwise_wear(&self) -> Option<PointwiseLaw<'_>> {
+        PointwiseLaw::new(self.parameters, self.conditions.motion.rolling_speed)
+    }
+
+    /// Wear depth per time at a slip of 1 m/s under a scaled pressure of 1, by Archard's law.
     pub fn wear_per_slip(&self) -> f64 {
         self.parameters.wear_coefficient * self.operators.pressure_scale()
     }

@@ -25,6 +25,8 @@ pub struct Node {
     pub friction: f64,
     /// Heat flux into the rail, `W/m²`.
     pub heat_flux: f64,
+    /// Depth worn per time, `m/s`; 0 where wear is Archard's, in proportion to [`NodeSums::sliding`].
+    pub wear_rate: f64,
     /// Whether it sticks.
     pub sticks: bool,
 }
@@ -83,6 +85,8 @@ pub struct NodeSums {
     pub sliding: f64,
     /// Σ q, `W/m²`.
     pub heat_flux: f64,
+    /// Σ of the depth worn per time, `m/s`; 0 where wear is Archard's, in proportion to Σ p |s|.
+    pub wear_rate: f64,
     /// Number of nodes in contact.
     pub nodes: f64,
     /// Number of those that stick.
@@ -111,6 +115,7 @@ impl NodeSums {
             sum.spin_moment += node.position * node.lateral_shear - node.lateral * node.shear;
             sum.friction_power += coulomb::vector_power(shear, slip);
             sum.sliding += node.pressure * coulomb::magnitude(slip);
+            sum.wear_rate += node.wear_rate;
             sum.peak_pressure = sum.peak_pressure.max(node.pressure);
             sum.peak_shear = sum.peak_shear.max(coulomb::magnitude(shear));
             sum.nodes += 1.0;
@@ -133,6 +138,7 @@ impl NodeSums {
             friction_power: factor * self.friction_power,
             sliding: factor * self.sliding,
             heat_flux: factor * self.heat_flux,
+            wear_rate: factor * self.wear_rate,
             ..*self
         }
     }
@@ -149,6 +155,7 @@ impl NodeSums {
             friction_power: self.friction_power + other.friction_power,
             sliding: self.sliding + other.sliding,
             heat_flux: self.heat_flux + other.heat_flux,
+            wear_rate: self.wear_rate + other.wear_rate,
             nodes: self.nodes + other.nodes,
             sticking: self.sticking + other.sticking,
             peak_pressure: self.peak_pressure.max(other.peak_pressure),

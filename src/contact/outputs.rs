@@ -5,7 +5,7 @@ use super::on_wheelset::OneContact;
 use super::problem::StepConditions;
 use super::rim;
 use crate::friction;
-use crate::parameters::{ContactModel, Control, Parameters};
+use crate::parameters::{ContactModel, Control, Parameters, WearLaw};
 use crate::signals::{ContactOutputs, Inputs, Motion, Outputs, Totals};
 
 impl Integrals {
@@ -14,7 +14,7 @@ impl Integrals {
         self.node_area * self.pressure_scale
     }
 
-    /// ∫ |s| p dA, to which wear is proportional, `W`.
+    /// ∫ |s| p dA, to which Archard's wear is proportional, `W`.
     fn sliding_power(&self) -> f64 {
         self.unit_force() * self.sums.sliding
     }
@@ -26,7 +26,10 @@ impl Integrals {
 
     /// Volume worn off the rail per time, `m³/s`.
     fn wear_rate(&self, parameters: &Parameters) -> f64 {
-        parameters.wear_coefficient * self.sliding_power()
+        match parameters.wear_law {
+            WearLaw::Archard => parameters.wear_coefficient * self.sliding_power(),
+            WearLaw::ArchardMap | WearLaw::Energy => self.node_area * self.sums.wear_rate,
+        }
     }
 
     /// Width of the tread in contact, `m`.

@@ -153,6 +153,7 @@ units! {
     "K" [k 1] "degC" = 1.0 => -273.15;
     "1/K" [k -1] "µm/(m.K)" = 1e6;
     "kg/m3" [kg 1 m -3] "g/cm3" = 1e-3, "kg/dm3" = 1e-3, "t/m3" = 1e-3;
+    "kg/J" [m -2 s 2] "mg/J" = 1e6, "µg/J" = 1e9;
     "J/(kg.K)" [m 2 s -2 k -1] "kJ/(kg.K)" = 1e-3;
     "m2/s" [m 2 s -1] "mm2/s" = 1e6, "cm2/s" = 1e4;
     "K.N.s/J" [m -1 s 1 k 1];

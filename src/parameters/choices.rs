@@ -88,6 +88,17 @@ choices! {
         Elastic "elastic",
     }
 
+    /// Law of the rail's wear.
+    WearLaw {
+        /// k |s| p with one coefficient k, (11).
+        Archard "archard",
+        /// Archard's law with a coefficient that depends on slip speed and pressure: the map of KTH (Jendel, Wear 253 (2002) 89).
+        ArchardMap "archard_map",
+        /// The loss of mass over the work per area and distance rolled: that of the University of Sheffield (Braghin, Lewis, Dwyer-Joyce and Bruni,
+        /// Wear 261 (2006) 1253).
+        Energy "energy",
+    }
+
     /// Geometry of a patch.
     PatchGeometry {
         /// The parameters': constant.

@@ -22,7 +22,8 @@ mod validation;
 
 pub use crate::geometry::hertz::HertzEllipse;
 pub use choices::{
-    ContactModel, Control, FrictionLaw, MeshKind, NormalSolver, PatchGeometry, Side, SlipSource, Wheel, WheelHeating,
+    ContactModel, Control, FrictionLaw, MeshKind, NormalSolver, PatchGeometry, Side, SlipSource, WearLaw, Wheel,
+    WheelHeating,
 };
 pub use grids::{PATCH_GRID, PatchGrid};
 pub use range::check_range;

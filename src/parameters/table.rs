@@ -10,7 +10,8 @@
 //! where the symbol is that of the equations, where there is one. The order is that of the table and of a saved state.
 
 use super::choices::{
-    ContactModel, Control, FrictionLaw, MeshKind, NormalSolver, PatchGeometry, Side, SlipSource, Wheel, WheelHeating,
+    ContactModel, Control, FrictionLaw, MeshKind, NormalSolver, PatchGeometry, Side, SlipSource, WearLaw, Wheel,
+    WheelHeating,
 };
 use super::grids::{PATCH_GRID, PatchGrid};
 use super::range::check_range;
@@ -195,7 +196,7 @@ parameters! {
     heat_partition "ᾱ": f64 = real { "1", 0.5, 0.0, 1.0 }
     /// Thermal resistance of the contact to the wheel times pressure; 1e12 switches the conduction off
     contact_thermal_resistance "r": f64 = real { "K.N.s/J", 1000.0, 1e-3, 1e12 }
-    /// Archard wear coefficient; 0 switches wear off
+    /// Archard wear coefficient of the rail, used where wear_law is archard; 0 switches its wear off
     wear_coefficient "k": f64 = real { "1/Pa", 0.5e-12, 0.0, 1e-9 }
     /// Slip speed at which the regularised Coulomb law reaches half the friction bound; 0 is Coulomb's law itself
     slip_regularisation "ε": f64 = real { "m/s", 0.0, 0.0, 1.0, tunable }
@@ -314,6 +315,35 @@ parameters! {
     /// Damping of the approach, used where control is height: the normal force is multiplied by 1 + normal_damping times the
     /// speed of the approach; friction, heat and wear do not see it
     normal_damping: f64 = real { "s/m", 0.0, 0.0, 1e3, tunable }
+    /// Law of the rail's wear: 1 archard (wear_coefficient), 2 archard_map (a coefficient over slip speed and pressure: hardness and
+    /// wear_map_mild to wear_map_pressure), 3 energy (the work per area and distance rolled: wear_energy_mild to wear_energy_threshold)
+    wear_law: WearLaw = choice { WearLaw::Archard }
+    /// Width over which a step or a corner of the law of wear is blended, as a share of where it is, used where wear_law is archard_map or energy
+    wear_blend: f64 = real { "1", 0.1, 1e-3, 1.0 }
+    /// Hardness of the softer body, used where wear_law is archard_map
+    hardness "H": f64 = real { "Pa" shown in "GPa", 3e9, 1e7, 1e12 }
+    /// Wear coefficient of mild wear, used where wear_law is archard_map
+    wear_map_mild "k₁": f64 = real { "1", 5e-4, 0.0, 1.0 }
+    /// Wear coefficient of severe wear, used where wear_law is archard_map
+    wear_map_severe "k₂": f64 = real { "1", 35e-4, 0.0, 1.0 }
+    /// Wear coefficient at slip speeds past severe wear, used where wear_law is archard_map
+    wear_map_fast "k₃": f64 = real { "1", 5e-4, 0.0, 1.0 }
+    /// Wear coefficient of catastrophic wear, used where wear_law is archard_map
+    wear_map_catastrophic "k₄": f64 = real { "1", 350e-4, 0.0, 1.0 }
+    /// Slip speed from which on wear is severe, used where wear_law is archard_map
+    wear_map_slip_severe: f64 = real { "m/s", 0.2, 1e-6, 1e3 }
+    /// Slip speed from which on wear is no longer severe, used where wear_law is archard_map
+    wear_map_slip_fast: f64 = real { "m/s", 0.7, 1e-6, 1e3 }
+    /// Pressure from which on wear is catastrophic, as a share of the hardness, used where wear_law is archard_map
+    wear_map_pressure: f64 = real { "1", 0.8, 1e-3, 1e3 }
+    /// Mass lost per friction work by mild wear, used where wear_law is energy
+    wear_energy_mild "a": f64 = real { "kg/J", 5.3e-9, 1e-15, 1e-5 }
+    /// Mass lost per area and distance rolled by severe wear, used where wear_law is energy
+    wear_energy_severe "R": f64 = real { "kg/m3", 0.055, 1e-9, 1e3 }
+    /// Rise of the mass lost with the friction work by catastrophic wear, used where wear_law is energy
+    wear_energy_catastrophic "c": f64 = real { "kg/J", 61.9e-9, 0.0, 1e-5 }
+    /// Friction work per area and distance rolled from which on wear is catastrophic, used where wear_law is energy
+    wear_energy_threshold "x_c": f64 = real { "Pa" shown in "MPa", (55.0 + 4778.7) / 61.9 * 1e6, 1e3, 1e12 }
 }
 
 /// The start values of the friction table: the default piecewise linear law, its hot end repeated.
@@ -583,6 +613,7 @@ mod tests {
         assert_eq!(lower(WheelHeating::ALL), WheelHeating::NAMES);
         assert_eq!(lower(Side::ALL), Side::NAMES);
         assert_eq!(lower(PatchGeometry::ALL), PatchGeometry::NAMES);
+        assert_eq!(lower(WearLaw::ALL), WearLaw::NAMES);
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! Checks of the parameters, once, before a model is built.
 
-use super::choices::{ContactModel, Control, FrictionLaw, MeshKind, NormalSolver, PatchGeometry, SlipSource};
+use super::choices::{ContactModel, Control, FrictionLaw, MeshKind, NormalSolver, PatchGeometry, SlipSource, WearLaw};
 use super::source::ProfileSource;
 use super::table::{INTEGER_PARAMETERS, Parameters, REAL_PARAMETERS, TEXT_PARAMETERS};
 use crate::error::{Error, Result};
@@ -36,6 +36,7 @@ impl Parameters {
         }
         self.validate_friction()?;
         self.validate_control()?;
+        self.validate_wear()?;
         if self.patch_geometry == PatchGeometry::Inputs && self.contact_model != ContactModel::Patch {
             return combination(
                 ("patch_geometry", f64::from(self.patch_geometry as i32 + 1)),
@@ -157,6 +158,28 @@ impl Parameters {
                 self.model(),
                 "profiles have no penetration of one contact; control must be 1 (load) or 3 (height) with them",
             ),
+            _ => Ok(()),
+        }
+    }
+
+    /// Thresholds of the laws of wear, which must ascend.
+    fn validate_wear(&self) -> Result<()> {
+        match self.wear_law {
+            WearLaw::ArchardMap if self.wear_map_slip_fast <= self.wear_map_slip_severe => combination(
+                ("wear_map_slip_fast", self.wear_map_slip_fast),
+                ("wear_map_slip_severe", self.wear_map_slip_severe),
+                "the slip speed at which severe wear ends must be above the one at which it begins",
+            ),
+            WearLaw::Energy if self.wear_energy_threshold <= self.wear_energy_severe / self.wear_energy_mild => {
+                combination(
+                    ("wear_energy_threshold", self.wear_energy_threshold),
+                    (
+                        "wear_energy_severe/wear_energy_mild",
+                        self.wear_energy_severe / self.wear_energy_mild,
+                    ),
+                    "catastrophic wear must begin above the work at which severe wear does",
+                )
+            }
             _ => Ok(()),
         }
     }

@@ -44,6 +44,7 @@ pub mod rolling_start;
 mod row;
 mod set_up;
 pub mod standstill;
+pub mod wear_laws;
 pub mod wheel_temperature;
 pub mod yielding_layer;
 
@@ -248,6 +249,10 @@ pub const CHECKS: &[Check] = &[
     Check {
         name: "Layer that flows",
         rows: yielding_layer::rows,
+    },
+    Check {
+        name: "Laws of wear",
+        rows: wear_laws::rows,
     },
     Check {
         name: "Equivalent conicity",

@@ -3,7 +3,7 @@
 
 use wheelrail::parameters::{
     ContactModel, Control, FrictionLaw, INTEGER_PARAMETERS, Parameters, PatchGeometry, REAL_PARAMETERS, Side,
-    SlipSource, TABLE_POINTS, Wheel, WheelHeating,
+    SlipSource, TABLE_POINTS, WearLaw, Wheel, WheelHeating,
 };
 use wheelrail::signals::{INPUTS, Inputs, OUTPUTS, Outputs};
 use wheelrail::simulation::Simulation;
@@ -162,6 +162,26 @@ fn scenarios() -> Vec<Scenario> {
         ..falling
     };
     scenarios.push((yielding, inputs));
+    // Laws of wear whose thresholds lie within the contact, blended over so much that all branches count.
+    let creeping = Inputs {
+        creepage: 0.05,
+        ..inputs
+    };
+    let mapped = Parameters {
+        wear_law: WearLaw::ArchardMap,
+        wear_blend: 1.0,
+        hardness: 1e9,
+        wear_map_slip_severe: 0.8,
+        wear_map_slip_fast: 1.0,
+        ..parameters(FrictionLaw::PiecewiseLinear)
+    };
+    let by_energy = Parameters {
+        wear_law: WearLaw::Energy,
+        wear_blend: 1.0,
+        wear_energy_threshold: 12e6,
+        ..parameters(FrictionLaw::PiecewiseLinear)
+    };
+    scenarios.extend([(mapped, creeping), (by_energy, creeping)]);
     scenarios
 }
 

@@ -20,5 +20,6 @@ mod shared_model;
 mod time_step;
 mod torture;
 mod wear;
+mod wear_laws;
 mod wheel_heat;
 mod yielding_layer;

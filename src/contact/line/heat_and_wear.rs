@@ -6,12 +6,13 @@ use super::solvers::LineSolvers;
 use crate::contact::interface::Interface;
 use crate::contact::problem::Coupling;
 use crate::error::Result;
-use crate::friction::coulomb::Sliding;
+use crate::friction::coulomb::{self, Sliding};
 use crate::heat::march::{HeatMarch, Heated};
 use crate::heat::surface::{SurfaceCondition, SurfaceExchange};
 use crate::numerics::dense::{largest, largest_change, relative};
 use crate::transport::{CellStep, Upwind};
 use crate::wear::WearMarch;
+use crate::wear::law::Rubbing;
 
 impl<'a> LineProblem<'a> {
     /// Order in which material crosses the columns.
@@ -42,15 +43,40 @@ impl<'a> LineProblem<'a> {
         }
     }
 
+    /// State of a contact node that wears.
+    pub fn rubbing(&self, fields: &LineFields, node: usize) -> Rubbing {
+        let scale = self.operators.scales.pressure;
+        Rubbing {
+            pressure: scale * fields.pressure[node],
+            speed: fields.slip[node].abs(),
+            power: scale * coulomb::power(fields.shear[node], fields.slip[node]),
+        }
+    }
+
+    /// Change of [`LineProblem::rubbing`] with that of the fields.
+    pub fn rubbing_tangent(&self, fields: &LineFields, tangent: &LineFields, node: usize) -> Rubbing {
+        let scale = self.operators.scales.pressure;
+        let (shear, slip) = (fields.shear[node], fields.slip[node]);
+        Rubbing {
+            pressure: scale * tangent.pressure[node],
+            speed: slip.signum() * tangent.slip[node],
+            power: scale * coulomb::power_tangent(shear, slip, tangent.shear[node], tangent.slip[node]),
+        }
+    }
+
     /// Computes what heats and cools the surface at the contact nodes with the wheel at θ_w.
     pub fn exchange(&self, fields: &LineFields, wheel_rise: f64, exchange: &mut [SurfaceExchange]) {
         let of_slip = self.path_law().is_some();
+        let (wear, capacity) = (self.pointwise_wear(), self.parameters.volumetric_heat_capacity());
         for (node, exchange) in exchange.iter_mut().enumerate() {
             let pressure = fields.pressure[node] * self.operators.scales.pressure;
             let sliding = Sliding::new(fields.slip[node], fields.utilisation[node]);
             *exchange = SurfaceExchange::new(self.parameters, pressure, sliding, wheel_rise);
             if of_slip && pressure > 0.0 {
                 exchange.law = fields.memory.point_law(node);
+            }
+            if let Some(wear) = wear.filter(|_| pressure > 0.0) {
+                exchange.debris = capacity * wear.rate(&self.rubbing(fields, node));
             }
         }
     }
@@ -66,9 +92,15 @@ pub fn keep_inflow(problem: &LineProblem, before: &LineFields, now: &mut LineFie
 
 /// Marches the wear (24).
 pub fn march_wear(problem: &LineProblem, before: &LineFields, now: &mut LineFields, solvers: &mut LineSolvers) {
-    let nodes = now.pressure.iter().zip(&now.slip);
-    for (rate, (pressure, slip)) in solvers.wear_rate.iter_mut().zip(nodes) {
-        *rate = problem.parameters.wear_coefficient * slip.abs() * pressure * problem.operators.scales.pressure;
+    if let Some(law) = problem.pointwise_wear() {
+        for (node, rate) in solvers.wear_rate.iter_mut().enumerate() {
+            *rate = law.rate(&problem.rubbing(now, node));
+        }
+    } else {
+        let nodes = now.pressure.iter().zip(&now.slip);
+        for (rate, (pressure, slip)) in solvers.wear_rate.iter_mut().zip(nodes) {
+            *rate = problem.parameters.wear_coefficient * slip.abs() * pressure * problem.operators.scales.pressure;
+        }
     }
     let march = problem.wear_march();
     now.wear[march.transport.inflow()] = problem.conditions.inputs.incoming_wear_depth;
@@ -100,14 +132,22 @@ pub fn march_heat(
 
 /// Adapts the normal compliance to the wear of the step; in a staggered one the wear follows the mechanics.
 pub fn update_wear_compliance(problem: &LineProblem, now: &LineFields, solvers: &mut LineSolvers) {
-    let wear_coefficient = match problem.conditions.coupling {
-        Coupling::Implicit => problem.parameters.wear_coefficient,
-        Coupling::Staggered => 0.0,
+    // Of a law with more than one coefficient the wear rate per pressure takes the place of the slip.
+    let law = problem.pointwise_wear();
+    if let Some(law) = &law {
+        for (node, per_pressure) in solvers.wear_rate.iter_mut().enumerate() {
+            *per_pressure = law.per_pressure(&problem.rubbing(now, node));
+        }
+    }
+    let (wear_coefficient, slip) = match (problem.conditions.coupling, &law) {
+        (Coupling::Implicit, None) => (problem.parameters.wear_coefficient, &now.slip),
+        (Coupling::Implicit, Some(_)) => (1.0, &solvers.wear_rate),
+        (Coupling::Staggered, _) => (0.0, &now.slip),
     };
     let (operators, transport) = (problem.operators, problem.upwind());
     let changed = solvers.wear_compliance.update(
         &operators.compliance.at_rest.normal_normal,
-        &now.slip,
+        slip,
         operators.scales.compliance(wear_coefficient),
         CellStep::new(
             1.0 / problem.conditions.duration,

@@ -42,6 +42,7 @@ pub fn integrals(problem: &LineProblem, fields: &LineFields) -> Integrals {
 fn nodes(problem: &LineProblem, fields: &LineFields) -> impl Iterator<Item = Node> {
     let mesh = &problem.operators.mesh;
     let regularisation = problem.parameters.slip_regularisation;
+    let wear = problem.pointwise_wear();
     (0..mesh.contact_nodes).map(move |node| {
         let (pressure, slip) = (fields.pressure[node], fields.slip[node]);
         Node {
@@ -54,6 +55,7 @@ fn nodes(problem: &LineProblem, fields: &LineFields) -> impl Iterator<Item = Nod
             lateral_slip: 0.0,
             friction: fields.friction[node],
             heat_flux: fields.heat_flux[node],
+            wear_rate: wear.map_or(0.0, |law| law.rate(&problem.rubbing(fields, node))),
             sticks: pressure > 0.0 && coulomb::sticks(fields.utilisation[node], regularisation),
         }
     })

@@ -103,11 +103,18 @@ pub fn mechanics(at: &mut Linearised<LineOperators>, step: &Along, change: &mut 
 /// Computes the change of the wear (24).
 pub fn wear(at: &mut Linearised<LineOperators>, along: &Along, change: &mut LineFields) {
     let (problem, fields, direction) = (at.problem, &*at.fields, along.direction);
-    let scale = problem.wear_per_slip();
-    let nodes = fields.pressure.iter().zip(&fields.slip);
-    let changes = change.pressure.iter().zip(&change.slip);
-    for (rate, ((p, s), (dp, ds))) in at.tangent.wear_rate.iter_mut().zip(nodes.zip(changes)) {
-        *rate = scale * (s.signum() * ds * p + s.abs() * dp);
+    if let Some(law) = problem.pointwise_wear() {
+        for (node, rate) in at.tangent.wear_rate.iter_mut().enumerate() {
+            let point_change = problem.rubbing_tangent(fields, change, node);
+            *rate = law.rate_tangent(&problem.rubbing(fields, node), &point_change, direction.speed);
+        }
+    } else {
+        let scale = problem.wear_per_slip();
+        let nodes = fields.pressure.iter().zip(&fields.slip);
+        let changes = change.pressure.iter().zip(&change.slip);
+        for (rate, ((p, s), (dp, ds))) in at.tangent.wear_rate.iter_mut().zip(nodes.zip(changes)) {
+            *rate = scale * (s.signum() * ds * p + s.abs() * dp);
+        }
     }
     let march = problem.wear_march();
     change.wear[march.transport.inflow()] = direction.inputs.incoming_wear_depth;
@@ -136,6 +143,7 @@ pub fn heat(at: &mut Linearised<LineOperators>, along: &Along, change: &mut Line
     };
     problem.exchange(fields, wheel_rise, exchange);
     let of_slip = problem.path_law().is_some();
+    let (wear, capacity) = (problem.pointwise_wear(), parameters.volumetric_heat_capacity());
     for (node, exchange_change) in exchange_change.iter_mut().enumerate() {
         let (slip, utilisation) = (fields.slip[node], fields.utilisation[node]);
         let node_change = ExchangeChange {
@@ -150,6 +158,11 @@ pub fn heat(at: &mut Linearised<LineOperators>, along: &Along, change: &mut Line
         };
         let (pressure, sliding) = (fields.pressure[node] * scale, Sliding::new(slip, utilisation));
         *exchange_change = SurfaceExchange::tangent(parameters, pressure, sliding, wheel_rise, &node_change);
+        if let Some(wear) = wear.filter(|_| pressure > 0.0) {
+            let point_change = problem.rubbing_tangent(fields, change, node);
+            let point = problem.rubbing(fields, node);
+            exchange_change.debris = capacity * wear.rate_tangent(&point, &point_change, direction.speed);
+        }
     }
     let solution = Heated {
         amplitudes: &mut fields.temperature,

@@ -15,19 +15,34 @@ fn slip_speed(fields: &PatchFields, place: usize) -> f64 {
     coulomb::magnitude([fields.slip[0][place], fields.slip[1][place]])
 }
 
-/// Wear of the step per scaled pressure at a slip of 1 m/s, scaled.
-fn wear_compliance_per_slip(problem: &PatchProblem) -> f64 {
+/// Wear of the step per wear rate of a cell, scaled.
+fn wear_per_rate(problem: &PatchProblem) -> f64 {
     let (operators, speed) = (problem.operators, problem.conditions.motion.rolling_speed.abs());
     let own = CellStep::new(1.0 / problem.conditions.duration, operators.grid.length, speed).diagonal;
-    problem.wear_per_slip() * (own / operators.scales.displacement)
+    own / operators.scales.displacement
+}
+
+/// Wear of the step per scaled pressure of a cell, by its place on the grid, scaled.
+fn wear_compliance<'p>(problem: &'p PatchProblem, now: &'p PatchFields) -> impl Fn(usize) -> f64 + 'p {
+    let (law, per_rate) = (problem.pointwise_wear(), wear_per_rate(problem));
+    let per_slip = problem.wear_per_slip() * per_rate;
+    let per_rate = problem.operators.scales.pressure * per_rate;
+    move |place| match &law {
+        Some(law) => per_rate * law.per_pressure(&problem.rubbing(now, place)),
+        None => per_slip * slip_speed(now, place),
+    }
 }
 
 /// Marches the wear (24).
 pub fn march_wear(problem: &PatchProblem, before: &PatchFields, now: &mut PatchFields, solvers: &mut PatchSolvers) {
     let (grid, per_slip) = (&problem.operators.grid, problem.wear_per_slip());
+    let law = problem.pointwise_wear();
     for (strip, rates) in solvers.wear_rate.chunks_exact_mut(grid.cells).enumerate() {
         for (rate, place) in rates.iter_mut().zip(grid.row(strip)) {
-            *rate = per_slip * slip_speed(now, place) * now.pressure[place];
+            *rate = match &law {
+                Some(law) => law.rate(&problem.rubbing(now, place)),
+                None => per_slip * slip_speed(now, place) * now.pressure[place],
+            };
         }
     }
     problem.wear_march().advance(
@@ -43,13 +58,13 @@ pub fn march_wear(problem: &PatchProblem, before: &PatchFields, now: &mut PatchF
 /// bodies.
 pub fn update_wear_compliance(problem: &PatchProblem, now: &PatchFields, solvers: &mut PatchSolvers) {
     let grid = &problem.operators.grid;
-    let per_slip = wear_compliance_per_slip(problem);
+    let compliance = wear_compliance(problem, now);
     let places = (0..grid.strips).flat_map(|strip| grid.row(strip));
-    let fastest = places.fold(0.0, |fastest: f64, place| fastest.max(slip_speed(now, place)));
+    let largest = places.fold(0.0, |largest: f64, place| largest.max(compliance(place)));
     let patch = &problem.settings.patch;
     let least = patch.least_compliance * problem.operators.normal_influence.diagonal;
-    if per_slip * fastest > problem.settings.wear_compliance.explicit * least {
-        set_wear_compliance(per_slip, now, solvers);
+    if largest > problem.settings.wear_compliance.explicit * least {
+        set_wear_compliance(problem, now, solvers);
     } else {
         solvers.wear_compliance.fill(0.0);
     }
@@ -58,15 +73,16 @@ pub fn update_wear_compliance(problem: &PatchProblem, now: &PatchFields, solvers
 /// Takes all wear of the step into the normal problem.
 pub fn take_all_wear(problem: &PatchProblem, now: &PatchFields, solvers: &mut PatchSolvers) {
     if problem.conditions.duration > 0.0 {
-        set_wear_compliance(wear_compliance_per_slip(problem), now, solvers);
+        set_wear_compliance(problem, now, solvers);
     } else {
         solvers.wear_compliance.fill(0.0);
     }
 }
 
-fn set_wear_compliance(per_slip: f64, now: &PatchFields, solvers: &mut PatchSolvers) {
+fn set_wear_compliance(problem: &PatchProblem, now: &PatchFields, solvers: &mut PatchSolvers) {
+    let compliance = wear_compliance(problem, now);
     for (place, wear_compliance) in solvers.wear_compliance.iter_mut().enumerate() {
-        *wear_compliance = per_slip * slip_speed(now, place);
+        *wear_compliance = compliance(place);
     }
 }
 

@@ -45,6 +45,7 @@ pub fn integrals(problem: &PatchProblem, fields: &PatchFields) -> Integrals {
 fn nodes<'f>(problem: &'f PatchProblem, fields: &'f PatchFields) -> impl Iterator<Item = Node> + 'f {
     let grid = &problem.operators.grid;
     let regularisation = problem.parameters.slip_regularisation;
+    let wear = problem.pointwise_wear();
     (0..grid.strips).flat_map(move |strip| {
         (0..grid.cells).map(move |cell| {
             let place = grid.place(strip, cell);
@@ -67,6 +68,7 @@ fn nodes<'f>(problem: &'f PatchProblem, fields: &'f PatchFields) -> impl Iterato
                 lateral_slip: fields.slip[1][place],
                 friction: fields.friction[place],
                 heat_flux: fields.heat.flux[strip * grid.cells + cell],
+                wear_rate: wear.map_or(0.0, |law| law.rate(&problem.rubbing(fields, place))),
                 sticks: pressure > 0.0 && coulomb::sticks(utilisation * (1.0 + 1e-9), regularisation),
             }
         })

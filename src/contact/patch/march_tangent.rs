@@ -34,11 +34,18 @@ pub fn wear(at: &mut Linearised<PatchOperators>, direction: &Direction, change: 
     let (problem, fields) = (at.problem, &*at.fields);
     let wear_rate = &mut at.tangent.wear_rate;
     let (grid, per_slip) = (&problem.operators.grid, problem.wear_per_slip());
+    let law = problem.pointwise_wear();
     for (strip, rates) in wear_rate.chunks_exact_mut(grid.cells).enumerate() {
         for (rate, place) in rates.iter_mut().zip(grid.row(strip)) {
             let speed = problem.sliding(fields, place).speed;
             let speed_change = problem.sliding_tangent(fields, change, place).speed;
-            *rate = per_slip * (speed_change * fields.pressure[place] + speed * change.pressure[place]);
+            *rate = match &law {
+                Some(law) => {
+                    let point_change = problem.rubbing_tangent(fields, change, place);
+                    law.rate_tangent(&problem.rubbing(fields, place), &point_change, direction.speed)
+                }
+                None => per_slip * (speed_change * fields.pressure[place] + speed * change.pressure[place]),
+            };
         }
     }
     problem.wear_march().advance_tangent(
@@ -76,6 +83,7 @@ pub fn heat(at: &mut Linearised<PatchOperators>, along: &Along, change: &mut Pat
     };
     problem.exchange(fields, rise, exchange);
     let of_slip = problem.path_law().is_some();
+    let (wear, capacity) = (problem.pointwise_wear(), parameters.volumetric_heat_capacity());
     for (strip, changes) in exchange_change.chunks_exact_mut(grid.cells).enumerate() {
         for (cell, (exchange_change, place)) in changes.iter_mut().zip(grid.row(strip)).enumerate() {
             let cell_change = ExchangeChange {
@@ -91,6 +99,11 @@ pub fn heat(at: &mut Linearised<PatchOperators>, along: &Along, change: &mut Pat
             };
             let (pressure, sliding) = (fields.pressure[place] * scale, problem.sliding(fields, place));
             *exchange_change = SurfaceExchange::tangent(parameters, pressure, sliding, rise, &cell_change);
+            if let Some(wear) = wear.filter(|_| pressure > 0.0) {
+                let point_change = problem.rubbing_tangent(fields, change, place);
+                let point = problem.rubbing(fields, place);
+                exchange_change.debris = capacity * wear.rate_tangent(&point, &point_change, direction.speed);
+            }
         }
     }
     let march_change = StripHeatChange {

@@ -2,11 +2,12 @@
 
 use super::fields::PatchFields;
 use super::operators::PatchOperators;
-use crate::friction::coulomb::Sliding;
+use crate::friction::coulomb::{self, Sliding};
 use crate::heat::strips::StripHeatMarch;
 use crate::heat::surface::{SurfaceCondition, SurfaceExchange};
 use crate::mechanics::kinematics::SlipWeights;
 use crate::mechanics::transient::Transient;
+use crate::wear::law::Rubbing;
 use crate::wear::strips::StripWearMarch;
 use std::ops::Range;
 
@@ -106,10 +107,32 @@ impl<'a> PatchProblem<'a> {
         Sliding::vector_tangent(slip, utilisation, slip_change, utilisation_change)
     }
 
+    /// State of a cell that wears, by its place on the grid.
+    pub fn rubbing(&self, fields: &PatchFields, place: usize) -> Rubbing {
+        let (scale, (slip, shear)) = (self.operators.scales.pressure, vectors(fields, place));
+        Rubbing {
+            pressure: scale * fields.pressure[place],
+            speed: coulomb::magnitude(slip),
+            power: scale * coulomb::vector_power(shear, slip),
+        }
+    }
+
+    /// Change of [`PatchProblem::rubbing`] with that of the fields.
+    pub fn rubbing_tangent(&self, fields: &PatchFields, tangent: &PatchFields, place: usize) -> Rubbing {
+        let scale = self.operators.scales.pressure;
+        let ((slip, shear), (slip_change, shear_change)) = (vectors(fields, place), vectors(tangent, place));
+        Rubbing {
+            pressure: scale * tangent.pressure[place],
+            speed: coulomb::magnitude_tangent(slip, slip_change),
+            power: scale * coulomb::vector_power_tangent(shear, slip, shear_change, slip_change),
+        }
+    }
+
     /// Computes what heats and cools the surface of the cells, strip by strip, with the wheel at θ_w.
     pub fn exchange(&self, fields: &PatchFields, wheel_rise: f64, exchange: &mut [SurfaceExchange]) {
         let grid = &self.operators.grid;
         let of_slip = self.path_law().is_some();
+        let (wear, capacity) = (self.pointwise_wear(), self.parameters.volumetric_heat_capacity());
         for (strip, exchange) in exchange.chunks_exact_mut(grid.cells).enumerate() {
             let gauge_face = self.gauge_face_factor(strip);
             for (cell, (place, exchange)) in grid.row(strip).zip(exchange).enumerate() {
@@ -121,6 +144,9 @@ impl<'a> PatchProblem<'a> {
                 };
                 if of_slip && pressure > 0.0 {
                     exchange.law = fields.memory.point_law(strip * grid.cells + cell);
+                }
+                if let Some(wear) = wear.filter(|_| pressure > 0.0) {
+                    exchange.debris = capacity * wear.rate(&self.rubbing(fields, place));
                 }
                 exchange.law.share *= gauge_face;
             }
