@@ -1,7 +1,7 @@
 //! Laws of wear in full slip on a straight, constant friction: the volume that they wear off per time in closed form.
 //!
-//! Every point slides at τ = μp, the pressure is Hertz's, p₀ √(1 − t²) over |t| = |x|/a < 1, and like bodies slip at s = V (ξ − μ x/r₀) (Johnson, Contact
-//! Mechanics, 2.24): of the mean V ξ, with a part that is odd in x.
+//! Every point slides at τ = μp, the pressure is Hertz's, p₀ √(1 − t²) over |t| = |x|/a < 1, and like bodies slip at s = V (ξ − μ x/r₀) by the shear's own
+//! strain: of the mean V ξ, with a part that is odd in x.
 //!
 //! - Where K of the map is k₂ throughout, Ẇ = k₂ P/(μ H), P the friction power, to round-off; where wear is catastrophic for p > p_c as well,
 //!   with t_c = √(1 − (p_c/p₀)²),  Ẇ = V ξ N/H (k₂ + (k₄ − k₂) (2/π) (t_c √(1 − t_c²) + arcsin t_c)).
@@ -19,8 +19,8 @@ use std::f64::consts::{FRAC_2_PI, FRAC_PI_2};
 const SOURCE: &str = "law of wear integrated over Hertz's pressure in full slip";
 const FRICTION: f64 = 0.3;
 const LOAD: f64 = 50e3;
-/// The closed form's integrand has a corner or a jump at t_s or t_c: half a node's share of the contact, some 40 nodes long, at most.
-const MESH: f64 = 0.01;
+/// Sum over nodes of an integrand with a corner or a jump between two of them, and what the odd part of the slip adds.
+const MESH: f64 = 1e-3;
 /// Share of the wear of rail steel: so little that the pressure stays Hertz's.
 const LITTLE: f64 = 1e-3;
 /// Sums of some hundred terms.
