@@ -252,9 +252,11 @@ impl Torture {
             let stays = matches!(&outcome, Err((_, error)) if is_refused(model, error));
             if outcome.is_err() && !(stays && by_place) || is_hot(&state) {
                 run.replaced += 1;
-                state = model
-                    .initial_state(&mut workspace, drive.inputs())
-                    .map_err(RunFailure::Model)?;
+                match model.initial_state(&mut workspace, drive.inputs()) {
+                    Ok(replaced) => state = replaced,
+                    Err(error) if by_place && is_refused(model, &error) => {}
+                    Err(error) => return Err(RunFailure::Model(error)),
+                }
             }
         }
         run.length = self.steps;

@@ -187,7 +187,9 @@ pub fn solve(
         // The load that the friction has made of it is another one than asked for: so far have the tractions changed.
         let load = problem.vertical_load();
         fields.load = carried(problem, fields);
-        change.shear_change = change.shear_change.max((fields.load / load - 1.0).abs());
+        // The pressure does not carry it better than it is solved.
+        let missing = (fields.load / load - 1.0).abs() - 2.0 * least_load_error(problem, load);
+        change.shear_change = change.shear_change.max(missing);
     } else {
         fields.load = carried(problem, fields);
     }
@@ -215,11 +217,9 @@ pub fn approach_of_pressure(
 }
 
 /// Error of the load, relative, that the least error of a pressure makes: a negligible load is known by fewer digits.
-fn least_load_error(problem: &SurfaceProblem, search: &Approaches) -> f64 {
+fn least_load_error(problem: &SurfaceProblem, load: f64) -> f64 {
     let force = FEW_CELLS * FEW_CELLS * problem.operators.shapes[0].unit_force();
-    search
-        .load
-        .map_or(0.0, |load| problem.settings.patch.least_tolerance * force / load)
+    problem.settings.patch.least_tolerance * force / load
 }
 
 /// Vertical force of all windows, `N`.
@@ -242,7 +242,9 @@ fn press(
 ) -> Result<()> {
     let mut search = Approaches::new(problem, fields, solvers);
     solvers.apart.set_resultants(problem.operators, fields);
-    let tolerance_of_load = tolerance.max(LOAD_TOLERANCE).max(least_load_error(problem, &search));
+    let tolerance_of_load = tolerance
+        .max(LOAD_TOLERANCE)
+        .max(search.load.map_or(0.0, |load| least_load_error(problem, load)));
     let mut left = f64::INFINITY;
     // The pressure need not be better than the approach is.
     let mut own_tolerance = tolerance.max(FIRST_TOLERANCE);
