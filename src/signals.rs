@@ -65,6 +65,17 @@ pub struct InputSignal {
     pub set: fn(&mut Inputs, f64),
 }
 
+/// Reason why a radius or a curvature of 0 is refused where it is used. Where it is not, some importers set what they are not told of to 0.
+const GIVEN: &str = "patch_geometry = 2 (inputs) sets the lower limit";
+
+/// Least value of a radius or a curvature: 0 where it is not used.
+fn least_given(parameters: &Parameters, least: f64) -> f64 {
+    match parameters.patch_geometry {
+        PatchGeometry::Parameters => 0.0,
+        PatchGeometry::Inputs => least,
+    }
+}
+
 /// Choice under which an input is used.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum UsedBy {
@@ -202,11 +213,14 @@ inputs! {
     /// Vertical velocity of the rail, positive upward
     rail_vertical_speed: "m/s", start 0.0, range [-100.0, 100.0], nominal 0.1, only [profiles];
     /// Rolling radius of the wheel at the contact
-    rolling_radius "r": "m", by geometry, start 0.46, range [0.05, 5.0], nominal 0.5;
+    rolling_radius "r": "m", by geometry, start 0.46,
+        range [0.0, 5.0; |parameters| (least_given(parameters, 0.05), 5.0), GIVEN], nominal 0.5;
     /// Sum of the curvatures of wheel and rail along the rail at the contact
-    longitudinal_curvature "1/R_x": "1/m", by geometry, start 1.0 / 0.46, range [1e-3, 1e3], nominal 1.0;
+    longitudinal_curvature "1/R_x": "1/m", by geometry, start 1.0 / 0.46,
+        range [0.0, 1e3; |parameters| (least_given(parameters, 1e-3), 1e3), GIVEN], nominal 1.0;
     /// Sum of the curvatures of wheel and rail across the rail at the contact
-    transverse_curvature "1/R_y": "1/m", by geometry, start 1.0 / 0.3, range [1e-3, 1e3], nominal 1.0;
+    transverse_curvature "1/R_y": "1/m", by geometry, start 1.0 / 0.3,
+        range [0.0, 1e3; |parameters| (least_given(parameters, 1e-3), 1e3), GIVEN], nominal 1.0;
     /// Penetration of the undeformed wheel into the undeformed rail along the normal of the contact, negative where they are apart
     contact_penetration: "m" shown in "µm", by height, start 0.0, range [-0.1, 1e-2], nominal 1e-4, only [patch];
     /// Rate of contact_penetration, for normal_damping

@@ -5,7 +5,11 @@ use crate::parameters::{ContactModel, Control, Parameters, PatchGeometry, REAL_P
 /// A parameter is named in the refusal of an input exactly where it narrows the input's range.
 #[test]
 fn a_refusal_names_the_parameters_that_narrow_the_range() {
-    let parameters = Parameters::default();
+    let parameters = Parameters {
+        contact_model: ContactModel::Patch,
+        patch_geometry: PatchGeometry::Inputs,
+        ..Parameters::default()
+    };
     for signal in INPUTS {
         let range = signal.range(&parameters);
         let narrowed = range != (signal.minimum, signal.maximum);
