@@ -123,8 +123,9 @@ impl Engine for PatchOperators {
         if let Some(before) = before {
             now.relaxation_length = Self::relaxation_length(problem, before);
         }
-        solvers.undeformed.set_gap(problem, &problem.conditions.inputs);
-        solvers.undeformed.set_slip(problem, &problem.conditions.motion);
+        solvers
+            .undeformed
+            .set(problem, &problem.conditions.inputs, &problem.conditions.motion);
         begin::begin(problem, before, now, solvers)
     }
 
@@ -255,8 +256,9 @@ impl Engine for PatchOperators {
     }
 
     fn begin_linearisation(problem: &PatchProblem, fields: &PatchFields, solvers: &mut PatchSolvers) {
-        solvers.undeformed.set_gap(problem, &problem.conditions.inputs);
-        solvers.undeformed.set_slip(problem, &problem.conditions.motion);
+        solvers
+            .undeformed
+            .set(problem, &problem.conditions.inputs, &problem.conditions.motion);
         begin::begin_linearisation(problem, fields, solvers);
     }
 
@@ -283,8 +285,7 @@ impl Engine for PatchOperators {
         tangent: &mut PatchTangent,
     ) {
         change.clear();
-        tangent.undeformed.set_gap(problem, &direction.inputs);
-        tangent.undeformed.set_slip(problem, &direction.motion);
+        tangent.undeformed.set(problem, &direction.inputs, &direction.motion);
         march_tangent::begin(problem, fields, direction, change, tangent);
     }
 

@@ -34,9 +34,15 @@ impl Undeformed {
         }
     }
 
-    /// Sets the gap to that of bodies of the given curvatures, or to its change with them: of the inputs of a patch of given geometry. Other patches
-    /// keep that of the parameters.
-    pub fn set_gap(&mut self, problem: &PatchProblem, inputs: &Inputs) {
+    /// Sets gap and slip to those of the inputs and the motion that they make, or to their changes.
+    pub fn set(&mut self, problem: &PatchProblem, inputs: &Inputs, motion: &Motion) {
+        self.set_gap(problem, inputs);
+        self.set_slip(problem, motion);
+    }
+
+    /// Sets the gap to that of the curvatures among the inputs, or to its change with them. A patch whose geometry is not given by inputs keeps the gap
+    /// of the parameters.
+    fn set_gap(&mut self, problem: &PatchProblem, inputs: &Inputs) {
         if problem.parameters.patch_geometry == PatchGeometry::Inputs {
             let curvatures = (0.5 * inputs.longitudinal_curvature, 0.5 * inputs.transverse_curvature);
             let PatchOperators { grid, scales, .. } = problem.operators;
@@ -45,7 +51,7 @@ impl Undeformed {
     }
 
     /// Sets the slip to that of one motion for all cells, or to its change with that of the motion.
-    pub fn set_slip(&mut self, problem: &PatchProblem, motion: &Motion) {
+    fn set_slip(&mut self, problem: &PatchProblem, motion: &Motion) {
         let grid = &problem.operators.grid;
         let half = if problem.is_forward() { 0.5 } else { -0.5 } * grid.length;
         for strip in 0..grid.strips {
