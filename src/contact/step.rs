@@ -231,10 +231,12 @@ fn solve_staggered_in_room<E: Engine>(
     } = workspace;
     begin(problem, before, now, solvers)?;
     E::read(problem, now, solvers, iterate);
+    let mut tractions = TractionChange::NONE;
     for _ in 0..problem.settings.interface.mechanics_sweeps {
         // As closely as in the first sweep of a step: the temperature is a guess here as well.
-        let tractions = E::solve_mechanics(problem, iterate, now, solvers, settings.first_mechanics_tolerance)?;
-        if !tractions.set_changed && tractions.shear_change <= settings.first_mechanics_tolerance {
+        tractions = E::solve_mechanics(problem, iterate, now, solvers, settings.first_mechanics_tolerance)?;
+        let rests = !tractions.set_changed && tractions.shear_change <= settings.first_mechanics_tolerance;
+        if rests || E::mechanics_work(solvers) > problem.settings.step.work {
             break;
         }
     }
@@ -245,7 +247,9 @@ fn solve_staggered_in_room<E: Engine>(
     if !image.is_finite() {
         return Err(ConvergenceTest::new(settings).error(1));
     }
-    let residual = iterate.change_to(image, settings.least_temperature);
+    let residual = iterate
+        .change_to(image, settings.least_temperature)
+        .max(tractions.shear_change);
     finish(problem, before, iterate, now, solvers, 1, residual)
 }
 
@@ -310,11 +314,16 @@ fn initial_state_in_room<E: Engine>(
     E::begin(problem, None, &mut now, solvers)?;
     let staggered = problem.conditions.coupling == Coupling::Staggered;
     let mut tractions = TractionChange::NONE;
-    for iterations in 1..=settings.iterations {
+    let limit = if staggered {
+        settings.iterations.min(problem.settings.interface.mechanics_sweeps)
+    } else {
+        settings.iterations
+    };
+    for iterations in 1..=limit {
         E::read(problem, &now, solvers, iterate);
         tractions = E::solve_mechanics(problem, iterate, &mut now, solvers, tolerance)?;
         let rests = tractions.has_converged(tolerance);
-        if rests || staggered && iterations == settings.iterations {
+        if rests || staggered && iterations == limit {
             let convergence = Convergence {
                 iterations: if rests { 0 } else { iterations },
                 residual: if rests { 0.0 } else { tractions.shear_change },

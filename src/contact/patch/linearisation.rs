@@ -190,6 +190,7 @@ impl Linearisation {
             regularisation,
             tolerance: 0.0,
             accepted: 0.0,
+            work: u64::MAX,
         }
     }
 }

@@ -239,6 +239,12 @@ fn solve_friction(
                 Coupling::Implicit => 0.0,
                 Coupling::Staggered => peak * problem.settings.patch.staggered_residual,
             },
+            // A first state, in which no time passes, has no budget.
+            work: if problem.conditions.duration.is_finite() {
+                problem.settings.step.work
+            } else {
+                u64::MAX
+            },
         };
         solvers.friction.solve(&friction_problem, &mut fields.shear)?;
         if path.is_some() {

@@ -33,6 +33,9 @@ pub struct Wanted {
     pub depth: f64,
 }
 
+/// Distance of the bodies, `m`, more than the rail bulges or was worn: a contact that is as far open after a jump of the wheelset has ended.
+const LIFTED: f64 = 5e-4;
+
 /// Contacts to expect of fields.
 #[derive(Debug, Clone, Copy)]
 pub struct Expected {
@@ -61,6 +64,7 @@ pub fn find(
     } = expected;
     found.clear();
     carrying(operators, fields, GROWTH * growth, found);
+    found.retain(|own| search.is_near(own.region.across, approach + LIFTED));
     apart.set_resultants(operators, fields);
     let carrying = found.len();
     let beside: [Region; CONTACTS] = std::array::from_fn(|number| {

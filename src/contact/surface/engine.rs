@@ -126,8 +126,12 @@ impl Engine for SurfaceOperators {
             .any(|(window, _)| fields.windows[window].pressure.iter().any(|&pressure| pressure > 0.0))
     }
 
-    fn carried_load(_problem: &SurfaceProblem, fields: &SurfaceFields) -> f64 {
-        fields.load
+    fn carried_load(problem: &SurfaceProblem, fields: &SurfaceFields) -> f64 {
+        if problem.is_height_given() {
+            fields.load
+        } else {
+            problem.vertical_load()
+        }
     }
 
     fn wheel_temperature(fields: &SurfaceFields) -> f64 {
@@ -151,6 +155,8 @@ impl Engine for SurfaceOperators {
         begin_windows(problem, before, now, solvers)?;
         if before.is_none()
             && let Some(approach) = mechanics::approach_of_pressure(problem, now, solvers)
+            // A negligible load may be carried at the height of the first touch already, which is known to a few nanometres: the first windows are as good.
+            && approach > 0.0
         {
             placement::place(problem, before, Some(approach), now, solvers)?;
             begin_windows(problem, before, now, solvers)?;

@@ -10,7 +10,7 @@ use crate::parameters::Parameters;
 use crate::signals::Inputs;
 
 /// Distance that is added where another window has the surface, and beyond the places where contacts are sought, `m`: far more than any approach.
-const ELSEWHERE: f64 = 1e-2;
+pub const ELSEWHERE: f64 = 1e-2;
 
 /// Position of the wheelset but for the height of its middle, and its motion, both relative to the rail; of one side.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -9,8 +9,9 @@
 //! is found by the secant method.
 
 use super::fields::SurfaceFields;
-use super::geometry::Pose;
+use super::geometry::{ELSEWHERE, Pose};
 use super::operators::SurfaceOperators;
+use super::search::LEAST_RISE;
 use super::solvers::SurfaceSolvers;
 use super::windows::Place;
 use crate::contact::engine::Engine;
@@ -19,7 +20,7 @@ use crate::contact::patch::fields::PatchFields;
 use crate::contact::patch::mechanics;
 use crate::contact::patch::operators::PatchOperators;
 use crate::contact::patch::problem::PatchProblem;
-use crate::contact::problem::Problem;
+use crate::contact::problem::{Coupling, Problem};
 use crate::error::{Error, Result};
 use crate::mechanics::normal::normal_problem::Constraint;
 use crate::mechanics::normal_tangential::TractionChange;
@@ -54,6 +55,11 @@ const FIRST_TOLERANCE: f64 = 1e-3;
 const TOLERANCE_SHARE: f64 = 0.03;
 /// Approach that counts for a step of it, over that of the largest load.
 const LEAST_SIZE: f64 = 0.05;
+/// Approach that no contact has, over that of the largest load: where a search gets there, nothing carries the load.
+const FARTHEST: f64 = 50.0;
+/// Least friction over pressure, as vertical forces of a window, with which a load is carried where it is not found otherwise: the approach under twice
+/// the load.
+const LEAST_FRICTION_SHARE: f64 = -0.5;
 /// Limit of the rounds over windows that displace each other.
 const ROUNDS: usize = 60;
 /// Error of the pressure, relative, at which the cells under pressure are found.
@@ -234,7 +240,34 @@ fn carried(problem: &SurfaceProblem, fields: &SurfaceFields) -> f64 {
 }
 
 /// Solves the pressure of all windows, at the approach that carries the load or at the given one.
+///
+/// On a steep flank, friction may pull the wheel down by more than the pressure lifts it. In proportion to the pressure, no approach
+/// carries the load then, although other shear may; a staggered step takes the friction for smaller, and its residual shows it.
 fn press(
+    problem: &SurfaceProblem,
+    fields: &mut SurfaceFields,
+    solvers: &mut SurfaceSolvers,
+    tolerance: f64,
+) -> Result<()> {
+    let (approach, stiffness) = (fields.approach[0], fields.stiffness);
+    let outcome = press_with_friction(problem, fields, solvers, tolerance);
+    let mut limited = false;
+    if problem.conditions.coupling == Coupling::Staggered && matches!(outcome, Err(Error::NormalNotConverged { .. })) {
+        for (window, _) in fields.used() {
+            let share = &mut solvers.windows[window].friction_share;
+            limited |= *share < LEAST_FRICTION_SHARE;
+            *share = share.max(LEAST_FRICTION_SHARE);
+        }
+    }
+    if !limited {
+        return outcome;
+    }
+    (fields.approach[0], fields.stiffness) = (approach, stiffness);
+    press_with_friction(problem, fields, solvers, tolerance)
+}
+
+/// Solves the pressure of all windows, with the friction in proportion to it.
+fn press_with_friction(
     problem: &SurfaceProblem,
     fields: &mut SurfaceFields,
     solvers: &mut SurfaceSolvers,
@@ -246,6 +279,7 @@ fn press(
         .max(LOAD_TOLERANCE)
         .max(search.load.map_or(0.0, |load| least_load_error(problem, load)));
     let mut left = f64::INFINITY;
+    let farthest = FARTHEST * problem.operators.shapes[0].scales.displacement;
     // The pressure need not be better than the approach is.
     let mut own_tolerance = tolerance.max(FIRST_TOLERANCE);
     for approaches in 0..APPROACHES {
@@ -266,6 +300,9 @@ fn press(
             return check_room(problem, fields, solvers);
         }
         search.next(excess, error);
+        if search.approach.abs() > farthest {
+            break;
+        }
     }
     if left <= ACCEPTED {
         search.end(fields);
@@ -325,7 +362,7 @@ impl Approaches {
             last: None,
             // Hertz's load is as the approach to the power of 3/2.
             stiffness: if fields.stiffness > 0.0 {
-                clamped(fields.stiffness / load, approach.max(size))
+                clamped(fields.stiffness / load, approach.abs().max(size))
             } else {
                 1.5 / approach
             },
@@ -344,7 +381,7 @@ impl Approaches {
         if let Some([before, excess_before]) = self.last {
             if (excess - excess_before).abs() > SHOWS_STIFFNESS * error {
                 let slope = (excess - excess_before) / (self.approach - before);
-                self.stiffness = clamped(slope, self.approach.max(self.size));
+                self.stiffness = clamped(slope, self.approach.abs().max(self.size));
             } else if excess * excess_before > SLOW * excess_before * excess_before {
                 // The way was too small to show the stiffness, which is therefore less than it was taken for.
                 self.stiffness *= SOFTER;
@@ -439,8 +476,15 @@ fn press_window(
     };
     let displaced = &solvers.apart.displacement[window];
     let gaps = own.patch.undeformed.gap.iter_mut().zip(&own.gap).zip(displaced);
+    let is_height_given = problem.is_height_given();
     for (((gap, reference), displaced), rise) in gaps.zip(&own.geometry.rise) {
-        *gap = reference - lowered * rise / scale + displaced;
+        // A wall that no height of the wheel presses on carries nothing of a load.
+        let carries = is_height_given || *rise > LEAST_RISE;
+        *gap = if carries {
+            reference - lowered * rise / scale + displaced
+        } else {
+            ELSEWHERE / scale
+        };
     }
     let mut solve = |tolerance: f64| {
         let penetration = Constraint::Penetration(0.0);
@@ -456,7 +500,7 @@ fn press_window(
 }
 
 /// Refuses a contact that has become larger than its window, as long as there are larger ones.
-fn check_room(problem: &SurfaceProblem, fields: &SurfaceFields, solvers: &SurfaceSolvers) -> Result<()> {
+fn check_room(problem: &SurfaceProblem, fields: &SurfaceFields, solvers: &mut SurfaceSolvers) -> Result<()> {
     if problem.conditions.room >= LARGEST_ROOM {
         return Ok(());
     }
@@ -466,6 +510,7 @@ fn check_room(problem: &SurfaceProblem, fields: &SurfaceFields, solvers: &Surfac
             &fields.windows[window],
             &solvers.windows[window].patch,
         ) {
+            solvers.outgrown = fields.approach[0];
             return Err(Error::ContactOutgrowsWindow);
         }
     }

@@ -44,8 +44,15 @@ pub fn place(
         problem.parameters.wheel_radius
     };
     now.touch = solvers.search.touch(operators, &pose.position, guess);
-    let approach =
+    if problem.conditions.room <= 1.0 {
+        solvers.outgrown = 0.0;
+    }
+    let mut approach =
         known.unwrap_or_else(|| expected_approach(problem, before, now.touch - pose.position.height, solvers));
+    if approach > 0.0 && !problem.is_height_given() {
+        // The windows that were too small were placed for an approach that was, too.
+        approach = approach.max(solvers.outgrown);
+    }
     solvers.reference = approach;
     now.approach[0] = approach;
     if approach > 0.0 {
@@ -57,7 +64,13 @@ pub fn place(
         forget(now);
     }
     let wanted = merged(&operators.sizes, &solvers.wanted);
-    let own = assign(problem, &wanted.0[..wanted.1], now);
+    let mut own = assign(problem, &wanted.0[..wanted.1], now);
+    if approach > 0.0 && !holds_first(problem, &solvers.search, now) {
+        // Of contacts far apart that were taken for one, a window may have left out the one that carries.
+        want_overlaps(problem, approach, solvers);
+        let wanted = merged(&operators.sizes, &solvers.wanted);
+        own = assign(problem, &wanted.0[..wanted.1], now);
+    }
     solvers.moved = before.is_some_and(|before| before.places != now.places);
     if let Some(before) = before
         && solvers.moved
@@ -163,13 +176,31 @@ fn want(problem: &SurfaceProblem, source: Option<&SurfaceFields>, approach: f64,
         }
     }
     if wanted.is_empty() {
-        // The overlaps come from the field side to the gauge side.
-        let overlaps = search.overlaps(approach * AHEAD * room).iter().rev();
-        wanted.extend(overlaps.map(|overlap| Wanted {
-            region: overlap.region,
-            depth: overlap.depth,
-        }));
+        want_overlaps(problem, approach, solvers);
     }
+}
+
+/// Lists the overlaps of the bodies as the regions to place windows for.
+fn want_overlaps(problem: &SurfaceProblem, approach: f64, solvers: &mut SurfaceSolvers) {
+    let SurfaceSolvers { search, wanted, .. } = solvers;
+    wanted.clear();
+    // The overlaps come from the field side to the gauge side.
+    let overlaps = search.overlaps(approach * AHEAD * problem.conditions.room).iter().rev();
+    wanted.extend(overlaps.map(|overlap| Wanted {
+        region: overlap.region,
+        depth: overlap.depth,
+    }));
+}
+
+/// Whether a window holds the place where the bodies touch first.
+fn holds_first(problem: &SurfaceProblem, search: &Search, now: &SurfaceFields) -> bool {
+    let Some((point, along)) = search.first() else {
+        return true;
+    };
+    let first = [along, problem.operators.scan[point].0];
+    let sizes = &problem.operators.sizes;
+    let mut windows = now.used();
+    windows.any(|(_, place)| place.region(&sizes.grid(place.length, place.breadth)).holds(first))
 }
 
 /// Takes contacts off the fields that windows have been placed by.

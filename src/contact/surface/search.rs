@@ -15,8 +15,8 @@ pub const REGIONS: usize = 8;
 const TOUCH_STEPS: usize = 12;
 /// Way over which the distance is linear in the height of the wheel to a thousandth of a micrometre, `m`.
 const LINEAR: f64 = 1e-5;
-/// Least change of the distance with the height that counts: walls of 87° and more carry nothing.
-const LEAST_RISE: f64 = 0.05;
+/// Least change of the distance with the height that counts: walls of 84° and more carry nothing of a load. The steepest flanges have 75°.
+pub const LEAST_RISE: f64 = 0.1;
 /// Size of the region that a window is placed for over that of the overlap: a contact has 0.71 of it.
 const REGION_SHARE: f64 = 0.82;
 /// Depth of the overlap where that region ends, over the largest depth: of a parabola, 1 less the square of the share.
@@ -241,6 +241,14 @@ impl Search {
                 spacing,
             })
         })
+    }
+
+    /// Whether the bodies overlap anywhere between two arc lengths, of a wheel that is lower by `approach` `m` than the height at which the points are.
+    pub fn is_near(&self, across: [f64; 2], approach: f64) -> bool {
+        let spacing = self.points[0].arc - self.points[1].arc;
+        let between = |arc: f64| across[0] - spacing <= arc && arc <= across[1] + spacing;
+        let mut points = self.points.iter();
+        points.any(|point| between(point.arc) && approach * point.rise > point.distance)
     }
 
     /// Approach under a vertical load, `m`, about: that of Hertz's ellipses in place of the contacts. `modulus` is the contact modulus.

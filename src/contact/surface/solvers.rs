@@ -33,6 +33,8 @@ pub struct SurfaceSolvers {
     pub wanted: Vec<Wanted>,
     /// Approach for which the geometry is that of the windows, `m`.
     pub reference: f64,
+    /// Approach at which a contact has outgrown its window in this step, `m`.
+    pub outgrown: f64,
 }
 
 /// Solvers and buffers of one window.
@@ -74,6 +76,7 @@ impl SurfaceSolvers {
             apart: Apart::new(operators),
             wanted: Vec::with_capacity(CONTACTS),
             reference: 0.0,
+            outgrown: 0.0,
         }
     }
 }

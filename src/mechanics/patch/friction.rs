@@ -65,8 +65,10 @@ pub struct FrictionProblem<'a> {
     pub regularisation: f64,
     /// Residual to be reached, in units of the shear.
     pub tolerance: f64,
-    /// Residual that will do where none smaller is reached; 0 accepts none.
+    /// Residual that will do where none smaller is reached, and after it the solution for the least ε that has one; 0 accepts neither.
     pub accepted: f64,
+    /// Multiplications and additions in a step after which the law is not solved any closer.
+    pub work: u64,
 }
 
 /// Solver of the friction problem and its buffers.
@@ -79,6 +81,8 @@ pub struct Friction {
     answered: [Vec<f64>; 2],
     response: [Vec<f64>; 2],
     correction_response: [Vec<f64>; 2],
+    /// Shear for the least ε for which the law was solved.
+    regularised: [Vec<f64>; 2],
     /// Correction of the shear, on the grid.
     correction: [Vec<f64>; 2],
     load_single: [Vec<f32>; 2],
@@ -94,8 +98,9 @@ pub struct Friction {
     given: Vec<Vector>,
     /// Law of the cells where μ depends on slip.
     on_path: OnPath,
-    /// Multiplications and additions in this step.
+    /// Multiplications and additions in this step, and those after which Newton's method goes no further.
     work: u64,
+    work_limit: u64,
     /// Newton steps, Krylov iterations and factorisations since the solver was made.
     iterations: [u64; 3],
 }
@@ -122,6 +127,7 @@ impl Friction {
             answered: double(),
             response: double(),
             correction_response: double(),
+            regularised: double(),
             correction: double(),
             load_single: single(),
             response_single: single(),
@@ -133,6 +139,7 @@ impl Friction {
             given: Vec::with_capacity(total),
             on_path: OnPath::new(total),
             work: 0,
+            work_limit: u64::MAX,
             iterations: [0; 3],
         }
     }
@@ -170,6 +177,7 @@ impl Friction {
             regularisation: problem.regularisation,
         };
         let slack = self.settings.slack;
+        self.work_limit = problem.work;
         if self.newton(problem, &scheme, shear, problem.tolerance, slack).is_ok() {
             self.remember(shear);
             return Ok(());
@@ -185,9 +193,17 @@ impl Friction {
             .places(problem.grid)
             .map(|place| problem.free_slip[0][place].hypot(problem.free_slip[1][place]))
             .fold(0.0, f64::max);
+        let bound = problem.bound[..problem.contact.cells()].iter();
+        let rough = self.settings.continuation_tolerance * bound.fold(0.0, |m: f64, &bound| m.max(bound));
+        // Least ε for which the law was solved.
+        let mut regularised = None;
         let mut epsilon = largest;
         for _ in 0..self.settings.continuation {
-            if epsilon <= problem.regularisation.max(self.settings.least_regularisation * largest) {
+            // Beyond the limit of work, one solution is sought where it will do.
+            let sought = problem.accepted > 0.0 && regularised.is_none();
+            self.work_limit = if sought { u64::MAX } else { problem.work };
+            let least = problem.regularisation.max(self.settings.least_regularisation * largest);
+            if self.work > self.work_limit || epsilon <= least {
                 break;
             }
             let smooth = Scheme {
@@ -197,27 +213,46 @@ impl Friction {
             };
             self.factorised = false;
             // A smoother law that stalls still leads closer.
-            let _ = self.newton(problem, &smooth, shear, self.settings.continuation_tolerance, 1.0);
+            if self.newton(problem, &smooth, shear, rough, 1.0).is_ok() && problem.accepted > 0.0 {
+                regularised = Some(smooth);
+                for (regularised, shear) in self.regularised.iter_mut().zip(&*shear) {
+                    regularised.copy_from_slice(shear);
+                }
+            }
             epsilon *= self.settings.continuation_step;
         }
+        self.work_limit = problem.work;
+        let mut last = Ok(());
         for noise in [f64::INFINITY, 1e2 * problem.noise, problem.noise] {
             self.factorised = false;
-            let last = self.newton(problem, &Scheme { noise, ..scheme }, shear, problem.tolerance, 1.0);
-            if noise == problem.noise {
-                self.remember(shear);
-                if last.is_err_and(|(_, residual)| residual <= problem.accepted) {
-                    // The law of the cells at the last iterate, not at the trial that came after it.
-                    self.update_rows(problem, &scheme, shear, 0.0);
-                    return Ok(());
-                }
-                return last.map_err(|(iterations, residual)| Error::TangentialNotConverged {
-                    iterations,
-                    residual,
-                    tolerance: problem.tolerance,
-                });
-            }
+            last = self.newton(problem, &Scheme { noise, ..scheme }, shear, problem.tolerance, 1.0);
         }
-        Ok(())
+        self.remember(shear);
+        let Err((iterations, residual)) = last else {
+            return Ok(());
+        };
+        if residual <= problem.accepted {
+            // The law of the cells at the last iterate, not at the trial that came after it.
+            self.update_rows(problem, &scheme, shear, 0.0);
+            return Ok(());
+        }
+        if let Some(smooth) = regularised {
+            for (shear, regularised) in shear.iter_mut().zip(&self.regularised) {
+                shear.copy_from_slice(regularised);
+            }
+            self.start_contact();
+            // Response, slip and μ at that point, which is a solution.
+            self.work_limit = u64::MAX;
+            let _ = self.newton(problem, &smooth, shear, rough, 1.0);
+            self.remember(shear);
+            self.update_rows(problem, &smooth, shear, 0.0);
+            return Ok(());
+        }
+        Err(Error::TangentialNotConverged {
+            iterations,
+            residual,
+            tolerance: problem.tolerance,
+        })
     }
 
     /// Notes that `response` is that of this shear.
@@ -257,9 +292,13 @@ impl Friction {
         let roughly = (self.settings.reduction * largest).min(slack * tolerance);
         let tolerance = tolerance.max(roughly);
         let mut forcing = f64::from(self.settings.largest_forcing);
+        let limit = self.work_limit;
         for iterations in 0..self.settings.newton_steps {
             if largest <= tolerance {
                 return Ok(());
+            }
+            if self.work > limit {
+                return Err((iterations, largest));
             }
             let fresh = !self.factorised;
             if fresh {

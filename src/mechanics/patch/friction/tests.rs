@@ -120,6 +120,7 @@ impl Case {
             regularisation,
             tolerance: 1e-11,
             accepted: 0.0,
+            work: u64::MAX,
         }
     }
 
