@@ -113,6 +113,18 @@ pub enum Error {
         /// Roll of the wheelset relative to the rail, rad.
         roll: f64,
     },
+    /// The surface of a body has folded onto itself where it is worn.
+    #[error(
+        "the {body}'s profile is worn by {depth} m at the lateral position {position} m, more than leaves a surface there: wear_acceleration may be too large; the state before is kept"
+    )]
+    WornAway {
+        /// Body: wheel or rail.
+        body: &'static str,
+        /// Depth, `m`.
+        depth: f64,
+        /// Lateral position on the new profile, `m`.
+        position: f64,
+    },
     /// State or workspace come from a model with another `contact_model`.
     #[error("the state or the workspace is not one of this contact_model")]
     OtherContactModel,

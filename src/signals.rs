@@ -121,6 +121,8 @@ pub enum OutputKind {
     Instantaneous,
     /// Output of the instant that is counted in nodes: constant between jumps, its derivative is 0.
     Counted,
+    /// Output of what the steps before the last one have left: the inputs do not move it, its derivative is 0.
+    Kept,
     /// A sum over the steps, of [`Totals`]: it starts at 0, and at a communication point it depends on no input.
     Total,
 }
@@ -305,6 +307,24 @@ outputs! {
     contacts: "1", Counted, at least 0.0, nominal 1.0, only [profiles];
     /// Normal force of the contact, of profiles the sum over the contacts; with normal_damping where control is height
     normal_force "N": "N" shown in "kN", Instantaneous, at least 0.0, nominal 6e4;
+    /// Volume worn off the wheel since the start; wear_acceleration does not count
+    wheel_worn_volume: "m3" shown in "mm3", Total, at least 0.0, nominal 1e-9;
+    /// Area of its cross-section that the wheel's profile has lost since the start, with wear_acceleration; 0 unless wheel_profile_wear is on
+    wheel_worn_area: "m2" shown in "mm2", Total, at least 0.0, nominal 1e-9, only [profiles];
+    /// Area of its cross-section that the rail's profile has lost since the start, with wear_acceleration; 0 unless rail_profile_wear is on
+    rail_worn_area: "m2" shown in "mm2", Total, at least 0.0, nominal 1e-9, only [profiles];
+    /// Height Sh of the wheel's flange, as worn at the beginning of the last step: of its tip from the running circle; 0 of a wheel
+    /// without a flange
+    flange_height "Sh": "m" shown in "mm", Kept, at least 0.0, nominal 3e-2, only [profiles];
+    /// Thickness Sd of the wheel's flange, as worn at the beginning of the last step: from its back to its face 10 mm below the running
+    /// circle; 0 of a wheel without a flange
+    flange_thickness "Sd": "m" shown in "mm", Kept, at least 0.0, nominal 3e-2, only [profiles];
+    /// Gradient qR of the wheel's flange, as worn at the beginning of the last step: along the axle between its face 2 mm above the tip
+    /// and 10 mm below the running circle; 0 of a wheel without a flange
+    flange_gradient "qR": "m" shown in "mm", Kept, nominal 1e-2, only [profiles];
+    /// Depth of the hollow of the wheel's tread, as worn at the beginning of the last step: the largest radius to the field side of a
+    /// place less the radius there, where that is most; 0 of a wheel without a flange
+    hollow_depth: "m" shown in "mm", Kept, at least 0.0, nominal 1e-3, only [profiles];
 }
 
 contact_outputs! {

@@ -12,13 +12,16 @@ use crate::contact::patch::operators::PatchOperators;
 use crate::contact::problem::{Coupling, StepConditions, Task};
 use crate::contact::{ContactState, ContactWorkspace, Operators};
 use crate::error::{Error, Result};
+use crate::geometry::profile::Profile;
 use crate::parameters::Parameters;
 use crate::settings::Settings;
 use crate::signals::{Inputs, OUTPUTS, Outputs, Totals};
 use serde::{Deserialize, Serialize};
 
 pub use crate::contact::problem::Convergence;
-pub use crate::contact::profiles::{ContactNode, DEPTH_POINTS, PROFILE_POINTS, Profiles, STRIP_POINTS, StripProfiles};
+pub use crate::contact::profiles::{
+    ContactNode, DEPTH_POINTS, PROFILE_POINTS, ProfileDepths, Profiles, STRIP_POINTS, StripProfiles, WornPlace,
+};
 pub use crate::contact::work::Iterations;
 
 /// Everything that does not change after initialisation: the contact engine, the parameters (but for the tunable ones), the
@@ -305,6 +308,7 @@ impl Model {
             convergence.residual = solved.residual;
             convergence.fills_window |= solved.fills_window;
             convergence.staggered |= solved.staggered;
+            convergence.profile_change = convergence.profile_change.max(solved.profile_change);
             state.convergence = convergence;
             // After some sub-steps at the limit that a failure has set, longer ones are tried.
             at_limit = if length >= largest_substep { at_limit + 1 } else { 0 };
@@ -401,6 +405,23 @@ impl Model {
     #[cfg(feature = "verification")]
     pub fn layer_sides(&self, state: &State) -> Vec<Option<std::cmp::Ordering>> {
         self.operators.layer_sides(&state.contact)
+    }
+
+    /// Depths by which the profiles of wheel and rail are worn.
+    ///
+    /// # Errors
+    /// [`Error::OtherContactModel`]: there are none of a line contact or a patch.
+    pub fn profile_wear(&self, state: &State) -> Result<ProfileDepths> {
+        self.operators.profile_wear(&state.contact)
+    }
+
+    /// Profiles of wheel and rail as they are worn, the rail's upright. Their origins have moved with the surface, a wheel's to its worn running
+    /// circle: a model of them has a smaller `wheel_radius`, and a rail of a smaller height and width.
+    ///
+    /// # Errors
+    /// [`Error::OtherContactModel`]; a profile that is worn beyond its radius of curvature.
+    pub fn worn_profiles(&self, state: &State) -> Result<[Profile; 2]> {
+        self.operators.worn_profiles(&state.contact)
     }
 
     /// Profiles for plotting.

@@ -9,7 +9,7 @@ use std::ffi::CString;
 use std::ptr::{null, null_mut};
 use wheelrail::fmi2::types::{self as fmi2, CallbackFunctions};
 use wheelrail::fmi3::types as fmi3;
-use wheelrail::parameters::{ContactModel, NormalSolver, Parameters, SlipSource, Wheel, WheelHeating};
+use wheelrail::parameters::{ContactModel, NormalSolver, Parameters, ProfileWear, SlipSource, Wheel, WheelHeating};
 use wheelrail::signals::Inputs;
 use wheelrail::wheel_rail::Model;
 
@@ -211,6 +211,9 @@ fn a_step_on_profiles_allocates_nothing() {
             patch_nodes: 14,
             patch_strips: 9,
             depth_nodes: 17,
+            wheel_profile_wear: if laws { ProfileWear::On } else { ProfileWear::Off },
+            rail_profile_wear: if laws { ProfileWear::On } else { ProfileWear::Off },
+            wheel_wear_coefficient: 1e-12,
             ..Parameters::default()
         };
         let model = Model::new(if laws { with_all_laws(parameters) } else { parameters }).unwrap();

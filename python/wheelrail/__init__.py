@@ -26,6 +26,7 @@ from .simulation import simulate
 from .states import SavedState
 from .tables import read_table
 from .variables import variables
+from .wear import ProfileWear, WornProfiles
 
 if TYPE_CHECKING:
     from . import plots
@@ -34,11 +35,13 @@ __all__ = [
     "Instance",
     "InstanceClosedError",
     "Profile",
+    "ProfileWear",
     "SavedState",
     "SimulationError",
     "SimulationWarning",
     "WheelMeasures",
     "WheelWear",
+    "WornProfiles",
     "contact_geometry",
     "creep_curves",
     "example",

@@ -4,6 +4,7 @@ import math
 import warnings
 from collections.abc import Mapping, Sequence
 from itertools import groupby
+from pathlib import Path
 from types import TracebackType
 from typing import Any
 
@@ -15,6 +16,7 @@ from .arguments import names_of, plain
 from .errors import SimulationError, SimulationWarning
 from .native import FMU3Component, Phase
 from .variables import PATCH_GRID, bounds, choices, near, shape, start_values, with_grid
+from .wear import ProfileWear, WornProfiles, new_profile
 
 # Why a call cannot be, and what can.
 WAY_OUT = {
@@ -280,6 +282,55 @@ class Access:
         with self._calls("get", *phases):
             (value,) = self.slave.getString([variable.valueReference])
         return value.decode() if isinstance(value, bytes) else str(value)
+
+    def profile_wear(self) -> ProfileWear:
+        """Depths by which the profiles of wheel and rail are worn, as they are now: FMI 3.0 alone has them.
+
+        Returns
+        -------
+        ProfileWear
+            Arrays with an element for each of `profile_wear_points` places [m].
+
+        Raises
+        ------
+        ValueError
+            An FMU of FMI 2.0, or another contact model than profiles.
+        SimulationError
+            As `get`.
+        """
+        self.slave.check()
+        if "wheel_profile.wear_depth" not in self.variables:
+            raise ValueError(f"{self.fmu} does not say how its profiles are worn: take the FMU of FMI 3.0")
+        with self._calls("profile_wear"):
+            if self.get("contact_model") != [choices(self.variables["contact_model"])["profiles"]]:
+                raise ValueError("there are no profiles that wear: they are those of contact_model = 'profiles'")
+            names = {"position": "position", "depth": "wear_depth", "arc_length": "arc_length"}
+            return ProfileWear(
+                **{
+                    f"{body}_{own}": np.array(self.get(f"{body}_profile.{name}"))
+                    for body in ("wheel", "rail")
+                    for own, name in names.items()
+                }
+            )
+
+    def worn_profiles(self) -> WornProfiles:
+        """Profiles of wheel and rail as they are worn now, to be looked at, measured and written: FMI 3.0 alone has them.
+
+        Raises
+        ------
+        ValueError
+            As `profile_wear`; a profile that is worn beyond its radius of curvature.
+        SimulationError
+            As `get`.
+        """
+        wear, given = self.profile_wear(), self.parameters()
+        resources = Path(self.slave.unzipDirectory) / "resources"
+        smoothing = float(given["profile_smoothing"])
+        wheel, rail = (new_profile(given[f"{body}_profile"], body, smoothing, resources) for body in ("wheel", "rail"))
+        return WornProfiles(
+            wheel=wheel.worn_by(wear.wheel_arc_length, wear.wheel_depth),
+            rail=rail.worn_by(wear.rail_arc_length, wear.rail_depth),
+        )
 
     def fields(self) -> dict[str, np.ndarray]:
         """Fields of the patch as they are now, each as an array of strips by cells: FMI 3.0 alone has them.

@@ -277,8 +277,13 @@ pub trait Engine: Sized + 'static {
 
     // -- what is read off ---------------------------------------------------------------------------------------------
 
-    /// Integrals over the contact, and what else the outputs are made of.
-    fn integrals(problem: &Problem<Self>, fields: &Self::Fields) -> Integrals;
+    /// Integrals over the contact, and what else the outputs are made of. The solvers are those of the step, or of its linearisation.
+    fn integrals(problem: &Problem<Self>, fields: &Self::Fields, solvers: &Self::Solvers) -> Integrals;
+
+    /// Largest depth that the step has worn off a profile, `m`; 0 where none wears.
+    fn profile_change(_solvers: &Self::Solvers) -> f64 {
+        0.0
+    }
 
     /// Profiles for plotting.
     fn profiles(problem: &Problem<Self>, fields: &Self::Fields) -> Profiles;

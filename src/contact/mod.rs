@@ -30,6 +30,7 @@ pub mod work;
 use crate::error::{Error, Result};
 #[cfg(feature = "verification")]
 use crate::friction::memory::Memory;
+use crate::geometry::profile::Profile;
 use crate::parameters::{ContactModel, Parameters};
 use crate::settings::Settings;
 use crate::signals::Outputs;
@@ -43,7 +44,7 @@ use line::operators::LineOperators;
 use patch::fields::PatchFields;
 use patch::operators::PatchOperators;
 use problem::{Convergence, Coupling, Problem, Task};
-use profiles::{ContactNode, Profiles};
+use profiles::{ContactNode, ProfileDepths, Profiles};
 use serde::{Deserialize, Serialize};
 #[cfg(feature = "verification")]
 use std::cmp::Ordering;
@@ -150,7 +151,7 @@ impl Operators {
         ) -> Result<(ContactState, Convergence, Integrals)> {
             let problem = Problem::new(operators, task);
             let (state, convergence) = step::initial_state(&problem, workspace)?;
-            let integrals = E::integrals(&problem, &state.fields);
+            let integrals = E::integrals(&problem, &state.fields, &workspace.solvers);
             Ok((wrap(state), convergence, integrals))
         }
         match (self, workspace) {
@@ -189,7 +190,8 @@ impl Operators {
                 Coupling::Implicit => step::solve(problem, state, last_duration, workspace)?,
                 Coupling::Staggered => step::solve_staggered(problem, state, workspace)?,
             };
-            Ok((convergence, E::integrals(problem, workspace.solution())))
+            let integrals = E::integrals(problem, workspace.solution(), &workspace.solvers);
+            Ok((convergence, integrals))
         }
         with_model!(self, workspace, state, |operators, workspace, state| {
             solve(&Problem::new(operators, task), workspace, state, last_duration)
@@ -224,6 +226,32 @@ impl Operators {
     /// Fields at the nodes of the contact window; none for a state of another contact model.
     pub fn contact_nodes(&self, state: &ContactState) -> Vec<ContactNode> {
         with_model!(self, state, |operators, state| operators.contact_nodes(&state.fields)).unwrap_or_default()
+    }
+
+    /// Depths by which the profiles of wheel and rail are worn.
+    ///
+    /// # Errors
+    /// [`Error::OtherContactModel`]: there are none of a line contact or a patch.
+    pub fn profile_wear(&self, state: &ContactState) -> Result<ProfileDepths> {
+        match (self, state) {
+            (Operators::Surface(operators), ContactState::Surface(state)) => {
+                Ok(surface::bodies::depths(operators, &state.fields.worn))
+            }
+            _ => Err(Error::OtherContactModel),
+        }
+    }
+
+    /// Profiles of wheel and rail as they are worn.
+    ///
+    /// # Errors
+    /// [`Error::OtherContactModel`]; a profile that is worn beyond its radius of curvature.
+    pub fn worn_profiles(&self, state: &ContactState) -> Result<[Profile; 2]> {
+        match (self, state) {
+            (Operators::Surface(operators), ContactState::Surface(state)) => {
+                surface::bodies::profiles(operators, &state.fields.worn)
+            }
+            _ => Err(Error::OtherContactModel),
+        }
     }
 
     /// Side of the corners of a layer's law that the nodes are on; none for a state of another contact model.

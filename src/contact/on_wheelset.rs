@@ -1,5 +1,7 @@
 //! Forces on a wheelset, and the contacts that make them, one by one.
 
+use crate::geometry::profile::WheelMeasures;
+
 /// Largest number of contacts.
 pub const CONTACTS: usize = 4;
 
@@ -14,6 +16,10 @@ pub struct OnWheelset {
     pub torque: f64,
     /// Number of contacts.
     pub count: usize,
+    /// Area per time that the profiles of wheel and rail lose, `m²/s`.
+    pub worn_area_rates: [f64; 2],
+    /// Measures of the wheel's profile at the beginning of the step; 0 of one without a flange.
+    pub measures: WheelMeasures,
     /// The contacts, from the gauge side to the field side.
     pub contacts: [OneContact; CONTACTS],
 }

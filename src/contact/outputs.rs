@@ -5,7 +5,7 @@ use super::on_wheelset::OneContact;
 use super::problem::StepConditions;
 use super::rim;
 use crate::friction;
-use crate::parameters::{ContactModel, Control, Parameters, WearLaw};
+use crate::parameters::{ContactModel, Control, Parameters, WearLaw, WheelWearLaw};
 use crate::signals::{ContactOutputs, Inputs, Motion, Outputs, Totals};
 
 impl Integrals {
@@ -29,6 +29,14 @@ impl Integrals {
         match parameters.wear_law {
             WearLaw::Archard => parameters.wear_coefficient * self.sliding_power(),
             WearLaw::ArchardMap | WearLaw::Energy => self.node_area * self.sums.wear_rate,
+        }
+    }
+
+    /// Volume worn off the wheel per time, `m³/s`.
+    fn wheel_wear_rate(&self, parameters: &Parameters) -> f64 {
+        match parameters.wheel_wear_law {
+            WheelWearLaw::Coefficient => parameters.wheel_wear_coefficient * self.sliding_power(),
+            WheelWearLaw::WearLaw => self.wear_rate(parameters),
         }
     }
 
@@ -71,6 +79,10 @@ impl Integrals {
         [outputs.moment_x, outputs.moment_y, outputs.moment_z] = all.moment;
         outputs.friction_torque = all.torque;
         outputs.contacts = all.count as f64;
+        outputs.flange_height = all.measures.flange_height;
+        outputs.flange_thickness = all.measures.flange_thickness;
+        outputs.flange_gradient = all.measures.flange_gradient;
+        outputs.hollow_depth = all.measures.hollow_depth;
         let contacts = &all.contacts[..all.count];
         outputs.lateral_force = contacts.iter().map(|contact| contact.friction[1]).sum();
         outputs.spin_moment = contacts.iter().map(|contact| contact.spin_moment).sum();
@@ -146,6 +158,9 @@ impl Integrals {
             friction_energy: totals.friction_energy,
             distance: totals.distance,
             wheel_wear_depth: totals.wheel_wear_depth,
+            wheel_worn_volume: totals.wheel_worn_volume,
+            wheel_worn_area: totals.wheel_worn_area,
+            rail_worn_area: totals.rail_worn_area,
             ..Outputs::default()
         };
         match parameters.contact_model {
@@ -158,11 +173,16 @@ impl Integrals {
 
     /// Rates of growth of the totals per second.
     pub fn total_rates(&self, parameters: &Parameters, inputs: &Inputs) -> Totals {
+        let wheel = self.wheel_wear_rate(parameters);
+        let [wheel_area, rail_area] = self.on_wheelset.worn_area_rates;
         Totals {
             worn_volume: self.wear_rate(parameters),
             friction_energy: self.friction_power(),
             distance: inputs.motion(parameters).rolling_speed.abs(),
-            wheel_wear_depth: rim::wear_rate(parameters, self.sliding_power(), self.width(parameters)),
+            wheel_wear_depth: rim::wear_rate(parameters, wheel, self.width(parameters)),
+            wheel_worn_volume: wheel,
+            wheel_worn_area: wheel_area,
+            rail_worn_area: rail_area,
         }
     }
 

@@ -46,6 +46,8 @@ pub struct Convergence {
     /// Whether a part of the step was taken staggered: the mechanics for temperature and wear before it, because neither method found
     /// the solution of the coupled equations within the budget of work.
     pub staggered: bool,
+    /// Largest depth that a sub-step has worn off a profile, `m`.
+    pub profile_change: f64,
 }
 
 /// Coupling of mechanics with heat and wear over a step.

@@ -79,6 +79,26 @@ impl Profiles {
     }
 }
 
+/// Place of a profile in which the depth of its wear is collected.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct WornPlace {
+    /// Lateral position on the new profile, in its own frame, `m`.
+    pub position: f64,
+    /// Arc length of the new profile, `m`.
+    pub arc_length: f64,
+    /// Depth along the normal, `m`.
+    pub depth: f64,
+}
+
+/// Wear of both profiles, from the gauge or flange side to the field side; of profiles that stay new with a depth of 0.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ProfileDepths {
+    /// The wheel's.
+    pub wheel: Vec<WornPlace>,
+    /// The rail's, on the profile as it was read, which is upright.
+    pub rail: Vec<WornPlace>,
+}
+
 /// Samples the values of evenly spaced nodes at evenly spaced points, both from the first node to the last, linear between the nodes.
 pub fn sample(values: &[f64], points: usize) -> Vec<f64> {
     let n = values.len();

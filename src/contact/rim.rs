@@ -215,11 +215,11 @@ impl FixedPoint {
     }
 }
 
-/// Radius that the wheel loses per time, `m/s`, to the `sliding` power ∫ |s| p dA, `W`, on a contact of the given width,
-/// `m`; 0 without contact, which has no width.
-pub fn wear_rate(parameters: &Parameters, sliding: f64, width: f64) -> f64 {
+/// Radius that the wheel loses per time, `m/s`, as it wears by a volume per time, `m³/s`, on a contact of the given width, `m`; 0 without
+/// contact, which has no width.
+pub fn wear_rate(parameters: &Parameters, volume: f64, width: f64) -> f64 {
     if width > 0.0 {
-        parameters.wheel_wear_coefficient * sliding / (2.0 * PI * parameters.wheel_radius * width)
+        volume / (2.0 * PI * parameters.wheel_radius * width)
     } else {
         0.0
     }

@@ -10,7 +10,7 @@ use super::fields::Fields;
 use super::problem::Problem;
 use super::step::StepWorkspace;
 use crate::error::Result;
-use crate::signals::{INPUTS, Inputs, OUTPUTS, OutputKind, Outputs, Totals};
+use crate::signals::{INPUTS, Inputs, OUTPUTS, OutputKind, OutputSignal, Outputs, Totals};
 
 /// Computes the derivatives of all outputs with respect to each of the given rows of [`INPUTS`] at `fields`, the solution of the
 /// problem.
@@ -45,6 +45,7 @@ pub fn outputs<E: Engine>(
             Ok(output_tangent(
                 problem,
                 fields,
+                at.solvers,
                 &direction,
                 least_step,
                 change,
@@ -72,6 +73,7 @@ fn direction<E: Engine>(problem: &Problem<E>, input: usize) -> Direction {
 fn output_tangent<E: Engine>(
     problem: &Problem<E>,
     fields: &E::Fields,
+    solvers: &E::Solvers,
     direction: &Direction,
     least_step: f64,
     change: &E::Fields,
@@ -86,15 +88,16 @@ fn output_tangent<E: Engine>(
         moved.move_along(fields, change, step);
         let problem = problem.under(conditions.inputs.advanced(&direction.inputs, step));
         let (parameters, conditions) = (problem.parameters, &problem.conditions);
-        let integrals = E::integrals(&problem, moved);
+        let integrals = E::integrals(&problem, moved, solvers);
         // The totals before the step do not depend on the inputs of the step, so that the derivative is the same from 0.
         let totals = integrals.totals_after(parameters, conditions, &Totals::default());
         integrals.outputs(parameters, &conditions.inputs, &totals)
     };
     let (ahead, behind) = (outputs(step), outputs(-step));
     let mut derivative = Outputs::default();
-    // What is counted is constant but for jumps.
-    for signal in OUTPUTS.iter().filter(|signal| signal.kind != OutputKind::Counted) {
+    // What is counted is constant but for jumps, and what is kept does not see the step.
+    let moves = |signal: &&OutputSignal| !matches!(signal.kind, OutputKind::Counted | OutputKind::Kept);
+    for signal in OUTPUTS.iter().filter(moves) {
         let difference = (signal.get)(&ahead) - (signal.get)(&behind);
         (signal.set)(&mut derivative, difference / (2.0 * step));
     }

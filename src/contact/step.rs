@@ -285,6 +285,7 @@ fn finish<E: Engine>(
         residual,
         fills_window,
         staggered: problem.conditions.coupling == Coupling::Staggered,
+        profile_change: E::profile_change(solvers),
     })
 }
 
@@ -329,6 +330,7 @@ fn initial_state_in_room<E: Engine>(
                 residual: if rests { 0.0 } else { tractions.shear_change },
                 fills_window: fills_window(problem, &now, solvers)?,
                 staggered: !rests,
+                profile_change: 0.0,
             };
             E::finalise_displacement(problem, iterate, &mut now, solvers);
             E::end_memory(problem, &mut now);

@@ -13,7 +13,7 @@ use crate::error;
 use crate::parameters::{Parameters, TEXT_PARAMETERS};
 use crate::settings::Settings;
 use crate::signals::Inputs;
-use crate::wheel_rail::{ContactNode, Model, Profiles, State, Workspace};
+use crate::wheel_rail::{ContactNode, Model, ProfileDepths, Profiles, State, Workspace};
 use std::ffi::CString;
 
 /// Model that follows from the parameters, and the scratch that goes with it.
@@ -37,6 +37,8 @@ pub(super) struct Plots {
     profiles: Option<Profiles>,
     /// The cells of a patch.
     nodes: Option<Vec<ContactNode>>,
+    /// Wear of the profiles; without places where there are no profiles.
+    wear: Option<ProfileDepths>,
 }
 
 /// An instance of the component.
@@ -245,6 +247,20 @@ impl Component {
             self.plots.profiles = Some(profiles);
         }
         self.plots.profiles.as_ref().ok_or(Failure::NothingComputed)
+    }
+
+    /// The wear of the profiles at the communication point; without places of another contact model.
+    pub(super) fn profile_wear(&mut self) -> Result<&ProfileDepths, Failure> {
+        if self.plots.wear.is_none() {
+            let (built, state) = self.solved()?;
+            let none = || ProfileDepths {
+                wheel: Vec::new(),
+                rail: Vec::new(),
+            };
+            let wear = built.model.profile_wear(state).unwrap_or_else(|_| none());
+            self.plots.wear = Some(wear);
+        }
+        self.plots.wear.as_ref().ok_or(Failure::NothingComputed)
     }
 
     /// The fields at the nodes of the contact at the communication point.

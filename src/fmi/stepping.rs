@@ -5,7 +5,10 @@ use super::failures::{Blame, Failure};
 use super::logging::Category;
 use super::modes::Mode;
 use crate::signals::{INPUTS, Inputs};
+use crate::wheel_rail::State;
 
+/// Depth that a step may wear off a profile without a remark, `m`: of the size of what the surfaces sink between two strips.
+const LARGEST_PROFILE_CHANGE: f64 = 1e-6;
 /// Room for rounding in times that a master adds up step by step: relative, some 10⁶ roundings.
 const TIME_TOLERANCE: f64 = 1e-9;
 
@@ -51,6 +54,7 @@ impl Component {
                 // Derivatives hold from the beginning of one step to its end.
                 self.rates = Inputs::ZERO;
                 self.warn_of_staggered_step();
+                self.warn_of_profile_change();
                 self.inform_about_step();
                 Ok(())
             }
@@ -100,6 +104,20 @@ impl Component {
         self.journal.failure(Blame::Remark, || {
             format!(
                 "t = {time} s: mechanics, heat and wear of the step were not solved together within its budget of work, but one after the other (residual {residual:e}); a shorter step may be solved"
+            )
+        });
+    }
+
+    /// Tells that a profile has changed by much at once. The status of the step is not touched.
+    fn warn_of_profile_change(&mut self) {
+        let largest = |state: &&State| state.convergence.profile_change > LARGEST_PROFILE_CHANGE;
+        let Some(state) = self.state.as_ref().filter(largest) else {
+            return;
+        };
+        let (time, change) = (self.time, 1e6 * state.convergence.profile_change);
+        self.journal.failure(Blame::Remark, || {
+            format!(
+                "t = {time} s: a profile was worn by {change:.3} micrometres at once, more than 1: the contact sees it after the step only; a shorter step or a smaller wear_acceleration follows it"
             )
         });
     }

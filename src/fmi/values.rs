@@ -3,7 +3,7 @@
 use super::component::Component;
 use super::failures::Failure;
 use super::modes::Mode;
-use super::variables::{FIELDS, Integer, IntegerVariable, Lengths, PROFILES, Real, RealVariable, Text};
+use super::variables::{FIELDS, Integer, IntegerVariable, Lengths, PROFILE_WEAR, PROFILES, Real, RealVariable, Text};
 use crate::error::{Error, LONGEST_TEXT, TextProblem};
 use crate::parameters::{ContactModel, INTEGER_PARAMETERS, REAL_PARAMETERS, TEXT_PARAMETERS, TextParameter};
 use crate::signals::{INPUTS, InputSignal, OUTPUTS};
@@ -30,6 +30,11 @@ impl Component {
                 *values.get(variable.element).ok_or(Failure::NothingComputed)?
             }
             RealVariable::Field(row) => self.field(row, variable.element)?,
+            RealVariable::ProfileWear(row) => {
+                let column = &PROFILE_WEAR[row];
+                let place = (column.places)(self.profile_wear()?).get(variable.element);
+                place.map_or(0.0, column.value)
+            }
             RealVariable::Residual => {
                 let (built, state) = self.solved()?;
                 built.model.convergence(state).residual

@@ -5,7 +5,7 @@ mod list;
 
 use crate::parameters::{INTEGER_PARAMETERS, IntegerKind, Parameters, REAL_PARAMETERS, TEXT_PARAMETERS};
 use crate::signals::{CONTACTS, INPUTS, OUTPUTS};
-use crate::wheel_rail::{ContactNode, DEPTH_POINTS, PROFILE_POINTS, Profiles, STRIP_POINTS};
+use crate::wheel_rail::{ContactNode, DEPTH_POINTS, PROFILE_POINTS, ProfileDepths, Profiles, STRIP_POINTS, WornPlace};
 use std::ops::Range;
 
 pub use list::{fields, time, variables};
@@ -104,11 +104,45 @@ pub const FIELDS: [FieldColumn; 9] = [
         description: "Depth of wear of the rail surface in the cells of the patch", value: |node, _| node.wear_depth },
 ];
 
-/// Lengths of arrays. Those of a patch's fields follow from parameters.
+/// A number of each place of a profile that wears. As the fields, only where arrays have the lengths that parameters give them.
+pub struct WearColumn {
+    /// Name.
+    pub name: &'static str,
+    /// Typical magnitude.
+    pub nominal: f64,
+    /// Unit in which a person would read the values.
+    pub display_unit: &'static str,
+    /// One sentence.
+    pub description: &'static str,
+    /// Reads the places of a profile.
+    pub places: fn(&ProfileDepths) -> &[WornPlace],
+    /// Reads the value of a place.
+    pub value: fn(&WornPlace) -> f64,
+}
+
+/// The wear of the profiles, in `m`.
+#[rustfmt::skip]
+pub const PROFILE_WEAR: [WearColumn; 6] = [
+    WearColumn { name: "wheel_profile.position", nominal: 1e-2, display_unit: "mm",
+        description: "Lateral positions of the places on the new profile of the wheel, outwards from the running circle; 0 unless contact_model is profiles", places: |p| &p.wheel, value: |place| place.position },
+    WearColumn { name: "wheel_profile.arc_length", nominal: 1e-2, display_unit: "mm",
+        description: "Arc lengths of the places on the new profile of the wheel from its flange side; 0 unless contact_model is profiles", places: |p| &p.wheel, value: |place| place.arc_length },
+    WearColumn { name: "wheel_profile.wear_depth", nominal: 1e-5, display_unit: "µm",
+        description: "Depths along the normal that the wheel's profile has lost; 0 unless wheel_profile_wear is on", places: |p| &p.wheel, value: |place| place.depth },
+    WearColumn { name: "rail_profile.position", nominal: 1e-2, display_unit: "mm",
+        description: "Lateral positions of the places on the new upright profile of the rail, outwards from its highest point; 0 unless contact_model is profiles", places: |p| &p.rail, value: |place| place.position },
+    WearColumn { name: "rail_profile.arc_length", nominal: 1e-2, display_unit: "mm",
+        description: "Arc lengths of the places on the new profile of the rail from its gauge side; 0 unless contact_model is profiles", places: |p| &p.rail, value: |place| place.arc_length },
+    WearColumn { name: "rail_profile.wear_depth", nominal: 1e-5, display_unit: "µm",
+        description: "Depths along the normal that the rail's profile has lost; 0 unless rail_profile_wear is on", places: |p| &p.rail, value: |place| place.depth },
+];
+
+/// Lengths of arrays. Those of a patch's fields and of the profiles' wear follow from parameters.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Lengths {
     strips: usize,
     cells: usize,
+    wear_points: usize,
 }
 
 impl Lengths {
@@ -117,6 +151,7 @@ impl Lengths {
         Lengths {
             strips: parameters.patch_strips,
             cells: parameters.patch_nodes,
+            wear_points: parameters.profile_wear_points,
         }
     }
 
@@ -130,6 +165,7 @@ impl Lengths {
                 let [strips, cells] = FIELDS[row].over;
                 (if strips { self.strips } else { 1 }) * (if cells { self.cells } else { 1 })
             }
+            RealVariable::ProfileWear(_) => self.wear_points,
             _ => 1,
         }
     }
@@ -205,6 +241,8 @@ pub enum Shape {
     Array(usize),
     /// Array of a row of [`FIELDS`]: over strips, cells along a strip, or both, as many of them as parameters say.
     Field([bool; 2]),
+    /// Array of a row of [`PROFILE_WEAR`]: over the places of a profile, as many of them as a parameter says.
+    ProfileWear,
 }
 
 /// Properties of a real number, or of an array of them.
@@ -293,6 +331,8 @@ pub enum RealVariable {
     Profile(usize),
     /// Row of [`FIELDS`].
     Field(usize),
+    /// Row of [`PROFILE_WEAR`].
+    ProfileWear(usize),
     /// `solver.residual`.
     Residual,
     /// The communication point.
@@ -358,6 +398,7 @@ impl Real {
             RealVariable::Parameter(row) => REAL_PARAMETERS[row].elements[self.element].to_owned(),
             RealVariable::Profile(row) => format!("{}[{}]", PROFILES[row].name, self.element + 1),
             RealVariable::Field(row) => FIELDS[row].name.to_owned(),
+            RealVariable::ProfileWear(row) => PROFILE_WEAR[row].name.to_owned(),
             RealVariable::Residual => RESIDUAL.to_owned(),
             RealVariable::Time => TIME.to_owned(),
         }

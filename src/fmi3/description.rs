@@ -174,21 +174,23 @@ fn dimensions(shape: Shape) -> Vec<Dimension> {
         start: Some(start),
         value_reference: None,
     };
+    let length = |name: &str| Dimension {
+        start: None,
+        value_reference: INTEGER_PARAMETERS
+            .iter()
+            .position(|row| row.name == name)
+            .map(|row| of_integer(IntegerVariable::Parameter(row))),
+    };
     match shape {
         Shape::Number => Vec::new(),
         Shape::Array(elements) => vec![number(elements)],
+        // Strips first, then cells along a strip: the last index runs fastest.
         Shape::Field(over) => {
-            // Strips first, then cells along a strip: the last index runs fastest.
             let lengths = ["patch_strips", "patch_nodes"].into_iter().zip(over);
-            let given = lengths.filter(|(_, is_index)| *is_index).map(|(name, _)| Dimension {
-                start: None,
-                value_reference: INTEGER_PARAMETERS
-                    .iter()
-                    .position(|row| row.name == name)
-                    .map(|row| of_integer(IntegerVariable::Parameter(row))),
-            });
-            given.collect()
+            let given = lengths.filter(|(_, is_index)| *is_index);
+            given.map(|(name, _)| length(name)).collect()
         }
+        Shape::ProfileWear => vec![length("profile_wear_points")],
     }
 }
 
@@ -203,7 +205,7 @@ fn model_structure() -> ModelStructure {
     let is_total = |name: &str| {
         OUTPUTS
             .iter()
-            .any(|row| row.name == name && row.kind == OutputKind::Total)
+            .any(|row| row.name == name && matches!(row.kind, OutputKind::Total | OutputKind::Kept))
     };
     let unknowns = |dependencies: String| {
         let outputs = table().filter(|(_, variable)| variable.causality == Causality::Output);

@@ -3,7 +3,7 @@
 
 use crate::fmi::failures::Failure;
 use crate::fmi::variables::{
-    FIELDS, Integer, IntegerVariable, Kind, PROFILES, RealVariable, Text, ValueReference, Variable,
+    FIELDS, Integer, IntegerVariable, Kind, PROFILE_WEAR, PROFILES, RealVariable, Text, ValueReference, Variable,
 };
 use crate::fmi::variables::{fields, time, variables};
 use crate::parameters::{INTEGER_PARAMETERS, IntegerKind, REAL_PARAMETERS, TEXT_PARAMETERS};
@@ -20,6 +20,7 @@ const PROFILE_BLOCK: u32 = 5;
 const FIELD_BLOCK: u32 = 6;
 const SOLVER_BLOCK: u32 = 7;
 const TEXT_PARAMETER_BLOCK: u32 = 8;
+const PROFILE_WEAR_BLOCK: u32 = 9;
 const RESIDUAL: ValueReference = SOLVER_BLOCK * BLOCK;
 const ITERATIONS: ValueReference = SOLVER_BLOCK * BLOCK + 1;
 
@@ -87,6 +88,7 @@ fn of_real(variable: RealVariable) -> ValueReference {
         RealVariable::Parameter(row) => REAL_PARAMETER_BLOCK * BLOCK + row as u32,
         RealVariable::Profile(row) => PROFILE_BLOCK * BLOCK + row as u32,
         RealVariable::Field(row) => FIELD_BLOCK * BLOCK + row as u32,
+        RealVariable::ProfileWear(row) => PROFILE_WEAR_BLOCK * BLOCK + row as u32,
         RealVariable::Residual => RESIDUAL,
     }
 }
@@ -116,6 +118,7 @@ pub fn real(reference: ValueReference) -> Result<RealVariable, Failure> {
         REAL_PARAMETER_BLOCK => in_block(REAL_PARAMETERS.len(), RealVariable::Parameter(row)),
         PROFILE_BLOCK => in_block(PROFILES.len(), RealVariable::Profile(row)),
         FIELD_BLOCK => in_block(FIELDS.len(), RealVariable::Field(row)),
+        PROFILE_WEAR_BLOCK => in_block(PROFILE_WEAR.len(), RealVariable::ProfileWear(row)),
         SOLVER_BLOCK => (reference == RESIDUAL).then_some(RealVariable::Residual),
         _ => (reference == TIME).then_some(RealVariable::Time),
     };
@@ -217,7 +220,7 @@ mod tests {
             assert_eq!((name.trim_end_matches("[1]"), types), (variable.name, 1));
             assert!(references.insert(reference), "{}", variable.name);
         }
-        for reference in (0..9_000).chain([u32::MAX, u32::MAX - 1, 1 << 31]) {
+        for reference in (0..10_000).chain([u32::MAX, u32::MAX - 1, 1 << 31]) {
             assert_eq!(
                 resolved(reference).1 == 1,
                 references.contains(&reference),

@@ -90,8 +90,16 @@ impl<const D: usize> Quintics<D> {
         &self.knots
     }
 
+    /// Replaces a cell with its ends, which stay between those of its neighbours; these have to be replaced where they do not meet it.
+    pub fn replace(&mut self, cell: usize, span: &Span<D>) {
+        let [begin, end] = span.ends;
+        (self.knots[cell], self.knots[cell + 1]) = (begin, end);
+        let [before, after] = span.jets;
+        self.cells[cell] = std::array::from_fn(|which| coefficients(before[which], after[which], end - begin));
+    }
+
     /// Cell that holds an argument; the first or the last one for an argument beyond the range.
-    fn cell_of(&self, argument: f64) -> usize {
+    pub fn cell_of(&self, argument: f64) -> usize {
         let place = (argument - self.knots[0]) * self.density;
         // A conversion of a float saturates, and makes 0 of what is not a number.
         let mut cell = self.boxes[(place as usize).min(self.boxes.len() - 1)] as usize;
@@ -117,6 +125,11 @@ impl<const D: usize> Quintics<D> {
             }
         }
         jet
+    }
+
+    /// Values and derivatives where a cell begins.
+    pub fn beginning(&self, cell: usize) -> Jet<D> {
+        self.cells[cell].map(|[a, b, c, ..]| [a, b, 2.0 * c])
     }
 
     /// Values and derivatives of a cell's own polynomials, at its ends as well: there, those of its side.

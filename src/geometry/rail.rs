@@ -1,6 +1,6 @@
 //! The rail in its place in the track, seen from one side, over the arc length of its profile.
 
-use super::profile::Profile;
+use super::profile::{DepthGrid, Profile};
 use super::unrolled::RailPoint;
 use crate::error::ProfileError;
 
@@ -12,6 +12,8 @@ pub struct PlacedRail {
     offset: f64,
     /// Arc lengths between which the surface is looked at, `m`.
     range: [f64; 2],
+    /// Cells of the depth by which it has worn, and their means, `m`; none of a new one.
+    worn: Option<(DepthGrid, Vec<f64>)>,
 }
 
 /// Steepest inclination of the surface that is looked at, rad: 85°.
@@ -37,7 +39,12 @@ impl PlacedRail {
             arc
         };
         let range = [reach(-1.0), reach(1.0)];
-        Ok(PlacedRail { profile, offset, range })
+        Ok(PlacedRail {
+            profile,
+            offset,
+            range,
+            worn: None,
+        })
     }
 
     /// Arc lengths between which the surface is looked at, `m`.
@@ -50,9 +57,22 @@ impl PlacedRail {
         self.offset
     }
 
-    /// Surface at an arc length, `m`.
+    /// Gives the rail cells of a depth by which it is worn.
+    pub fn collect_wear(&mut self, grid: DepthGrid) {
+        self.worn = Some((grid, vec![0.0; grid.cells]));
+    }
+
+    /// Depth by which it is worn in each of its cells, to be changed; none of a rail that stays new.
+    pub fn depth_mut(&mut self) -> Option<&mut [f64]> {
+        self.worn.as_mut().map(|(_, depth)| depth.as_mut_slice())
+    }
+
+    /// Surface at an arc length of the new profile, `m`: where it is worn, what has become of it along the normal.
     pub fn at(&self, arc: f64) -> RailPoint {
-        let point = self.profile.at(arc);
+        let point = match &self.worn {
+            Some((grid, depth)) => self.profile.worn_at(arc, grid.at(depth, arc)),
+            None => self.profile.at(arc),
+        };
         let [y, z] = point.place;
         let [along_y, along_z] = point.tangent;
         RailPoint {

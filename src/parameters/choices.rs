@@ -99,6 +99,22 @@ choices! {
         Energy "energy",
     }
 
+    /// Law of the wheel's wear.
+    WheelWearLaw {
+        /// k_w |s| p with the wheel's own coefficient.
+        Coefficient "coefficient",
+        /// The law of the rail's wear, with the same parameters: the wheel loses at a point what the rail loses there.
+        WearLaw "wear_law",
+    }
+
+    /// Whether a profile wears.
+    ProfileWear {
+        /// The body stays new.
+        Off "off",
+        /// The body's profile loses what the contact wears off it.
+        On "on",
+    }
+
     /// Geometry of a patch.
     PatchGeometry {
         /// The parameters': constant.

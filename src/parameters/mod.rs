@@ -22,8 +22,8 @@ mod validation;
 
 pub use crate::geometry::hertz::HertzEllipse;
 pub use choices::{
-    ContactModel, Control, FrictionLaw, MeshKind, NormalSolver, PatchGeometry, Side, SlipSource, WearLaw, Wheel,
-    WheelHeating,
+    ContactModel, Control, FrictionLaw, MeshKind, NormalSolver, PatchGeometry, ProfileWear, Side, SlipSource, WearLaw,
+    Wheel, WheelHeating, WheelWearLaw,
 };
 pub use grids::{PATCH_GRID, PatchGrid};
 pub use range::check_range;

@@ -10,8 +10,8 @@
 //! where the symbol is that of the equations, where there is one. The order is that of the table and of a saved state.
 
 use super::choices::{
-    ContactModel, Control, FrictionLaw, MeshKind, NormalSolver, PatchGeometry, Side, SlipSource, WearLaw, Wheel,
-    WheelHeating,
+    ContactModel, Control, FrictionLaw, MeshKind, NormalSolver, PatchGeometry, ProfileWear, Side, SlipSource, WearLaw,
+    Wheel, WheelHeating, WheelWearLaw,
 };
 use super::grids::{PATCH_GRID, PatchGrid};
 use super::range::check_range;
@@ -344,6 +344,22 @@ parameters! {
     wear_energy_catastrophic "c": f64 = real { "kg/J", 61.9e-9, 0.0, 1e-5 }
     /// Friction work per area and distance rolled from which on wear is catastrophic, used where wear_law is energy
     wear_energy_threshold "x_c": f64 = real { "Pa" shown in "MPa", (55.0 + 4778.7) / 61.9 * 1e6, 1e3, 1e12 }
+    /// Law of the wheel's wear: 1 coefficient (wheel_wear_coefficient), 2 wear_law (that of the rail, with the same parameters)
+    wheel_wear_law: WheelWearLaw = choice { WheelWearLaw::Coefficient }
+    /// Whether the wheel's profile loses what the contact wears off it, spread over the turn, used where contact_model is profiles
+    wheel_profile_wear: ProfileWear = switch { ProfileWear::Off }
+    /// Whether the rail's profile loses what the contact wears off it, spread over rail_wear_length, used where contact_model is profiles;
+    /// otherwise the rail under the wheel is new all the time
+    rail_profile_wear: ProfileWear = switch { ProfileWear::Off }
+    /// Length of rail that the wheel passes over and over, used where rail_profile_wear is on: a closed track, the circumference of a
+    /// roller, or the distance that wheels roll for each of them that passes a place
+    rail_wear_length "L_r": f64 = real { "m", 1000.0, 0.0, 1e9 }
+    /// Number of cells over each profile in which the depth of its wear is collected, used where contact_model is profiles; by default
+    /// they are 0.1 mm long
+    profile_wear_points: usize = length { 1500, 50, 20000 }
+    /// Factor on what is worn off the profiles, so that a short run stands for a long one, used where contact_model is profiles; heat and totals
+    /// do not see it
+    wear_acceleration: f64 = real { "1", 1.0, 0.0, 1e9, tunable }
 }
 
 /// The start values of the friction table: the default piecewise linear law, its hot end repeated.
@@ -614,6 +630,8 @@ mod tests {
         assert_eq!(lower(Side::ALL), Side::NAMES);
         assert_eq!(lower(PatchGeometry::ALL), PatchGeometry::NAMES);
         assert_eq!(lower(WearLaw::ALL), WearLaw::NAMES);
+        assert_eq!(lower(WheelWearLaw::ALL), WheelWearLaw::NAMES);
+        assert_eq!(lower(ProfileWear::ALL), ProfileWear::NAMES);
     }
 
     #[test]

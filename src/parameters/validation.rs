@@ -1,6 +1,8 @@
 //! Checks of the parameters, once, before a model is built.
 
-use super::choices::{ContactModel, Control, FrictionLaw, MeshKind, NormalSolver, PatchGeometry, SlipSource, WearLaw};
+use super::choices::{
+    ContactModel, Control, FrictionLaw, MeshKind, NormalSolver, PatchGeometry, ProfileWear, SlipSource, WearLaw,
+};
 use super::source::ProfileSource;
 use super::table::{INTEGER_PARAMETERS, Parameters, REAL_PARAMETERS, TEXT_PARAMETERS};
 use crate::error::{Error, Result};
@@ -112,6 +114,13 @@ impl Parameters {
                 self.model(),
                 ("slip_source", f64::from(self.slip_source as i32 + 1)),
                 "profiles take the motion of the wheelset; slip_source must be 2 (vehicle_speed) with contact_model = 3 (profiles)",
+            );
+        }
+        if self.rail_profile_wear == ProfileWear::On && self.rail_wear_length <= 0.0 {
+            return combination(
+                ("rail_profile_wear", f64::from(self.rail_profile_wear as i32 + 1)),
+                ("rail_wear_length", self.rail_wear_length),
+                "what is worn off the rail is spread over a length; rail_wear_length must be positive with rail_profile_wear = 2 (on)",
             );
         }
         ProfileSource::of("rail_profile", &self.rail_profile)?;

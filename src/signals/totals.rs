@@ -13,6 +13,12 @@ pub struct Totals {
     pub distance: f64,
     /// Radius that the wheel has lost by wear, `m`.
     pub wheel_wear_depth: f64,
+    /// Volume worn off the wheel, `m³`.
+    pub wheel_worn_volume: f64,
+    /// Area of the cross-section that the wheel's profile has lost, `m²`.
+    pub wheel_worn_area: f64,
+    /// Area of the cross-section that the rail's profile has lost, `m²`.
+    pub rail_worn_area: f64,
 }
 
 impl Totals {
@@ -23,6 +29,9 @@ impl Totals {
             friction_energy: self.friction_energy + rates.friction_energy * duration,
             distance: self.distance + rates.distance * duration,
             wheel_wear_depth: self.wheel_wear_depth + rates.wheel_wear_depth * duration,
+            wheel_worn_volume: self.wheel_worn_volume + rates.wheel_worn_volume * duration,
+            wheel_worn_area: self.wheel_worn_area + rates.wheel_worn_area * duration,
+            rail_worn_area: self.rail_worn_area + rates.rail_worn_area * duration,
         }
     }
 
@@ -33,6 +42,9 @@ impl Totals {
             self.friction_energy,
             self.distance,
             self.wheel_wear_depth,
+            self.wheel_worn_volume,
+            self.wheel_worn_area,
+            self.rail_worn_area,
         ];
         totals.iter().all(|total| total.is_finite())
     }

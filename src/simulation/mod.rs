@@ -29,9 +29,10 @@ mod error;
 mod schedule;
 
 use crate::error as model;
+use crate::geometry::profile::Profile;
 use crate::parameters::Parameters;
 use crate::signals::{Inputs, Outputs};
-use crate::wheel_rail::{ContactNode, Model, Profiles, State, Workspace};
+use crate::wheel_rail::{ContactNode, Model, ProfileDepths, Profiles, State, Workspace};
 use std::sync::Arc;
 
 pub use error::{Error, Result};
@@ -137,6 +138,22 @@ impl Simulation {
     /// The profiles at the last communication point.
     pub fn profiles(&self) -> Profiles {
         self.model.profiles(&self.state)
+    }
+
+    /// Depths by which the profiles of wheel and rail are worn.
+    ///
+    /// # Errors
+    /// Those of [`Model::profile_wear`].
+    pub fn profile_wear(&self) -> model::Result<ProfileDepths> {
+        self.model.profile_wear(&self.state)
+    }
+
+    /// Profiles of wheel and rail as they are worn.
+    ///
+    /// # Errors
+    /// Those of [`Model::worn_profiles`].
+    pub fn worn_profiles(&self) -> model::Result<[Profile; 2]> {
+        self.model.worn_profiles(&self.state)
     }
 
     /// The fields at the nodes of the contact window, from the rear to the front for V > 0.

@@ -93,7 +93,7 @@ fn size(output: &OutputSignal, before: &State, after: &State) -> f64 {
     let value = (output.get)(&after.outputs);
     match output.kind {
         OutputKind::Total => (value - (output.get)(&before.outputs)).abs(),
-        OutputKind::Instantaneous | OutputKind::Counted => output.nominal.max(value.abs()),
+        OutputKind::Instantaneous | OutputKind::Counted | OutputKind::Kept => output.nominal.max(value.abs()),
     }
 }
 

@@ -2,8 +2,8 @@
 //! scenarios that switch everything on. What fails names the file in which something was forgotten.
 
 use wheelrail::parameters::{
-    ContactModel, Control, FrictionLaw, INTEGER_PARAMETERS, Parameters, PatchGeometry, REAL_PARAMETERS, Side,
-    SlipSource, TABLE_POINTS, WearLaw, Wheel, WheelHeating,
+    ContactModel, Control, FrictionLaw, INTEGER_PARAMETERS, Parameters, PatchGeometry, ProfileWear, REAL_PARAMETERS,
+    Side, SlipSource, TABLE_POINTS, WearLaw, Wheel, WheelHeating,
 };
 use wheelrail::signals::{INPUTS, Inputs, OUTPUTS, Outputs};
 use wheelrail::simulation::Simulation;
@@ -56,7 +56,7 @@ fn patches() -> [Scenario; 3] {
 }
 
 /// A wheel on a rail by their profiles, where it touches at the gauge corner and the flange, under a load and at a height, on small windows.
-fn profiles() -> [Scenario; 3] {
+fn profiles() -> [Scenario; 4] {
     let parameters = Parameters {
         contact_model: ContactModel::Profiles,
         slip_source: SlipSource::VehicleSpeed,
@@ -86,6 +86,21 @@ fn profiles() -> [Scenario; 3] {
         roll_angle: 0.0,
         ..loaded
     };
+    // A wheel that is worn hollow, on a rail that wears.
+    let wearing = Parameters {
+        wheel_profile_wear: ProfileWear::On,
+        rail_profile_wear: ProfileWear::On,
+        rail_wear_length: 5.0,
+        wheel_wear_coefficient: 1e-12,
+        wear_acceleration: 3e4,
+        ..parameters.clone()
+    };
+    let on_tread = Inputs {
+        normal_load: 20e3,
+        lateral_displacement: 0.0,
+        roll_angle: 0.0,
+        ..loaded
+    };
     // Two contacts, and one on a lubricated flange.
     let both = Inputs {
         normal_load: 20e3,
@@ -105,7 +120,12 @@ fn profiles() -> [Scenario; 3] {
         yaw_angle: 0.02,
         ..loaded
     };
-    [(parameters, both), (lowered, at_height), (lubricated, on_flange)]
+    [
+        (parameters, both),
+        (lowered, at_height),
+        (lubricated, on_flange),
+        (wearing, on_tread),
+    ]
 }
 
 /// Sliding under each law of friction, stick under a prescribed penetration and the vehicle's speed, and patches.

@@ -22,4 +22,5 @@ mod torture;
 mod wear;
 mod wear_laws;
 mod wheel_heat;
+mod worn_profiles;
 mod yielding_layer;

@@ -16,6 +16,7 @@ mod standard;
 mod table;
 mod torture;
 mod verify;
+mod wear;
 
 use clap::{Parser, Subcommand};
 use std::error::Error;

@@ -2,7 +2,7 @@
 
 use crate::progress::Progress;
 use crate::table::{self, Table, heading};
-use crate::{fields, files, names, preset, scenario};
+use crate::{fields, files, names, preset, scenario, wear};
 use clap::Args;
 use std::fs;
 use std::path::PathBuf;
@@ -11,6 +11,8 @@ use wheelrail::signals::{InputSignal, OutputSignal};
 use wheelrail::simulation::{self, Point, Schedule};
 use wheelrail::{ContactModel, Error as ModelError, INPUTS, Model, OUTPUTS, Outputs, Parameters, Simulation};
 
+/// Depth that a step may wear off a profile without a word, `m`.
+const LARGEST_PROFILE_CHANGE: f64 = 1e-6;
 /// Steps of a run at most: at a microsecond each these are a quarter of an hour, and no step is as short.
 const MOST_STEPS: usize = 1_000_000_000;
 
@@ -26,6 +28,17 @@ pub struct Simulate {
     /// CSV file for the fields at the end: a row for each node of a line contact or cell of a patch
     #[arg(long, value_name = "FIELDS.csv")]
     fields: Option<PathBuf>,
+    /// CSV file for the wear of both profiles at the end: places and depths, where contact_model is profiles
+    #[arg(long, value_name = "DEPTHS.csv")]
+    profile_wear: Option<PathBuf>,
+    /// File for the wheel's profile as worn at the end, where contact_model is profiles: SIMPACK's (.prw), MiniProf's (.whl, .mpt), VAMPIRE's
+    /// (.whe)
+    #[arg(long, value_name = "WHEEL.prw")]
+    worn_wheel: Option<PathBuf>,
+    /// File for the rail's profile as worn at the end, upright, where contact_model is profiles: SIMPACK's (.prr), MiniProf's (.ban, .mpt),
+    /// VAMPIRE's (.rai)
+    #[arg(long, value_name = "RAIL.prr")]
+    worn_rail: Option<PathBuf>,
     /// Communication step, `s`.
     #[arg(long, value_name = "SECONDS", default_value_t = 1e-3)]
     step: f64,
@@ -90,6 +103,15 @@ pub enum Error {
     /// A parameter that cannot be.
     #[error("{0}{hint}", hint = names::hint(.0))]
     Parameter(ModelError),
+    /// Worn profiles that there are not, or that cannot be written.
+    #[error("worn profiles: {0}")]
+    NoProfiles(ModelError),
+    /// Files that only profiles have something for.
+    #[error("{option}: only contact_model = 3 (profiles) has profiles that wear")]
+    NotProfiles {
+        /// The option that names the file.
+        option: &'static str,
+    },
     /// The model cannot start.
     #[error("at the start of the scenario: {0}")]
     Start(ModelError),
@@ -119,6 +141,10 @@ impl Simulate {
         }
         self.check_steps(&schedule)?;
         let steps = schedule.steps(self.step).map_err(|_| Error::Step { step: self.step })?;
+        let of_wear = self.files_of_wear().into_iter().find(|(_, path)| path.is_some());
+        if let Some((option, _)) = of_wear.filter(|_| parameters.contact_model != ContactModel::Profiles) {
+            return Err(Error::NotProfiles { option });
+        }
         let model = Arc::new(Model::new(parameters).map_err(Error::Parameter)?);
         let start = schedule.start();
         let mut simulation = Simulation::of(model, &start.inputs).map_err(Error::Start)?;
@@ -129,13 +155,14 @@ impl Simulate {
 
         let count = steps.len();
         let mut progress = Progress::new(count as u64);
-        let (mut interrupted, mut staggered) = (None, 0);
+        let (mut interrupted, mut staggered, mut worn_at_once) = (None, 0, 0f64);
         for step in steps {
             if let Err(source) = simulation.follow(&step) {
                 interrupted = Some(Box::new(source));
                 break;
             }
             staggered += usize::from(simulation.state.convergence.staggered);
+            worn_at_once = worn_at_once.max(simulation.state.convergence.profile_change);
             columns.write(&mut table, &step.to, simulation.outputs())?;
             progress.step();
         }
@@ -143,7 +170,15 @@ impl Simulate {
         if let Some(fields) = &mut fields {
             fields::write(fields, &simulation)?;
         }
+        self.write_wear(&simulation)?;
         progress.end(interrupted.is_some());
+        if worn_at_once > LARGEST_PROFILE_CHANGE {
+            eprintln!(
+                "a step has worn a profile by {:.3} µm at once, more than {}; shorter steps or a smaller wear_acceleration follow the wear",
+                1e6 * worn_at_once,
+                1e6 * LARGEST_PROFILE_CHANGE
+            );
+        }
         if staggered > 0 {
             eprintln!(
                 "{staggered} steps: mechanics, heat and wear were not solved together, but one after the other; shorter steps may be solved"
@@ -155,6 +190,34 @@ impl Simulate {
         }
         let end = schedule.end().time;
         eprintln!("{count} steps to {end} s: {}", self.output.display());
+        Ok(())
+    }
+
+    /// The files for the profiles' wear, with the options that name them.
+    fn files_of_wear(&self) -> [(&'static str, &Option<PathBuf>); 3] {
+        [
+            ("--profile-wear", &self.profile_wear),
+            ("--worn-wheel", &self.worn_wheel),
+            ("--worn-rail", &self.worn_rail),
+        ]
+    }
+
+    /// Writes what is asked for of the profiles' wear.
+    fn write_wear(&self, simulation: &Simulation) -> Result<(), Error> {
+        if let Some(path) = &self.profile_wear {
+            wear::write(path, &simulation.profile_wear().map_err(Error::NoProfiles)?)?;
+        }
+        if self.worn_wheel.is_none() && self.worn_rail.is_none() {
+            return Ok(());
+        }
+        let [wheel, rail] = simulation.worn_profiles().map_err(Error::NoProfiles)?;
+        for (path, profile) in [(&self.worn_wheel, wheel), (&self.worn_rail, rail)] {
+            if let Some(path) = path {
+                profile
+                    .write(path)
+                    .map_err(|error| Error::NoProfiles(ModelError::Profile(error)))?;
+            }
+        }
         Ok(())
     }
 
@@ -179,6 +242,15 @@ impl Simulate {
         };
         if files::are_one(&self.output, &self.scenario) {
             return refused("--output", &self.output, "the scenario");
+        }
+        for (option, path) in self.files_of_wear() {
+            match path {
+                Some(path) if files::are_one(path, &self.output) => {
+                    return refused(option, path, "where the outputs go");
+                }
+                Some(path) if files::are_one(path, &self.scenario) => return refused(option, path, "the scenario"),
+                _ => {}
+            }
         }
         match &self.fields {
             Some(path) if files::are_one(path, &self.output) => refused("--fields", path, "where the outputs go"),

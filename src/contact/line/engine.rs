@@ -279,7 +279,7 @@ impl Engine for LineOperators {
 
     fn finalise_tangent(_: &mut Linearised<Self>, _: &Direction, _: &mut LineFields) {}
 
-    fn integrals(problem: &LineProblem, fields: &LineFields) -> Integrals {
+    fn integrals(problem: &LineProblem, fields: &LineFields, _solvers: &Self::Solvers) -> Integrals {
         integrals::integrals(problem, fields)
     }
 

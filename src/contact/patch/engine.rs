@@ -316,7 +316,7 @@ impl Engine for PatchOperators {
         march_tangent::finalise(at, direction, change);
     }
 
-    fn integrals(problem: &PatchProblem, fields: &PatchFields) -> Integrals {
+    fn integrals(problem: &PatchProblem, fields: &PatchFields, _solvers: &Self::Solvers) -> Integrals {
         integrals::integrals(problem, fields)
     }
 

@@ -4,6 +4,7 @@ use super::fields::SurfaceFields;
 use super::mechanics::{self, SurfaceProblem};
 use super::operators::SurfaceOperators;
 use super::placement;
+use super::profile_wear;
 use super::solvers::SurfaceSolvers;
 use super::tangent::{self, SurfaceTangent};
 use super::totals;
@@ -151,6 +152,8 @@ impl Engine for SurfaceOperators {
         now: &mut SurfaceFields,
         solvers: &mut SurfaceSolvers,
     ) -> Result<()> {
+        solvers.worn.set(problem.operators, &now.worn.depth)?;
+        now.worn.begin();
         placement::place(problem, before, None, now, solvers)?;
         begin_windows(problem, before, now, solvers)?;
         if before.is_none()
@@ -321,6 +324,7 @@ impl Engine for SurfaceOperators {
                 own,
             )?;
         }
+        solvers.profile_change = profile_wear::wear(problem, solvers.worn.of(problem.operators), now);
         Ok(())
     }
 
@@ -359,7 +363,10 @@ impl Engine for SurfaceOperators {
 
     fn begin_linearisation(problem: &SurfaceProblem, fields: &SurfaceFields, solvers: &mut SurfaceSolvers) {
         let (operators, pose) = (problem.operators, problem.pose());
-        let wheel = PlacedWheel::new(&operators.wheel, &pose.at_height(problem.height(fields)));
+        // Depths that fold a surface have been refused by the step; `linearise` would refuse them again.
+        let _ = solvers.worn.set(operators, &fields.worn.before);
+        let bodies = solvers.worn.of(operators);
+        let wheel = PlacedWheel::new(&bodies.wheel, &pose.at_height(problem.height(fields)));
         let apart = &mut solvers.apart;
         apart.set_resultants(operators, fields);
         for (window, place) in fields.used() {
@@ -368,8 +375,14 @@ impl Engine for SurfaceOperators {
             own.prepare(place.length);
             let everywhere = [f64::NEG_INFINITY, f64::INFINITY];
             let undeformed = &mut own.patch.undeformed;
-            own.geometry
-                .set(operators, &place, &wheel, &pose.motion, everywhere, undeformed);
+            own.geometry.set(
+                operators,
+                (&bodies.rail, &wheel),
+                &place,
+                &pose.motion,
+                everywhere,
+                undeformed,
+            );
             add_multiple(&apart.displacement[window], 1.0, &mut undeformed.gap);
             begin::begin_linearisation(&problem.of(&place), &fields.windows[window], &mut own.patch);
         }
@@ -407,8 +420,12 @@ impl Engine for SurfaceOperators {
         tangent::finalise(at, direction, change);
     }
 
-    fn integrals(problem: &SurfaceProblem, fields: &SurfaceFields) -> Integrals {
-        totals::integrals(problem, fields)
+    fn integrals(problem: &SurfaceProblem, fields: &SurfaceFields, solvers: &SurfaceSolvers) -> Integrals {
+        totals::integrals(problem, fields, solvers.worn.of(problem.operators))
+    }
+
+    fn profile_change(solvers: &SurfaceSolvers) -> f64 {
+        solvers.profile_change
     }
 
     fn profiles(problem: &SurfaceProblem, _fields: &SurfaceFields) -> Profiles {

@@ -1,5 +1,6 @@
 //! The fields of a contact of profiles: those of a patch in each window, and where the windows are.
 
+use super::bodies::ProfileWear;
 use super::operators::SurfaceOperators;
 use super::windows::{Place, SHAPES, WINDOWS};
 use crate::contact::fields::{FieldRow, Fields, Number, number, row};
@@ -25,6 +26,8 @@ pub struct SurfaceFields {
     pub load: f64,
     /// Temperature of the wheel's rim, absolute, `K`.
     pub wheel_temperature: f64,
+    /// Wear of both profiles.
+    pub worn: ProfileWear,
 }
 
 impl SurfaceFields {
@@ -38,6 +41,7 @@ impl SurfaceFields {
             stiffness: 0.0,
             load: 0.0,
             wheel_temperature: 0.0,
+            worn: ProfileWear::new(operators),
         }
     }
 
@@ -55,6 +59,7 @@ impl PartialEq for SurfaceFields {
     fn eq(&self, other: &SurfaceFields) -> bool {
         self.places == other.places
             && self.approach == other.approach
+            && self.worn == other.worn
             && [self.touch, self.stiffness, self.load, self.wheel_temperature]
                 == [other.touch, other.stiffness, other.load, other.wheel_temperature]
             && self
@@ -73,6 +78,7 @@ struct Saved {
     stiffness: f64,
     load: f64,
     wheel_temperature: f64,
+    worn: ProfileWear,
 }
 
 impl Serialize for SurfaceFields {
@@ -90,6 +96,7 @@ impl Serialize for SurfaceFields {
             stiffness: self.stiffness,
             load: self.load,
             wheel_temperature: self.wheel_temperature,
+            worn: self.worn.clone(),
         };
         saved.serialize(serializer)
     }
@@ -117,15 +124,23 @@ impl TryFrom<Saved> for SurfaceFields {
             stiffness: saved.stiffness,
             load: saved.load,
             wheel_temperature: saved.wheel_temperature,
+            worn: saved.worn,
         })
     }
 }
+
+/// Rows that belong to no window: the approach and the wear of the profiles.
+const COMMON: usize = 5;
 
 /// Rows of the fields of the windows.
 macro_rules! rows_of_windows {
     ($($window:literal)+) => {
         &[
             row!(Nonlinear, Extrapolated, approach),
+            row!(Independent, Before, worn.depth[0]),
+            row!(Independent, Before, worn.depth[1]),
+            row!(Independent, Before, worn.before[0]),
+            row!(Independent, Before, worn.before[1]),
             $(
                 row!(Nonlinear, Extrapolated, windows[$window].shear[0]),
                 row!(Nonlinear, Extrapolated, windows[$window].shear[1]),
@@ -186,9 +201,9 @@ impl Fields for SurfaceFields {
     }
 
     fn is_used(&self, row: usize) -> bool {
-        // The approach, then as many rows of each window.
-        let rows = (Self::ROWS.len() - 1) / WINDOWS;
-        row == 0 || self.places[(row - 1) / rows].is_some()
+        // Those of all windows, then as many of each one.
+        let rows = (Self::ROWS.len() - COMMON) / WINDOWS;
+        row < COMMON || self.places[(row - COMMON) / rows].is_some()
     }
 
     fn copy_memories(&mut self, other: &SurfaceFields) {

@@ -5,6 +5,7 @@ use super::operators::SurfaceOperators;
 use super::windows::Place;
 use crate::body::grid::Grid;
 use crate::contact::patch::undeformed::Undeformed;
+use crate::geometry::rail::PlacedRail;
 use crate::geometry::unrolled::{Distance, PlacedWheel, RailPoint, WheelsetMotion, WheelsetPosition};
 use crate::parameters::Parameters;
 use crate::signals::Inputs;
@@ -27,7 +28,7 @@ impl Pose {
     /// Pose that the inputs define, or its change with that of the inputs.
     pub fn new(operators: &SurfaceOperators, inputs: &Inputs, radius: f64) -> Pose {
         let side = operators.side;
-        let top = operators.rail.top();
+        let top = operators.bodies.rail.top();
         // About the rail's top, the axle's middle is turned back by the roll of the rail.
         let rail_roll = side * inputs.rail_roll_angle;
         let (sine, cosine) = rail_roll.sin_cos();
@@ -67,7 +68,7 @@ impl Pose {
         parameters: &Parameters,
     ) -> Pose {
         let side = operators.side;
-        let top = operators.rail.top();
+        let top = operators.bodies.rail.top();
         let (sine, cosine) = self.rail_roll.sin_cos();
         let rail_roll = side * change.rail_roll_angle;
         let lateral = side * (inputs.lateral_displacement - inputs.rail_lateral_displacement) - top;
@@ -168,8 +169,8 @@ impl WindowGeometry {
     pub fn set(
         &mut self,
         operators: &SurfaceOperators,
+        (rail, wheel): (&PlacedRail, &PlacedWheel),
         place: &Place,
-        wheel: &PlacedWheel,
         motion: &WheelsetMotion,
         own: [f64; 2],
         undeformed: &mut Undeformed,
@@ -182,7 +183,7 @@ impl WindowGeometry {
             height: 1.0,
             ..WheelsetPosition::default()
         };
-        let [first, last] = operators.rail.range();
+        let [first, last] = rail.range();
         let mut first_guess = 0.0;
         for strip in 0..grid.strips {
             let arc = place.arc(grid, strip);
@@ -192,7 +193,7 @@ impl WindowGeometry {
             } else {
                 ELSEWHERE
             };
-            let point = operators.rail.at(arc);
+            let point = rail.at(arc);
             let tangent = point.tangent();
             let mut guess = first_guess;
             let found = interpolation.nodes.map(|node| {

@@ -22,6 +22,7 @@ use crate::contact::patch::operators::PatchOperators;
 use crate::contact::patch::problem::PatchProblem;
 use crate::contact::problem::{Coupling, Problem};
 use crate::error::{Error, Result};
+use crate::geometry::rail::PlacedRail;
 use crate::mechanics::normal::normal_problem::Constraint;
 use crate::mechanics::normal_tangential::TractionChange;
 use crate::parameters::Control;
@@ -108,7 +109,12 @@ impl<'a> SurfaceProblem<'a> {
 }
 
 /// Vertical forces of a window on the wheel, or their changes: of the pressure and of the friction, `N`.
-pub fn vertical_forces(operators: &SurfaceOperators, place: &Place, fields: &PatchFields) -> [f64; 2] {
+pub fn vertical_forces(
+    operators: &SurfaceOperators,
+    rail: &PlacedRail,
+    place: &Place,
+    fields: &PatchFields,
+) -> [f64; 2] {
     let window = operators.of(place);
     let grid = &window.grid;
     let mut forces = [0.0; 2];
@@ -118,7 +124,7 @@ pub fn vertical_forces(operators: &SurfaceOperators, place: &Place, fields: &Pat
         if pressure == 0.0 && shear == 0.0 {
             continue;
         }
-        let point = operators.rail.at(place.arc(grid, strip));
+        let point = rail.at(place.arc(grid, strip));
         forces[0] += point.normal[1] * pressure;
         forces[1] -= point.tangent()[1] * shear;
     }
@@ -134,10 +140,11 @@ pub fn solve(
     tolerance: f64,
 ) -> Result<TractionChange> {
     for (window, place) in fields.used() {
+        let rail = &solvers.worn.of(problem.operators).rail;
+        let [normal, friction] = vertical_forces(problem.operators, rail, &place, &fields.windows[window]);
         let own = &mut solvers.windows[window];
         own.interface.take_window(interface, window);
         own.contact_before.copy_from(&own.patch.contact);
-        let [normal, friction] = vertical_forces(problem.operators, &place, &fields.windows[window]);
         own.friction_share = if normal > 0.0 { friction / normal } else { 0.0 };
     }
     let unloaded = if problem.is_height_given() {
@@ -192,12 +199,12 @@ pub fn solve(
     if !problem.is_height_given() {
         // The load that the friction has made of it is another one than asked for: so far have the tractions changed.
         let load = problem.vertical_load();
-        fields.load = carried(problem, fields);
+        fields.load = carried(problem, fields, solvers);
         // The pressure does not carry it better than it is solved.
         let missing = (fields.load / load - 1.0).abs() - 2.0 * least_load_error(problem, load);
         change.shear_change = change.shear_change.max(missing);
     } else {
-        fields.load = carried(problem, fields);
+        fields.load = carried(problem, fields, solvers);
     }
     Ok(change)
 }
@@ -229,11 +236,12 @@ fn least_load_error(problem: &SurfaceProblem, load: f64) -> f64 {
 }
 
 /// Vertical force of all windows, `N`.
-fn carried(problem: &SurfaceProblem, fields: &SurfaceFields) -> f64 {
+fn carried(problem: &SurfaceProblem, fields: &SurfaceFields, solvers: &SurfaceSolvers) -> f64 {
+    let rail = &solvers.worn.of(problem.operators).rail;
     fields
         .used()
         .map(|(window, place)| {
-            let [normal, friction] = vertical_forces(problem.operators, &place, &fields.windows[window]);
+            let [normal, friction] = vertical_forces(problem.operators, rail, &place, &fields.windows[window]);
             normal + friction
         })
         .sum()
@@ -448,8 +456,9 @@ fn press_at(
             break;
         }
     }
+    let rail = &solvers.worn.of(operators).rail;
     let forces = fields.used().map(|(window, place)| {
-        let [normal, _] = vertical_forces(operators, &place, &fields.windows[window]);
+        let [normal, _] = vertical_forces(operators, rail, &place, &fields.windows[window]);
         normal * (1.0 + solvers.windows[window].friction_share)
     });
     Ok(forces.sum())

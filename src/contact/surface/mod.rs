@@ -4,6 +4,7 @@
 //! where they overlap. In each window the fields, the mechanics, heat and wear are those of a patch.
 
 mod apart;
+pub mod bodies;
 mod contacts;
 mod engine;
 pub mod fields;
@@ -12,6 +13,7 @@ mod interpolation;
 mod mechanics;
 pub mod operators;
 mod placement;
+mod profile_wear;
 mod search;
 pub mod solvers;
 pub mod tangent;

@@ -1,5 +1,6 @@
 //! Operators of a contact of profiles: wheel and rail in their shapes, and those of a patch for each size of a window.
 
+use super::bodies::{Bodies, WHEEL, measures};
 use super::interpolation::Interpolation;
 use super::windows::{BREADTHS, LENGTHS, Place, Sizes};
 use crate::body::grid::Grid;
@@ -7,10 +8,10 @@ use crate::body::half_space::HalfSpaces;
 use crate::contact::patch::operators::PatchOperators;
 use crate::error::{Error, Result};
 use crate::geometry::profile::files::ReadOptions;
-use crate::geometry::profile::{Body, Profile};
+use crate::geometry::profile::{Body, DepthGrid, Profile, WornHeight};
 use crate::geometry::rail::PlacedRail;
-use crate::geometry::unrolled::{RailPoint, Wheel};
-use crate::parameters::{Parameters, ProfileSource, Side};
+use crate::geometry::unrolled::Wheel;
+use crate::parameters::{Parameters, ProfileSource, ProfileWear, Side};
 
 /// Distance of the points of the rail's profile at which contacts are sought, `m`: less than the breadth of the smallest that carries
 /// an appreciable load.
@@ -25,14 +26,20 @@ const STRIPS: usize = 3;
 
 /// Wheel, rail, and the operators of a window for each of its sizes.
 pub struct SurfaceOperators {
-    /// The rail.
-    pub rail: PlacedRail,
-    /// The wheel.
-    pub wheel: Wheel,
+    /// Rail and wheel as they were new.
+    pub bodies: Bodies,
+    /// Profiles of wheel and rail as they were read, the rail's upright.
+    pub profiles: [Profile; 2],
+    /// Cells in which the depths of wear of both profiles are collected.
+    pub grids: [DepthGrid; 2],
+    /// Whether wheel and rail wear.
+    wears: [bool; 2],
+    /// Height of the wheel where it wears.
+    pub worn_height: WornHeight,
+    /// Radius of the new wheel in the middle of its cells, `m`.
+    pub wheel_radii: Vec<f64>,
     /// 1 on the left side of the track, −1 on the right, whose mirror image is solved.
     pub side: f64,
-    /// Places at which contacts are sought: arc length and surface, from the field side to the gauge side.
-    pub scan: Vec<(f64, RailPoint)>,
     /// Sizes of the windows.
     pub sizes: Sizes,
     /// Interpolation along the strips of a window.
@@ -80,7 +87,11 @@ impl SurfaceOperators {
     /// # Errors
     /// A profile that does not serve, [`crate::error::Error::DepthBasis`].
     pub fn build(parameters: &Parameters) -> Result<SurfaceOperators> {
-        let (rail, wheel) = bodies(parameters)?;
+        let profiles = [
+            profile("wheel_profile", &parameters.wheel_profile, Body::Wheel, parameters)?,
+            profile("rail_profile", &parameters.rail_profile, Body::Rail, parameters)?,
+        ];
+        let (rail, wheel) = placed(&profiles, parameters)?;
         let (half_length, half_breadth) = parameters.patch_window();
         let sizes = Sizes {
             largest: Grid::new(
@@ -94,19 +105,36 @@ impl SurfaceOperators {
         let narrow = [strips / 3, strips / 2, 2 * strips / 3].map(|strips| strips.max(2));
         let [first, last] = rail.range();
         let points = ((last - first) / SCAN_STEP) as usize;
-        let scan = (0..=points).map(|point| {
-            let arc = last - point as f64 * SCAN_STEP;
-            (arc, rail.at(arc))
-        });
+        let scan: Vec<_> = (0..=points)
+            .map(|point| {
+                let arc = last - point as f64 * SCAN_STEP;
+                (arc, rail.at(arc))
+            })
+            .collect();
+        let worn_height = WornHeight::new(&profiles[WHEEL]).map_err(Error::Profile)?;
+        let grids =
+            [worn_height.range(), rail.range()].map(|range| DepthGrid::new(range, parameters.profile_wear_points));
+        let radius = |cell: usize| {
+            let [_, z] = profiles[WHEEL].at(grids[WHEEL].middle(cell)).place;
+            wheel.radius - z
+        };
         let gauge_faces = (0..BREADTHS)
             .map(|breadth| GaugeFace::new(parameters, &rail, sizes.grid(0, breadth).breadth, strips))
             .collect();
         let shapes = (0..LENGTHS).flat_map(|length| (0..BREADTHS).map(move |breadth| (length, breadth)));
         Ok(SurfaceOperators {
-            scan: scan.collect(),
-            rail,
+            wheel_radii: (0..grids[WHEEL].cells).map(radius).collect(),
+            wears: [parameters.wheel_profile_wear, parameters.rail_profile_wear].map(|wear| wear == ProfileWear::On),
             flange_tip: flange_tip(&wheel),
-            wheel,
+            bodies: Bodies {
+                measures: measures(&wheel),
+                rail,
+                wheel,
+                scan,
+            },
+            grids,
+            worn_height,
+            profiles,
             side: if parameters.side == Side::Right { -1.0 } else { 1.0 },
             shapes: shapes
                 .map(|(length, breadth)| PatchOperators::on_grid(parameters, sizes.grid(length, breadth), &narrow))
@@ -127,6 +155,11 @@ impl SurfaceOperators {
             .unwrap_or(&[])
     }
 
+    /// Number of cells in which the depth of a body is collected; 0 of one that stays new.
+    pub fn wear_cells(&self, body: usize) -> usize {
+        if self.wears[body] { self.grids[body].cells } else { 0 }
+    }
+
     /// Operators of a window.
     pub fn of(&self, place: &Place) -> &PatchOperators {
         &self.shapes[place.shape()]
@@ -134,9 +167,7 @@ impl SurfaceOperators {
 }
 
 /// Rail and wheel in their shapes.
-fn bodies(parameters: &Parameters) -> Result<(PlacedRail, Wheel)> {
-    let rail = profile("rail_profile", &parameters.rail_profile, Body::Rail, parameters)?;
-    let wheel = profile("wheel_profile", &parameters.wheel_profile, Body::Wheel, parameters)?;
+fn placed([wheel, rail]: &[Profile; 2], parameters: &Parameters) -> Result<(PlacedRail, Wheel)> {
     let inclined = rail
         .inclined(parameters.rail_inclination.atan())
         .map_err(Error::Profile)?;

@@ -4,7 +4,6 @@ use super::contacts::{self, BESIDE, CONTACTS, Expected, Wanted};
 use super::fields::SurfaceFields;
 use super::mechanics::SurfaceProblem;
 use super::operators::SurfaceOperators;
-use super::search::Search;
 use super::solvers::SurfaceSolvers;
 use super::windows::{Place, Region, Sizes, WINDOWS};
 use crate::contact::fields::Fields;
@@ -43,7 +42,8 @@ pub fn place(
     } else {
         problem.parameters.wheel_radius
     };
-    now.touch = solvers.search.touch(operators, &pose.position, guess);
+    let bodies = solvers.worn.of(operators);
+    now.touch = solvers.search.touch(bodies, &pose.position, guess);
     if problem.conditions.room <= 1.0 {
         solvers.outgrown = 0.0;
     }
@@ -56,7 +56,7 @@ pub fn place(
     solvers.reference = approach;
     now.approach[0] = approach;
     if approach > 0.0 {
-        check_on_rail(problem, &solvers.search, &pose.at_height(now.touch))?;
+        check_on_rail(problem, solvers, &pose.at_height(now.touch))?;
     }
     let source = before.or(known.map(|_| &*now));
     want(problem, source, approach, solvers);
@@ -90,16 +90,18 @@ pub fn place(
         carried.stiffness = before.stiffness;
         carried.load = before.load;
         carried.wheel_temperature = before.wheel_temperature;
+        carried.worn.copy_from(&now.worn);
         now.guess_from(carried);
     }
-    let wheel = PlacedWheel::new(&operators.wheel, &pose.at_height(now.touch - approach));
+    let bodies = solvers.worn.of(operators);
+    let wheel = PlacedWheel::new(&bodies.wheel, &pose.at_height(now.touch - approach));
     for (window, place) in now.used() {
         let own_solvers = &mut solvers.windows[window];
         own_solvers.prepare(place.length);
         own_solvers.geometry.set(
             operators,
+            (&bodies.rail, &wheel),
             &place,
-            &wheel,
             &pose.motion,
             own[window],
             &mut own_solvers.patch.undeformed,
@@ -110,13 +112,14 @@ pub fn place(
 }
 
 /// Refuses a wheel that has climbed onto its flange's tip, or is not over the rail.
-fn check_on_rail(problem: &SurfaceProblem, search: &Search, position: &WheelsetPosition) -> Result<()> {
+fn check_on_rail(problem: &SurfaceProblem, solvers: &SurfaceSolvers, position: &WheelsetPosition) -> Result<()> {
     let (operators, inputs) = (problem.operators, &problem.conditions.inputs);
-    let stands = search.first().is_some_and(|(number, along)| {
-        let last = operators.scan.len() - 1;
-        let at = PlacedWheel::new(&operators.wheel, position);
-        let place = at.profile_position(&at.distance(along, &operators.scan[number].1, 0.0));
-        (1..last).contains(&number) && place > operators.flange_tip && place < operators.wheel.profile.range()[1]
+    let bodies = solvers.worn.of(operators);
+    let stands = solvers.search.first().is_some_and(|(number, along)| {
+        let last = bodies.scan.len() - 1;
+        let at = PlacedWheel::new(&bodies.wheel, position);
+        let place = at.profile_position(&at.distance(along, &bodies.scan[number].1, 0.0));
+        (1..last).contains(&number) && place > operators.flange_tip && place < bodies.wheel.profile.range()[1]
     });
     if stands {
         return Ok(());
@@ -168,7 +171,7 @@ fn want(problem: &SurfaceProblem, source: Option<&SurfaceFields>, approach: f64,
         contacts::find(problem.operators, source, expected, search, apart, wanted);
         // A wheelset that has jumped touches elsewhere: the contacts of the step before say nothing then.
         let covers = |(point, along): (usize, f64)| {
-            let place = [along, problem.operators.scan[point].0];
+            let place = [along, problem.operators.bodies.scan[point].0];
             wanted.iter().any(|wanted| wanted.region.grown(BESIDE).holds(place))
         };
         if !search.first().is_some_and(covers) {

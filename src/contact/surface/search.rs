@@ -4,7 +4,7 @@
 //! closest. The overlap of the bodies at a given height of the wheel is a number of regions, each of which may be a contact. The contact
 //! itself is smaller than its region: of an ellipse in the ratio of 1 to √2.
 
-use super::operators::SurfaceOperators;
+use super::bodies::Bodies;
 use super::windows::Region;
 use crate::geometry::hertz::HertzEllipse;
 use crate::geometry::unrolled::{PlacedWheel, RailPoint, WheelsetPosition};
@@ -68,19 +68,19 @@ pub struct Search {
 
 impl Search {
     /// Buffers for the points of a rail.
-    pub fn new(operators: &SurfaceOperators) -> Search {
+    pub fn new(bodies: &Bodies) -> Search {
         Search {
-            points: vec![Closest::default(); operators.scan.len()],
+            points: vec![Closest::default(); bodies.scan.len()],
             overlaps: Vec::with_capacity(REGIONS),
         }
     }
 
     /// Finds the height of the axle's middle at which the bodies touch first, `m`, from a guess of it. The points are those at that height
     /// after it.
-    pub fn touch(&mut self, operators: &SurfaceOperators, position: &WheelsetPosition, guess: f64) -> f64 {
+    pub fn touch(&mut self, bodies: &Bodies, position: &WheelsetPosition, guess: f64) -> f64 {
         let mut height = guess;
         for _ in 0..TOUCH_STEPS {
-            self.scan(operators, &WheelsetPosition { height, ..*position });
+            self.scan(bodies, &WheelsetPosition { height, ..*position });
             let room = self.room();
             if !room.is_finite() {
                 break;
@@ -88,7 +88,7 @@ impl Search {
             height -= room;
             if room.abs() <= LINEAR {
                 self.lower(room);
-                height -= self.sharpen(operators, &WheelsetPosition { height, ..*position });
+                height -= self.sharpen(bodies, &WheelsetPosition { height, ..*position });
                 break;
             }
         }
@@ -104,15 +104,15 @@ impl Search {
 
     /// Finds the points exactly about the first one that touches, at the position at which the others are to the first order, and lowers the wheel by what
     /// it may still be lowered, which is returned, `m`.
-    fn sharpen(&mut self, operators: &SurfaceOperators, position: &WheelsetPosition) -> f64 {
+    fn sharpen(&mut self, bodies: &Bodies, position: &WheelsetPosition) -> f64 {
         let inner = 1..self.points.len() - 1;
         let Some((middle, _)) = self.first().filter(|(point, _)| inner.contains(point)) else {
             return 0.0;
         };
-        let wheel = PlacedWheel::new(&operators.wheel, position);
+        let wheel = PlacedWheel::new(&bodies.wheel, position);
         for number in middle - 1..=middle + 1 {
             let Closest { along, distance, .. } = self.points[number];
-            let (arc, point) = &operators.scan[number];
+            let (arc, point) = &bodies.scan[number];
             self.points[number] = closest(&wheel, *arc, point, (along, distance));
         }
         let room = self.room();
@@ -136,24 +136,19 @@ impl Search {
 
     /// Change of the height at which the bodies touch first, with a change of the position at an unchanged height, `m`. The points are those at the
     /// position, at that height: the least room of the parabola through three of them stays 0.
-    pub fn touch_change(
-        &self,
-        operators: &SurfaceOperators,
-        position: &WheelsetPosition,
-        change: &WheelsetPosition,
-    ) -> f64 {
+    pub fn touch_change(&self, bodies: &Bodies, position: &WheelsetPosition, change: &WheelsetPosition) -> f64 {
         let Some((middle, _)) = self
             .first()
             .filter(|(point, _)| (1..self.points.len() - 1).contains(point))
         else {
             return 0.0;
         };
-        let wheel = PlacedWheel::new(&operators.wheel, position);
+        let wheel = PlacedWheel::new(&bodies.wheel, position);
         let three = [middle - 1, middle, middle + 1].map(|point| {
             let Closest {
                 along, distance, rise, ..
             } = self.points[point];
-            let at = wheel.distance(along, &operators.scan[point].1, distance);
+            let at = wheel.distance(along, &bodies.scan[point].1, distance);
             (distance / rise, wheel.distance_change(&at, change) / rise)
         });
         let [(before, before_change), (here, here_change), (after, after_change)] = three;
@@ -191,10 +186,10 @@ impl Search {
     }
 
     /// Finds the closest places of all points.
-    fn scan(&mut self, operators: &SurfaceOperators, position: &WheelsetPosition) {
-        let wheel = PlacedWheel::new(&operators.wheel, position);
+    fn scan(&mut self, bodies: &Bodies, position: &WheelsetPosition) {
+        let wheel = PlacedWheel::new(&bodies.wheel, position);
         let mut guess = (0.0, 0.0);
-        for (found, (arc, point)) in self.points.iter_mut().zip(&operators.scan) {
+        for (found, (arc, point)) in self.points.iter_mut().zip(&bodies.scan) {
             *found = closest(&wheel, *arc, point, guess);
             guess = (found.along, found.distance);
         }

@@ -1,6 +1,7 @@
 //! Solvers and buffers of a step of a contact of profiles, made once, so that a step allocates nothing.
 
 use super::apart::Apart;
+use super::bodies::WornBodies;
 use super::contacts::{CONTACTS, Wanted};
 use super::fields::SurfaceFields;
 use super::geometry::WindowGeometry;
@@ -19,6 +20,10 @@ use crate::wear::strips::StripWearSteps;
 pub struct SurfaceSolvers {
     /// Solvers of the windows.
     pub windows: Vec<WindowSolvers>,
+    /// Bodies as they are at the beginning of the step.
+    pub worn: WornBodies,
+    /// Largest depth that the step has worn off a profile, `m`.
+    pub profile_change: f64,
     /// Search of contacts.
     pub search: Search,
     /// Transfer of the fields between places.
@@ -69,7 +74,9 @@ impl SurfaceSolvers {
     pub fn new(operators: &SurfaceOperators, settings: &Settings) -> SurfaceSolvers {
         SurfaceSolvers {
             windows: (0..WINDOWS).map(|_| WindowSolvers::new(operators, settings)).collect(),
-            search: Search::new(operators),
+            worn: WornBodies::new(operators),
+            profile_change: 0.0,
+            search: Search::new(&operators.bodies),
             transfer: Transfer::new(operators),
             before: SurfaceFields::new(operators),
             moved: false,

@@ -5,6 +5,7 @@
 //! of all windows to a unit of it, the vertical force changes as the load does.
 
 use super::apart::Apart;
+use super::bodies::WornBodies;
 use super::fields::SurfaceFields;
 use super::geometry::{Pose, WindowGeometry};
 use super::mechanics::{SurfaceProblem, vertical_forces};
@@ -38,6 +39,8 @@ pub struct SurfaceTangent {
     unit: SurfaceFields,
     /// Change of the vertical force in it, `N`; 0 where the height is given.
     stiffness: f64,
+    /// Bodies as they are at the beginning of the step.
+    worn: WornBodies,
     /// Search of contacts at the position of the wheelset.
     search: Search,
     /// Change of the approach along the direction where the height is given, `m`.
@@ -92,7 +95,8 @@ impl SurfaceTangent {
             apart: Apart::new(operators),
             unit: SurfaceFields::new(operators),
             stiffness: 0.0,
-            search: Search::new(operators),
+            worn: WornBodies::new(operators),
+            search: Search::new(&operators.bodies),
             approach: 0.0,
             nothing: Interface::new(WINDOWS * grid.strips * grid.cells, 1),
         }
@@ -109,6 +113,7 @@ impl SurfaceTangent {
         fields: &SurfaceFields,
         solvers: &mut SurfaceSolvers,
     ) -> Result<()> {
+        self.worn.set(problem.operators, &fields.worn.before)?;
         for (window, place) in fields.used() {
             let (own, from) = (&mut self.windows[window], &mut solvers.windows[window]);
             own.prepare(place.length);
@@ -124,15 +129,15 @@ impl SurfaceTangent {
             }
         }
         self.stiffness = 0.0;
-        self.search
-            .touch(problem.operators, &problem.pose().position, fields.touch);
+        let bodies = self.worn.of(problem.operators);
+        self.search.touch(bodies, &problem.pose().position, fields.touch);
         if problem.is_height_given() {
             return Ok(());
         }
         self.unit.clear();
         self.unit.copy_places(fields);
         let (pose, operators) = (problem.pose(), problem.operators);
-        let wheel = PlacedWheel::new(&operators.wheel, &pose.at_height(problem.height(fields)));
+        let wheel = PlacedWheel::new(&bodies.wheel, &pose.at_height(problem.height(fields)));
         let lowered = Pose::lowered(operators.shapes[0].scales.displacement);
         for (window, place) in fields.used() {
             let own = &mut self.windows[window];
@@ -156,7 +161,7 @@ impl SurfaceTangent {
             interface: &self.nothing,
         };
         parts.at_height(&along, &mut self.unit)?;
-        self.stiffness = vertical_force(problem.operators, &self.unit);
+        self.stiffness = vertical_force(problem.operators, &self.worn, &self.unit);
         Ok(())
     }
 
@@ -181,12 +186,13 @@ impl SurfaceTangent {
         let height = moved.position.height;
         moved.position.height = 0.0;
         let touching = pose.at_height(fields.touch);
-        let touch = self.search.touch_change(operators, &touching, &moved.position);
+        let bodies = self.worn.of(operators);
+        let touch = self.search.touch_change(bodies, &touching, &moved.position);
         // What the inputs say of the height counts where it is given. Under a load the wheel first follows the rail, at an unchanged approach.
         moved.position.height = if problem.is_height_given() { height } else { touch };
         self.approach = touch - moved.position.height;
         change.touch = touch;
-        let wheel = PlacedWheel::new(&operators.wheel, &pose.at_height(problem.height(fields)));
+        let wheel = PlacedWheel::new(&bodies.wheel, &pose.at_height(problem.height(fields)));
         for (window, place) in fields.used() {
             let own = &mut self.windows[window];
             own.prepare(place.length);
@@ -206,10 +212,11 @@ fn touches(fields: &PatchFields) -> bool {
 }
 
 /// Vertical force of all windows, or its change, `N`.
-fn vertical_force(operators: &SurfaceOperators, fields: &SurfaceFields) -> f64 {
+fn vertical_force(operators: &SurfaceOperators, worn: &WornBodies, fields: &SurfaceFields) -> f64 {
+    let rail = &worn.of(operators).rail;
     let forces = fields
         .used()
-        .map(|(window, place)| vertical_forces(operators, &place, &fields.windows[window]));
+        .map(|(window, place)| vertical_forces(operators, rail, &place, &fields.windows[window]));
     forces.map(|[normal, friction]| normal + friction).sum()
 }
 
@@ -274,6 +281,7 @@ pub fn tractions(at: &mut Linearised<SurfaceOperators>, along: &Along, change: &
         unit,
         stiffness,
         approach,
+        worn,
         ..
     } = &mut *at.tangent;
     let scale = problem.operators.shapes[0].scales.displacement;
@@ -291,7 +299,7 @@ pub fn tractions(at: &mut Linearised<SurfaceOperators>, along: &Along, change: &
         tolerance: at.tolerance,
     };
     parts.at_height(along, change)?;
-    let force = vertical_force(problem.operators, change);
+    let force = vertical_force(problem.operators, worn, change);
     if problem.is_height_given() {
         change.load = force;
         change.approach[0] = *approach;

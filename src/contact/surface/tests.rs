@@ -1,4 +1,5 @@
 use super::apart::Apart;
+use super::bodies::{RAIL, WHEEL};
 use super::geometry::{Pose, WindowGeometry};
 use super::operators::SurfaceOperators;
 use super::transfer::Transfer;
@@ -7,7 +8,7 @@ use crate::contact::fields::Fields;
 use crate::contact::patch::undeformed::Undeformed;
 use crate::contact::surface::fields::SurfaceFields;
 use crate::geometry::unrolled::PlacedWheel;
-use crate::parameters::{ContactModel, Control, Parameters, Side, SlipSource};
+use crate::parameters::{ContactModel, Control, Parameters, ProfileWear, Side, SlipSource};
 use crate::signals::{INPUTS, Inputs};
 use crate::wheel_rail::{Model, State};
 
@@ -75,10 +76,17 @@ fn the_change_of_the_geometry_is_its_difference() {
             let mut geometry = WindowGeometry::new(&operators);
             let mut undeformed = |inputs: &Inputs| {
                 let pose = Pose::new(&operators, inputs, parameters.wheel_radius);
-                let wheel = PlacedWheel::new(&operators.wheel, &pose.position);
+                let wheel = PlacedWheel::new(&operators.bodies.wheel, &pose.position);
                 let mut undeformed = Undeformed::none(grid);
                 let everywhere = [f64::NEG_INFINITY, f64::INFINITY];
-                geometry.set(&operators, &place, &wheel, &pose.motion, everywhere, &mut undeformed);
+                geometry.set(
+                    &operators,
+                    (&operators.bodies.rail, &wheel),
+                    &place,
+                    &pose.motion,
+                    everywhere,
+                    &mut undeformed,
+                );
                 undeformed
             };
             let here = undeformed(&inputs);
@@ -93,11 +101,18 @@ fn the_change_of_the_geometry_is_its_difference() {
                 (signal.set)(&mut change, 1.0);
                 let pose = Pose::new(&operators, &inputs, parameters.wheel_radius);
                 let change = pose.change(&operators, &inputs, &change, &parameters);
-                let wheel = PlacedWheel::new(&operators.wheel, &pose.position);
+                let wheel = PlacedWheel::new(&operators.bodies.wheel, &pose.position);
                 let mut tangent = Undeformed::none(grid);
                 let mut own = WindowGeometry::new(&operators);
                 let everywhere = [f64::NEG_INFINITY, f64::INFINITY];
-                own.set(&operators, &place, &wheel, &pose.motion, everywhere, &mut tangent);
+                own.set(
+                    &operators,
+                    (&operators.bodies.rail, &wheel),
+                    &place,
+                    &pose.motion,
+                    everywhere,
+                    &mut tangent,
+                );
                 own.set_change(&operators, &place, &wheel, (&pose, &change), &mut tangent);
                 let rows: [fn(&Undeformed) -> &Vec<f64>; 3] = [|u| &u.gap, |u| &u.rigid_slip[0], |u| &u.rigid_slip[1]];
                 for (number, row) in rows.into_iter().enumerate() {
@@ -218,5 +233,46 @@ fn a_window_that_moves_keeps_heat_and_worn_volume() {
         for (old, new) in old.into_iter().zip(new) {
             assert!((new / old - 1.0).abs() < 1e-12, "{old:e} {new:e}");
         }
+    }
+}
+
+/// The volume of the cells is what the law wears off both bodies over the steps, whatever the windows do: over a wheelset that goes from the tread to the
+/// flange.
+#[test]
+fn the_volume_of_the_cells_is_that_of_the_law() {
+    let parameters = Parameters {
+        wheel_profile_wear: ProfileWear::On,
+        rail_profile_wear: ProfileWear::On,
+        rail_wear_length: 7.0,
+        wheel_wear_coefficient: 1e-12,
+        wear_acceleration: 100.0,
+        ..parameters(Control::Load)
+    };
+    let model = Model::new(parameters.clone()).unwrap();
+    let operators = SurfaceOperators::build(&parameters).unwrap();
+    let mut workspace = model.workspace();
+    let mut state = model.initial_state(&mut workspace, &displaced(3e-3)).unwrap();
+    for step in 0..30 {
+        let inputs = displaced(3e-3 + 1e-4 * f64::from(step));
+        model
+            .step(&mut workspace, &mut state, &inputs, &Inputs::ZERO, 1e-3)
+            .unwrap();
+    }
+    let worn = &fields(&state).worn;
+    let [wheel, rail] = &operators.grids;
+    let turns = worn.depth[WHEEL].iter().zip(&operators.wheel_radii);
+    let of_wheel = wheel.spacing
+        * turns
+            .map(|(depth, radius)| std::f64::consts::TAU * radius * depth)
+            .sum::<f64>();
+    let of_rail = 7.0 * rail.spacing * worn.depth[RAIL].iter().sum::<f64>();
+    for (found, expected) in [
+        (of_wheel, 100.0 * state.totals.wheel_worn_volume),
+        (of_rail, 100.0 * state.totals.worn_volume),
+    ] {
+        assert!(
+            expected > 0.0 && (found / expected - 1.0).abs() < 1e-10,
+            "{found} {expected}"
+        );
     }
 }

@@ -1,8 +1,10 @@
 //! Sums over the fields of a contact of profiles: integrals over all windows, forces on the wheelset, the contacts one by one.
 
+use super::bodies::Bodies;
 use super::fields::SurfaceFields;
 use super::mechanics::SurfaceProblem;
 use super::operators::SurfaceOperators;
+use super::profile_wear;
 use crate::contact::engine::Engine;
 use crate::contact::integrals::{Integrals, NodeSums};
 use crate::contact::on_wheelset::{OnWheelset, OneContact};
@@ -23,7 +25,7 @@ impl OneContact {
 }
 
 /// Integrals of the given fields under the problem's conditions.
-pub fn integrals(problem: &SurfaceProblem, fields: &SurfaceFields) -> Integrals {
+pub fn integrals(problem: &SurfaceProblem, fields: &SurfaceFields, bodies: &Bodies) -> Integrals {
     let operators = problem.operators;
     let area = operators.sizes.largest.cell_area();
     let mut all = Integrals {
@@ -44,7 +46,7 @@ pub fn integrals(problem: &SurfaceProblem, fields: &SurfaceFields) -> Integrals 
             SurfaceOperators::heated_nodes(problem, fields, fields),
         ),
         wheel_temperature: fields.wheel_temperature,
-        on_wheelset: on_wheelset(problem, fields),
+        on_wheelset: on_wheelset(problem, fields, bodies),
     };
     for (window, place) in fields.used() {
         let patch = problem.of(&place);
@@ -70,11 +72,15 @@ pub fn integrals(problem: &SurfaceProblem, fields: &SurfaceFields) -> Integrals 
 }
 
 /// Force and moment on the wheelset and the contacts.
-fn on_wheelset(problem: &SurfaceProblem, fields: &SurfaceFields) -> OnWheelset {
+fn on_wheelset(problem: &SurfaceProblem, fields: &SurfaceFields, bodies: &Bodies) -> OnWheelset {
     let operators = problem.operators;
     let (pose, height) = (problem.pose(), problem.height(fields));
-    let wheel = PlacedWheel::new(&operators.wheel, &pose.at_height(height));
-    let mut all = OnWheelset::default();
+    let wheel = PlacedWheel::new(&bodies.wheel, &pose.at_height(height));
+    let mut all = OnWheelset {
+        worn_area_rates: profile_wear::area_rates(problem, bodies, fields),
+        measures: bodies.measures,
+        ..OnWheelset::default()
+    };
     for (window, place) in fields.used() {
         let patch = problem.of(&place);
         let own = &fields.windows[window];
@@ -87,7 +93,7 @@ fn on_wheelset(problem: &SurfaceProblem, fields: &SurfaceFields) -> OnWheelset {
         let (mut moment_x, mut moment_s, mut friction_moment) = (0.0, 0.0, 0.0);
         for strip in 0..grid.strips {
             let arc = place.arc(grid, strip);
-            let point = operators.rail.at(arc);
+            let point = bodies.rail.at(arc);
             let tangent = point.tangent();
             let row = grid.row(strip);
             let [mut normal, mut ahead, mut x_moment, mut along, mut across, mut twist] = [0.0; 6];
@@ -128,12 +134,12 @@ fn on_wheelset(problem: &SurfaceProblem, fields: &SurfaceFields) -> OnWheelset {
             all.moment[2] += lateral_moment - lateral * along;
         }
         let (x, arc) = (moment_x / contact.normal_force, moment_s / contact.normal_force);
-        let point = operators.rail.at(arc);
+        let point = bodies.rail.at(arc);
         let at = wheel.distance(x, &point, 0.0);
         let extent = patch::extent::extent(patch.operators, &own.pressure);
         contact.arc = arc;
         contact.along = x;
-        contact.positions = [point.place[0] - operators.rail.top(), wheel.profile_position(&at)];
+        contact.positions = [point.place[0] - bodies.rail.top(), wheel.profile_position(&at)];
         contact.inclination = (-point.normal[0]).atan2(point.normal[1]);
         let [ahead, y, z] = wheel.velocity(&at, &pose.motion);
         let approach_speed = wheel.approach_speed(&at, &point, &pose.motion);
@@ -198,7 +204,7 @@ pub fn contact_nodes(operators: &SurfaceOperators, fields: &SurfaceFields) -> Ve
         let middle = place.middle_along(&grid);
         let nodes = patch::profiles::contact_nodes(patch, &fields.windows[window]);
         nodes.into_iter().enumerate().map(move |(node, at)| {
-            let point = operators.rail.at(place.arc(&grid, node / grid.cells));
+            let point = operators.bodies.rail.at(place.arc(&grid, node / grid.cells));
             ContactNode {
                 position: at.position + middle,
                 lateral_position: operators.side * point.place[0],

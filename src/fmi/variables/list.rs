@@ -1,8 +1,8 @@
 //! The rows of the table of variables, from the tables of the model.
 
 use super::{
-    Causality, FIELDS, ITERATIONS, IntegerVariable, Kind, PROFILES, RESIDUAL, RealKind, RealVariable, Shape, TIME,
-    Variability, Variable,
+    Causality, FIELDS, ITERATIONS, IntegerVariable, Kind, PROFILE_WEAR, PROFILES, RESIDUAL, RealKind, RealVariable,
+    Shape, TIME, Variability, Variable,
 };
 use crate::parameters::{INTEGER_PARAMETERS, IntegerKind, REAL_PARAMETERS, TEXT_PARAMETERS};
 use crate::signals::{CONTACTS, INPUTS, OUTPUTS};
@@ -170,8 +170,30 @@ fn profiles() -> impl Iterator<Item = Variable> {
     })
 }
 
-/// The fields of a patch, for versions of FMI that have arrays with lengths of their own.
+/// The fields of a patch and the wear of profiles, for versions of FMI that have arrays with lengths of their own.
 pub fn fields() -> impl Iterator<Item = Variable> {
+    patch_fields().chain(profile_wear())
+}
+
+/// The wear of profiles.
+fn profile_wear() -> impl Iterator<Item = Variable> {
+    PROFILE_WEAR.iter().enumerate().map(|(row, column)| {
+        continuous(
+            column.name,
+            column.description,
+            Causality::Local,
+            RealKind {
+                shape: Shape::ProfileWear,
+                display_unit: Some(column.display_unit),
+                nominal: Some(column.nominal),
+                ..number(RealVariable::ProfileWear(row), "m")
+            },
+        )
+    })
+}
+
+/// The fields of a patch.
+fn patch_fields() -> impl Iterator<Item = Variable> {
     FIELDS.iter().enumerate().map(|(row, column)| {
         continuous(
             column.name,

@@ -26,8 +26,7 @@ fn slope(point: &CurvePoint) -> f64 {
 }
 
 /// Cell between two points: the second derivative over y is κ (1 + (dz/dy)²)^(3/2).
-fn span(points: &[CurvePoint]) -> Span<1> {
-    let [from, to] = [points[0], points[1]];
+fn span([from, to]: [CurvePoint; 2]) -> Span<1> {
     let jet = |point: CurvePoint| {
         [[
             point.place[1],
@@ -41,30 +40,67 @@ fn span(points: &[CurvePoint]) -> Span<1> {
     }
 }
 
+/// Part of a curve's cell: the cell's number and the arc lengths at which the part begins and ends.
+pub(super) type Part = (usize, [f64; 2]);
+
+/// Cuts that part of a curve which holds an arc length, and where y rises with the arc length, no steeper than 84°, into parts for a height
+/// function, none longer than `longest` `m`. `None` where nothing holds the arc length.
+pub(super) fn parts(curve: &Curve, within: f64, longest: f64) -> Option<Vec<Part>> {
+    let flat = |point: &CurvePoint| point.tangent[0] > 0.0 && slope(point).abs() <= STEEPEST;
+    let mut found: Vec<Part> = Vec::new();
+    let mut holds = false;
+    for (cell, arcs) in curve.arcs().windows(2).enumerate() {
+        let ends = [arcs[0], arcs[1]].map(|arc| curve.within(cell, arc));
+        if ends.iter().all(flat) {
+            holds |= arcs[0] <= within && within <= arcs[1];
+            let steepest = ends.iter().map(|point| slope(point).abs()).fold(0.0, f64::max);
+            let parts = (steepest.powi(2) * STEEP_PARTS).ceil().clamp(1.0, MOST_PARTS);
+            let parts = parts.max(((arcs[1] - arcs[0]) / longest).ceil());
+            let place = |part: f64| arcs[0] + (arcs[1] - arcs[0]) * part / parts;
+            found.extend((0..parts as usize).map(|part| (cell, [part, part + 1].map(|part| place(part as f64)))));
+        } else if holds {
+            break;
+        } else {
+            found.clear();
+        }
+    }
+    holds.then_some(found)
+}
+
 impl HeightFunction {
     /// Function of that part of a curve which holds an arc length and where y rises with the arc length, no steeper than 84°.
     pub(super) fn of_curve(curve: &Curve, within: f64) -> Option<HeightFunction> {
-        let flat = |point: &CurvePoint| point.tangent[0] > 0.0 && slope(point).abs() <= STEEPEST;
-        let mut spans: Vec<Span<1>> = Vec::new();
-        let mut holds = false;
-        for (cell, arcs) in curve.arcs().windows(2).enumerate() {
-            let ends = [arcs[0], arcs[1]].map(|arc| curve.within(cell, arc));
-            if ends.iter().all(flat) {
-                holds |= arcs[0] <= within && within <= arcs[1];
-                let steepest = ends.iter().map(|point| slope(point).abs()).fold(0.0, f64::max);
-                let parts = (steepest.powi(2) * STEEP_PARTS).ceil().clamp(1.0, MOST_PARTS);
-                let place = |part: f64| curve.within(cell, arcs[0] + (arcs[1] - arcs[0]) * part / parts);
-                let nodes: Vec<_> = (0..=parts as usize).map(|part| place(part as f64)).collect();
-                spans.extend(nodes.windows(2).map(span));
-            } else if holds {
-                break;
-            } else {
-                spans.clear();
-            }
-        }
+        HeightFunction::of_parts(curve, &parts(curve, within, f64::INFINITY)?)
+    }
+
+    /// Function of parts of a curve that follow each other.
+    pub(super) fn of_parts(curve: &Curve, parts: &[Part]) -> Option<HeightFunction> {
+        let of_part = |(cell, arcs): &Part| span(arcs.map(|arc| curve.within(*cell, arc)));
+        let spans: Vec<_> = parts.iter().map(of_part).collect();
         Some(HeightFunction {
-            cells: Quintics::new(&spans).filter(|_| holds)?,
+            cells: Quintics::new(&spans)?,
         })
+    }
+
+    /// Replaces the function between two of its knots, and the two with it: what lies on either side of them has to follow.
+    pub(super) fn replace(&mut self, cell: usize, ends: [CurvePoint; 2]) {
+        self.cells.replace(cell, &span(ends));
+    }
+
+    /// Lateral positions between which the function is one polynomial each, `m`.
+    pub(super) fn knots(&self) -> &[f64] {
+        self.cells.knots()
+    }
+
+    /// Number of the polynomial that holds a lateral position; the first or the last one beyond the range.
+    pub(super) fn cell_of(&self, y: f64) -> usize {
+        self.cells.cell_of(y)
+    }
+
+    /// Height, `m`, and slope where a polynomial begins.
+    pub(super) fn beginning(&self, cell: usize) -> [f64; 2] {
+        let [[height, slope, _]] = self.cells.beginning(cell);
+        [height, slope]
     }
 
     /// First and last lateral position, `m`.

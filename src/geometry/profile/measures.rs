@@ -3,7 +3,7 @@
 //! They refer to the running circle, 70 mm from the back of the flange (EN 15313:2016), which is the origin of a wheel's profile.
 
 use super::curve::Curve;
-use super::{Body, CurvePoint, Profile};
+use super::{Body, CurvePoint, HeightFunction, Profile};
 use crate::error::ProfileError;
 use serde::{Deserialize, Serialize};
 
@@ -14,7 +14,7 @@ const THICKNESS_DEPTH: f64 = 10e-3;
 /// Height above the flange's tip at which its gradient begins, `m`.
 const GRADIENT_HEIGHT: f64 = 2e-3;
 /// Measures of a wheel's profile by EN 15313, all in `m`.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct WheelMeasures {
     /// Height Sh of the flange: of its tip from the running circle.
     pub flange_height: f64,
@@ -172,6 +172,62 @@ impl Profile {
             thick: crossing(thick, -THICKNESS_DEPTH)?,
         })
     }
+}
+
+impl WheelMeasures {
+    /// Measures of a wheel by the function of its height, whose running circle is at y = 0, wherever its surface is there; `None` where the
+    /// wheel has no flange of 12 mm or begins on it before its tip. Nothing is allocated.
+    pub fn of_height(function: &HeightFunction) -> Option<WheelMeasures> {
+        let height = |y: f64| function.value_slope_curvature(y)[0];
+        let slope = |y: f64| function.value_slope_curvature(y)[1];
+        let (knots, begins) = (function.knots(), |cell: usize| function.beginning(cell)[0]);
+        let (datum, middle, last) = (height(0.0), function.cell_of(0.0), knots.len() - 2);
+        let lowest = (0..=middle).min_by(|&a, &b| begins(a).total_cmp(&begins(b)))?;
+        if lowest == 0 || datum - begins(lowest) < THICKNESS_DEPTH + GRADIENT_HEIGHT {
+            return None;
+        }
+        let tip = crossing([knots[lowest - 1], knots[lowest + 1]], slope);
+        let bottom = height(tip);
+        let (steep_height, thick_height) = (bottom + GRADIENT_HEIGHT, datum - THICKNESS_DEPTH);
+        let steep = (lowest..=middle).find(|&cell| begins(cell + 1) >= steep_height)?;
+        let thick = (lowest..=middle).rev().find(|&cell| begins(cell) <= thick_height)?;
+        let steep = crossing([knots[steep].max(tip), knots[steep + 1]], |y| height(y) - steep_height);
+        let thick_place = crossing([knots[thick].max(tip), knots[thick + 1]], |y| height(y) - thick_height);
+        let (mut highest, mut deepest) = (thick_height, 0f64);
+        let mut visit = |height: f64| {
+            highest = highest.max(height);
+            deepest = deepest.max(highest - height);
+        };
+        for cell in thick + 1..last {
+            let [[here, rises], [_, rises_next]] = [cell, cell + 1].map(|cell| function.beginning(cell));
+            visit(here);
+            if rises * rises_next < 0.0 {
+                visit(height(crossing([knots[cell], knots[cell + 1]], slope)));
+            }
+        }
+        visit(begins(last));
+        visit(height(knots[last + 1]));
+        Some(WheelMeasures {
+            flange_height: datum - bottom,
+            flange_thickness: FLANGE_BACK + thick_place,
+            flange_gradient: thick_place - steep,
+            hollow_depth: deepest,
+        })
+    }
+}
+
+/// Place at which a function that changes its sign between two does so, by bisection down to round-off.
+fn crossing([mut low, mut high]: [f64; 2], function: impl Fn(f64) -> f64) -> f64 {
+    let rises = function(high) >= function(low);
+    for _ in 0..48 {
+        let middle = 0.5 * (low + high);
+        if (function(middle) < 0.0) == rises {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    0.5 * (low + high)
 }
 
 /// Largest fall of a curve's height from a place to one behind it, from an arc length on.

@@ -12,6 +12,7 @@
 
 pub mod built_in;
 mod curve;
+mod depth;
 pub mod files;
 mod height;
 mod measured;
@@ -19,9 +20,12 @@ mod measures;
 mod norm;
 mod outline;
 mod worn;
+mod worn_height;
 
+pub use depth::DepthGrid;
 pub use height::HeightFunction;
 pub use measures::{WheelMeasures, WheelWear};
+pub use worn_height::WornHeight;
 
 use crate::error::ProfileError;
 use curve::Curve;

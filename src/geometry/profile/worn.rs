@@ -78,18 +78,21 @@ impl<'a> Depths<'a> {
 }
 
 /// Worn curve at an arc length of the old one, with its length there over that of the old one.
-struct Worn {
-    point: CurvePoint,
-    stretch: f64,
+pub(super) struct Worn {
+    pub(super) point: CurvePoint,
+    pub(super) stretch: f64,
     speed: f64,
 }
 
-/// Wears a place of a cell; `side` is 1 where the material is to the left of the curve, −1 where it is to the right.
-fn worn(curve: &Curve, cell: usize, arc: f64, depth: [f64; 3], side: f64) -> Worn {
-    let here = curve.within(cell, arc);
+/// Slope of a curve's curvature over the arc length, as it is within a cell, `1/m²`.
+pub(super) fn curvature_slope(curve: &Curve, cell: usize, arc: f64) -> f64 {
     let step = 1e-3 * (curve.arcs()[cell + 1] - curve.arcs()[cell]);
     let [before, after] = [-step, step].map(|step| curve.within(cell, arc + step).curvature);
-    let curvature_slope = (after - before) / (2.0 * step);
+    (after - before) / (2.0 * step)
+}
+
+/// Wears a place of a curve, whose curvature has a slope there; `side` is 1 where the material is to the left of the curve, −1 where it is to the right.
+pub(super) fn worn(here: &CurvePoint, curvature_slope: f64, depth: [f64; 3], side: f64) -> Worn {
     // To the left of the curve, as its curvature.
     let [left, slope, second] = depth.map(|value| side * value);
     let (curvature, [ty, tz]) = (here.curvature, here.tangent);
@@ -110,6 +113,14 @@ fn worn(curve: &Curve, cell: usize, arc: f64, depth: [f64; 3], side: f64) -> Wor
     }
 }
 
+/// Side of a profile's curve on which the material of a body is: 1 to the left, −1 to the right.
+pub(super) fn side(body: Body) -> f64 {
+    match body {
+        Body::Wheel => 1.0,
+        Body::Rail => -1.0,
+    }
+}
+
 impl Profile {
     /// Profile that has worn by depths along its normal: `rows` of arc length and depth, both in `m`, ascending by arc length. A positive
     /// depth removes material, a negative one adds some.
@@ -127,10 +138,7 @@ impl Profile {
             return Ok(self.clone());
         }
         let depths = Depths::new(rows);
-        let side = match self.body {
-            Body::Wheel => 1.0,
-            Body::Rail => -1.0,
-        };
+        let side = side(self.body);
         let mut pieces: Vec<Piece> = Vec::new();
         for (cell, arcs) in self.curve.arcs().windows(2).enumerate() {
             let is_smooth = cell > 0 && self.turn(cell).abs() < SMOOTH;
@@ -154,6 +162,12 @@ impl Profile {
         let curve = curve.ok_or_else(|| self.no_wear("nothing is left of a part of it".to_owned()))?;
         let source = format!("{}{WORN}", self.source.strip_suffix(WORN).unwrap_or(&self.source));
         Profile::of_curve(self.body, &self.name, &source, curve)
+    }
+
+    /// Profile at an arc length, `m`, after wear of a depth, `m`, with its first and second derivative. The slope of the new profile's curvature counts as 0,
+    /// which place and direction do without.
+    pub fn worn_at(&self, arc: f64, depth: [f64; 3]) -> CurvePoint {
+        worn(&self.at(arc), 0.0, depth, side(self.body)).point
     }
 
     fn no_wear(&self, reason: String) -> ProfileError {
@@ -200,7 +214,10 @@ fn check(rows: &[[f64; 2]], length: f64) -> Result<(), String> {
 /// Wears a part of a cell; else the reason why nothing is left of it.
 fn worn_piece(curve: &Curve, cell: usize, ends: [f64; 2], depths: &Depths, side: f64) -> Result<Piece, String> {
     let within = 0.5 * (ends[0] + ends[1]);
-    let place = |arc: f64| worn(curve, cell, arc, depths.at(arc, within), side);
+    let place = |arc: f64| {
+        let here = curve.within(cell, arc);
+        worn(&here, curvature_slope(curve, cell, arc), depths.at(arc, within), side)
+    };
     let mut nodes = Vec::with_capacity(2);
     let length = if depths.is_zero(ends[0], ends[1]) {
         ends[1] - ends[0]

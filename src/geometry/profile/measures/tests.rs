@@ -182,3 +182,29 @@ fn what_is_no_wheel_with_a_flange_is_refused() {
         assert!(built_in("S1002").worn_against(profile).is_err());
     }
 }
+
+/// The function of the height has the same measures as the curve, but for round-off and what a steep flange leaves of the function.
+#[test]
+fn the_height_has_the_same_measures() {
+    let s1002 = built_in("S1002");
+    let arcs = [0.0, 75e-3, 85e-3, 105e-3, 115e-3, s1002.length()];
+    let depths = [0.0, 0.0, 2e-3, 2e-3, 0.0, 0.0];
+    let rows: Vec<_> = arcs.into_iter().zip(depths).map(|(arc, depth)| [arc, depth]).collect();
+    for profile in [s1002.worn_by(&rows).unwrap(), s1002, wheel(&flange(0.0))] {
+        let expected = profile.measures().unwrap();
+        let found = WheelMeasures::of_height(&profile.height_function().unwrap()).unwrap();
+        for (expected, found) in [
+            (expected.flange_height, found.flange_height),
+            (expected.flange_thickness, found.flange_thickness),
+            (expected.flange_gradient, found.flange_gradient),
+            (expected.hollow_depth, found.hollow_depth),
+        ] {
+            assert!(
+                (expected - found).abs() < 1e-9,
+                "{}: {expected} {found}",
+                profile.source()
+            );
+        }
+    }
+    assert!(WheelMeasures::of_height(&built_in("cone40").height_function().unwrap()).is_none());
+}

@@ -1,0 +1,235 @@
+//! Height of a wheel's profile that wears: the function of [`HeightFunction`] with knots that move with the surface.
+//!
+//! Each knot belongs to an arc length of the new profile. It lies where the surface has receded to along the normal there, so that the function is
+//! exact at the knots whatever the depth, and of degree five between them. What has been computed from the new profile once is kept; to wear
+//! changes the function in place.
+
+use super::height::{self, HeightFunction};
+use super::worn::{curvature_slope, side, worn};
+use super::{CurvePoint, Profile};
+use crate::error::ProfileError;
+
+/// Longest distance of two knots, `m`: that of the cells in which a contact collects the depth.
+const LONGEST: f64 = 0.1e-3;
+/// Distance of two knots, over that of the new profile, below which the surface has folded onto itself.
+const LEAST_STRETCH: f64 = 0.02;
+
+/// New profile of a wheel, at the knots of its height function.
+#[derive(Debug, Clone)]
+pub struct WornHeight {
+    /// Knots: arc length and place.
+    knots: Vec<Knot>,
+    /// Ends of each polynomial, with direction and curvature as they are on its side.
+    ends: Vec<[End; 2]>,
+    /// Function of the new profile.
+    new: HeightFunction,
+}
+
+/// Knot on the new profile.
+#[derive(Debug, Clone, Copy)]
+struct Knot {
+    arc: f64,
+    /// Place; the direction is the mean of both sides.
+    point: CurvePoint,
+}
+
+/// End of a polynomial on the new profile.
+#[derive(Debug, Clone, Copy)]
+struct End {
+    point: CurvePoint,
+    curvature_slope: f64,
+}
+
+impl WornHeight {
+    /// Knots of a new profile.
+    ///
+    /// # Errors
+    /// The profile is nowhere flat.
+    pub fn new(profile: &Profile) -> Result<WornHeight, ProfileError> {
+        let nowhere_flat = || ProfileError::NoCurve {
+            name: profile.name.clone(),
+            reason: "it is nowhere a function of the lateral position".to_owned(),
+        };
+        let curve = &profile.curve;
+        let parts = height::parts(curve, profile.middle, LONGEST).ok_or_else(nowhere_flat)?;
+        let of_parts = |(cell, arcs): &height::Part| {
+            arcs.map(|arc| End {
+                point: curve.within(*cell, arc),
+                curvature_slope: curvature_slope(curve, *cell, arc),
+            })
+        };
+        let ends: Vec<[End; 2]> = parts.iter().map(of_parts).collect();
+        let knots = (0..=parts.len()).map(|knot| {
+            let (before, after) = (knot.saturating_sub(1), knot.min(parts.len() - 1));
+            let arc = if knot == 0 { parts[0].1[0] } else { parts[before].1[1] };
+            let [left, right] = [
+                if knot == 0 { ends[0][0] } else { ends[before][1] },
+                ends[after][usize::from(knot == parts.len())],
+            ];
+            let [y, z] = [0, 1].map(|k| left.point.tangent[k] + right.point.tangent[k]);
+            let tangent = [y / y.hypot(z), z / y.hypot(z)];
+            Knot {
+                arc,
+                point: CurvePoint { tangent, ..left.point },
+            }
+        });
+        Ok(WornHeight {
+            knots: knots.collect(),
+            new: HeightFunction::of_parts(curve, &parts).ok_or_else(nowhere_flat)?,
+            ends,
+        })
+    }
+
+    /// Function of the new profile, for [`WornHeight::wear`] to change.
+    pub fn function(&self) -> HeightFunction {
+        self.new.clone()
+    }
+
+    /// Arc lengths between which the height is a function, `m`.
+    pub fn range(&self) -> [f64; 2] {
+        [self.knots[0].arc, self.knots[self.knots.len() - 1].arc]
+    }
+
+    /// Wears a function of this wheel between two arc lengths, `m`, where the depth, with two derivatives, is another one than the function
+    /// was worn by; nothing is allocated.
+    ///
+    /// # Errors
+    /// The arc length of a place where the worn surface would fold onto itself; the function is of no use then.
+    pub fn wear(
+        &self,
+        function: &mut HeightFunction,
+        [from, to]: [f64; 2],
+        depth: impl Fn(f64) -> [f64; 3],
+    ) -> Result<(), f64> {
+        let side = side(super::Body::Wheel);
+        let first = self.knots.partition_point(|knot| knot.arc <= from).saturating_sub(1);
+        let last = self.knots.partition_point(|knot| knot.arc < to).min(self.ends.len());
+        let place = |knot: usize, depth: [f64; 3]| worn(&self.knots[knot].point, 0.0, depth, side).point.place;
+        let mut depth_before = depth(self.knots[first].arc);
+        let mut before = place(first, depth_before);
+        for cell in first..last {
+            let [
+                Knot { arc, point: new },
+                Knot {
+                    arc: next,
+                    point: new_next,
+                },
+            ] = [self.knots[cell], self.knots[cell + 1]];
+            let depth_after = depth(next);
+            let after = place(cell + 1, depth_after);
+            if after[0] - before[0] < LEAST_STRETCH * (new_next.place[0] - new.place[0]) {
+                return Err(arc);
+            }
+            let [begin, end] = self.ends[cell];
+            let at = |end: End, depth: [f64; 3], place: [f64; 2]| CurvePoint {
+                place,
+                ..worn(&end.point, end.curvature_slope, depth, side).point
+            };
+            function.replace(cell, [at(begin, depth_before, before), at(end, depth_after, after)]);
+            (before, depth_before) = (after, depth_after);
+        }
+        Ok(())
+    }
+
+    /// Arc length of the new profile whose material is at the surface at a lateral position of a worn function, `m`.
+    pub fn arc_of(&self, function: &HeightFunction, y: f64) -> f64 {
+        let cell = function.cell_of(y);
+        let knots = function.knots();
+        let [from, to] = [self.knots[cell].arc, self.knots[cell + 1].arc];
+        let share = (y - knots[cell]) / (knots[cell + 1] - knots[cell]);
+        from + share.clamp(0.0, 1.0) * (to - from)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::profile::{Body, DepthGrid};
+
+    /// Wheel and a depth of 60 µm over its flange and its tread.
+    fn worn_wheel() -> (Profile, WornHeight, DepthGrid, Vec<f64>) {
+        let new = Profile::built_in("S1002").unwrap();
+        let height = WornHeight::new(&new).unwrap();
+        let grid = DepthGrid::new(height.range(), 1500);
+        let bump = |arc: f64, middle: f64, half: f64| {
+            let t = ((arc - middle) / half).clamp(-1.0, 1.0);
+            60e-6 * (1.0 - t * t).powi(3)
+        };
+        let [flange, tread] = [-0.038, 0.004].map(|y| new.arc_of(y).unwrap());
+        let means = (0..grid.cells)
+            .map(|cell| bump(grid.middle(cell), flange, 5e-3) + bump(grid.middle(cell), tread, 8e-3))
+            .collect();
+        (new, height, grid, means)
+    }
+
+    /// Unworn it is the profile's height function, to what that has of error itself.
+    #[test]
+    fn without_depth_it_is_the_new_profile() {
+        let (new, height, grid, _) = worn_wheel();
+        let mut function = height.function();
+        height.wear(&mut function, height.range(), |_| [0.0; 3]).unwrap();
+        let own = new.height_function().unwrap();
+        for place in 0..1000 {
+            let y = -0.055 + 1e-4 * f64::from(place);
+            let [expected, found] = [&own, &function].map(|function| function.value_slope_curvature(y)[0]);
+            assert!((expected - found).abs() < 2e-10, "{y}: {expected} {found}");
+            let arc = height.arc_of(&function, y);
+            assert!((new.at(arc).place[0] - y).abs() < 1e-6, "{y}");
+        }
+        assert!(grid.spacing < 0.12e-3);
+    }
+
+    /// The worn function is the height of the profile that `worn_by` makes of the same depths, on tread and flange, and a change of
+    /// some of them leaves the same bits as one of all.
+    #[test]
+    fn it_is_the_profile_worn_by_the_same_depth() {
+        let (new, height, grid, means) = worn_wheel();
+        let mut function = height.function();
+        height
+            .wear(&mut function, height.range(), |arc| grid.at(&means, arc))
+            .unwrap();
+        let rows: Vec<_> = (0..2 * grid.cells)
+            .map(|place| grid.first + 0.5 * (place as f64 + 0.5) * grid.spacing)
+            .map(|arc| [arc, grid.at(&means, arc)[0]])
+            .collect();
+        let worn = new.worn_by(&rows).unwrap();
+        // Its origin is the worn running circle.
+        let shift = function.value_slope_curvature(0.0)[0];
+        let expected = worn.height_function().unwrap();
+        let mut largest: f64 = 0.0;
+        for place in 0..2000 {
+            let y = -0.05 + 5e-5 * f64::from(place);
+            let [at, own] = [&expected, &function].map(|function| function.value_slope_curvature(y));
+            largest = largest.max(((at[0] + shift - own[0]) / own[1].hypot(1.0)).abs());
+        }
+        // Of the cubic through rows: the square of their distance times the depth's second derivative.
+        assert!(largest < 3e-9, "{largest:e}");
+
+        let mut twice = height.function();
+        let flange = 0..grid.cells / 2;
+        let mut some = means.clone();
+        some[flange.end..].fill(0.0);
+        height
+            .wear(&mut twice, height.range(), |arc| grid.at(&some, arc))
+            .unwrap();
+        height
+            .wear(&mut twice, grid.reach(flange.end..grid.cells), |arc| {
+                grid.at(&means, arc)
+            })
+            .unwrap();
+        assert_eq!(twice, function);
+    }
+
+    #[test]
+    fn a_fold_is_refused_with_its_place() {
+        let (new, height, grid, mut means) = worn_wheel();
+        let arc = new.arc_of(-0.038).unwrap();
+        means[((arc - grid.first) / grid.spacing) as usize] += 1e-3;
+        let mut function = height.function();
+        let refused = height
+            .wear(&mut function, height.range(), |arc| grid.at(&means, arc))
+            .unwrap_err();
+        assert!((refused - arc).abs() < 1e-3, "{refused} {arc}");
+        assert_eq!(new.body(), Body::Wheel);
+    }
+}
