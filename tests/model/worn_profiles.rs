@@ -7,7 +7,7 @@ use wheelrail::Profile;
 use wheelrail::parameters::{
     ContactModel, Control, FrictionLaw, Parameters, ProfileWear, Side, SlipSource, WheelWearLaw,
 };
-use wheelrail::signals::{Inputs, Outputs};
+use wheelrail::signals::{ContactOutputs, Inputs, Outputs};
 use wheelrail::simulation::Simulation;
 use wheelrail::wheel_rail::WornPlace;
 
@@ -96,17 +96,17 @@ fn the_profiles_lose_what_the_contact_wears_off() {
             WheelWearLaw::WearLaw => 1.0,
         };
         assert!((outputs.wheel_worn_volume / outputs.worn_volume - share).abs() < 1e-9);
-        let contact = &outputs.contact[0];
-        for (places, middle) in [
-            (&wear.wheel, contact.wheel_position),
-            (&wear.rail, contact.rail_position),
-        ] {
-            let deepest = places.iter().max_by(|a, b| a.depth.total_cmp(&b.depth)).unwrap();
-            assert!(
-                (deepest.position - middle).abs() < 10e-3,
-                "{} {middle}",
-                deepest.position
-            );
+        let contacts = &outputs.contact[..outputs.contacts as usize];
+        let positions: [fn(&ContactOutputs) -> f64; 2] =
+            [|contact| contact.wheel_position, |contact| contact.rail_position];
+        for (places, position) in [&wear.wheel, &wear.rail].into_iter().zip(positions) {
+            let deepest = places
+                .iter()
+                .max_by(|a, b| a.depth.total_cmp(&b.depth))
+                .unwrap()
+                .position;
+            let near = |contact: &ContactOutputs| (deepest - position(contact)).abs() < contact.breadth;
+            assert!(contacts.iter().any(near), "{lateral}: {deepest}");
         }
     }
 }
@@ -157,9 +157,9 @@ fn profiles_that_do_not_wear_stay_as_they_are() {
 fn accelerated_wear_is_that_of_more_turns() {
     let inputs = sliding(2e-3, 2e-3);
     let of = |wear_acceleration: f64, steps: usize| {
-        // 10 µm over 400 steps.
+        // Some tens of micrometres over 1200 steps.
         let parameters = Parameters {
-            wear_acceleration: 1e3 * wear_acceleration,
+            wear_acceleration: 180.0 * wear_acceleration,
             ..bodies()
         };
         let run = worn(&parameters, &inputs, steps);
@@ -170,7 +170,7 @@ fn accelerated_wear_is_that_of_more_turns() {
             run.state.convergence.profile_change,
         )
     };
-    let (slow, fast) = (of(1.0, 400), of(100.0, 4));
+    let (slow, fast) = (of(1.0, 1200), of(100.0, 12));
     assert!((2e-6..50e-6).contains(&slow.1), "{}", slow.1);
     assert!(slow.2 < 1e-6 && fast.2 > 1e-6, "{} {}", slow.2, fast.2);
     for get in [|o: &Outputs| o.wheel_worn_area, |o: &Outputs| o.rail_worn_area] {
@@ -191,10 +191,10 @@ fn a_finer_grid_wears_the_same() {
         let parameters = Parameters {
             patch_strips,
             profile_wear_points,
-            wear_acceleration: 3e3,
+            wear_acceleration: 500.0,
             ..bodies()
         };
-        let run = worn(&parameters, &inputs, 40);
+        let run = worn(&parameters, &inputs, 60);
         (*run.outputs(), largest(&run.profile_wear().unwrap().wheel))
     };
     let (coarse, depth) = of(11, 750);
@@ -245,7 +245,8 @@ fn a_worn_wheel_in_a_file_makes_the_same_forces() {
         wear_acceleration: 2e3,
         ..bodies()
     };
-    for (name, lateral) in [("tread", 1e-3), ("flange", 6.6e-3)] {
+    // Points in a file lie 0.05 mm apart, and strips of half a millimetre on the tread leave corners of the slope between them.
+    for (name, lateral, tolerance) in [("tread", 1e-3, 5e-6), ("flange", 6.6e-3, 1e-6)] {
         let inputs = sliding(lateral, 0.01);
         let run = worn(&parameters, &inputs, 30);
         let depth = largest(&run.profile_wear().unwrap().wheel);
@@ -293,14 +294,9 @@ fn a_worn_wheel_in_a_file_makes_the_same_forces() {
             |o: &Outputs| o.moment_z,
         ] {
             let [own, file, again] = [&expected, &first, &second].map(get);
-            println!(
-                "{name}: {own} {file} {again}: {:e} {:e}",
-                file / own - 1.0,
-                again / file - 1.0
-            );
-            // Points of the file lie 0.1 mm apart.
-            assert!((file / own - 1.0).abs() < 1e-4, "{name}: {file} {own}");
-            assert!((again / file - 1.0).abs() < 1e-6, "{name}: {again} {file}");
+            let bound = 0.3 * inputs.normal_load;
+            assert!((file - own).abs() < tolerance * bound, "{name}: {file} {own}");
+            assert!((again - file).abs() < 3.0 * tolerance * bound, "{name}: {again} {file}");
         }
     }
 }
@@ -317,7 +313,8 @@ fn steps_on_worn_profiles_have_derivatives() {
             ..bodies()
         };
         let inputs = Inputs {
-            vertical_displacement: -0.12e-3,
+            vertical_displacement: if control == Control::Height { -0.12e-3 } else { 0.0 },
+            incoming_wear_depth: 2e-7,
             ..sliding(1e-3, 2e-3)
         };
         let compared = check(parameters, inputs, 1e-3).unwrap();

@@ -170,21 +170,17 @@ pub fn depths(operators: &SurfaceOperators, worn: &ProfileWear) -> ProfileDepths
     ProfileDepths { wheel, rail }
 }
 
-/// Profiles of wheel and rail as they are worn, with nodes at twice as many places as there are cells; the rail's is upright. Their origins have moved
-/// with the surface ([`Profile::worn_by`]).
+/// Profiles of wheel and rail as they are worn; the rail's is upright. Their origins have moved with the surface ([`Profile::worn_by`]).
 ///
 /// # Errors
 /// A profile that is worn beyond its radius of curvature.
 pub fn profiles(operators: &SurfaceOperators, worn: &ProfileWear) -> Result<[Profile; 2]> {
     let of = |body: usize| {
-        let grid = &operators.grids[body];
-        let rows: Vec<_> = (0..2 * grid.cells)
-            .map(|half| grid.middle(0) + 0.5 * half as f64 * grid.spacing)
-            .map(|arc| [arc, grid.at(&worn.depth[body], arc)[0]])
-            .collect();
-        operators.profiles[body]
-            .worn_by(&rows[..2 * grid.cells - 1])
-            .map_err(Error::Profile)
+        if worn.depth[body].is_empty() {
+            return Ok(operators.profiles[body].clone());
+        }
+        let profile = operators.profiles[body].worn_by_cells(&operators.grids[body], &worn.depth[body]);
+        profile.map_err(Error::Profile)
     };
     Ok([of(WHEEL)?, of(RAIL)?])
 }

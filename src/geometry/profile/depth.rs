@@ -57,6 +57,13 @@ impl DepthGrid {
         ]
     }
 
+    /// Whether there is no depth between two arc lengths, `m`.
+    pub fn is_zero(&self, means: &[f64], [from, to]: [f64; 2]) -> bool {
+        let cell = |arc: f64| ((arc - self.first) / self.spacing).clamp(0.0, self.cells as f64) as usize;
+        let cells = cell(from).saturating_sub(2)..(cell(to) + 3).min(self.cells);
+        means[cells].iter().all(|&mean| mean == 0.0)
+    }
+
     /// Arc lengths between which the spline changes where the means of some cells do, `m`.
     pub fn reach(&self, cells: std::ops::Range<usize>) -> [f64; 2] {
         [

@@ -10,7 +10,7 @@
 //! ∫ (d − κ d²/2) ds.
 
 use super::curve::{Curve, Piece};
-use super::{Body, CurvePoint, Profile};
+use super::{Body, CurvePoint, DepthGrid, Profile};
 use crate::error::ProfileError;
 
 /// Shortest part, `m`, into which a row of depths divides a cell: however often a profile wears, it has no more than 20 nodes a mm.
@@ -22,15 +22,53 @@ const SMOOTH: f64 = 1e-4;
 /// Distance, `m`, that the two sides of a kink may move apart by wear at it; the curve closes it.
 const WIDEST_GAP: f64 = 1e-6;
 
+/// Depth over the arc length.
+enum Depths<'a> {
+    /// A monotone cubic through rows.
+    Rows(Rows<'a>),
+    /// The spline of cells with their means, and the arc lengths of its knots and half way between.
+    Cells(&'a DepthGrid, &'a [f64], Vec<f64>),
+}
+
+impl Depths<'_> {
+    /// Depth with its first and second derivative at an arc length, the second one as in the piece that holds another arc length, `within`.
+    fn at(&self, arc: f64, within: f64) -> [f64; 3] {
+        match self {
+            Depths::Rows(rows) => rows.at(arc, within),
+            Depths::Cells(grid, means, _) => grid.at(means, arc),
+        }
+    }
+
+    /// Whether nothing is worn between two arc lengths.
+    fn is_zero(&self, from: f64, to: f64) -> bool {
+        match self {
+            Depths::Rows(rows) => rows.is_zero(from, to),
+            Depths::Cells(grid, means, _) => grid.is_zero(means, [from, to]),
+        }
+    }
+
+    /// Arc lengths beyond one, ascending, at which a cell is divided.
+    fn beyond(&self, from: f64) -> impl Iterator<Item = f64> + '_ {
+        let (rows, places): (&[[f64; 2]], &[f64]) = match self {
+            Depths::Rows(rows) => (rows.rows, &[]),
+            Depths::Cells(_, _, places) => (&[], places),
+        };
+        let rows = rows[rows.partition_point(|row| row[0] <= from)..]
+            .iter()
+            .map(|row| row[0]);
+        rows.chain(places[places.partition_point(|&place| place <= from)..].iter().copied())
+    }
+}
+
 /// Depth over the arc length: piecewise cubic through rows, once differentiable and without overshoot, by the slopes of F. N. Fritsch
 /// and J. Butland (*SIAM Journal on Scientific and Statistical Computing* 5, 1984). Before the first row and behind the last it is constant.
-struct Depths<'a> {
+struct Rows<'a> {
     rows: &'a [[f64; 2]],
     slopes: Vec<f64>,
 }
 
-impl<'a> Depths<'a> {
-    fn new(rows: &'a [[f64; 2]]) -> Depths<'a> {
+impl<'a> Rows<'a> {
+    fn new(rows: &'a [[f64; 2]]) -> Rows<'a> {
         let mut slopes = vec![0.0; rows.len()];
         for (slope, three) in slopes.iter_mut().skip(1).zip(rows.windows(3)) {
             let [before, after] = [0, 1].map(|k| three[k + 1][0] - three[k][0]);
@@ -41,7 +79,7 @@ impl<'a> Depths<'a> {
                 *slope = (first + second) / (first / right + second / left);
             }
         }
-        Depths { rows, slopes }
+        Rows { rows, slopes }
     }
 
     /// Depth with its first and second derivative at an arc length, the second one as in the piece that holds another arc length, `within`.
@@ -137,13 +175,28 @@ impl Profile {
         if rows.iter().all(|row| row[1] == 0.0) {
             return Ok(self.clone());
         }
-        let depths = Depths::new(rows);
+        self.worn_at_depths(&Depths::Rows(Rows::new(rows)))
+    }
+
+    /// Profile that has worn by the depth of cells with their means, `m`, as a contact has collected it.
+    ///
+    /// # Errors
+    /// As [`Profile::worn_by`], but for the rows.
+    pub fn worn_by_cells(&self, grid: &DepthGrid, means: &[f64]) -> Result<Profile, ProfileError> {
+        if means.iter().all(|&mean| mean == 0.0) {
+            return Ok(self.clone());
+        }
+        let places = (0..2 * grid.cells).map(|half| grid.middle(0) + 0.5 * half as f64 * grid.spacing);
+        self.worn_at_depths(&Depths::Cells(grid, means, places.collect()))
+    }
+
+    fn worn_at_depths(&self, depths: &Depths) -> Result<Profile, ProfileError> {
         let side = side(self.body);
         let mut pieces: Vec<Piece> = Vec::new();
         for (cell, arcs) in self.curve.arcs().windows(2).enumerate() {
             let is_smooth = cell > 0 && self.turn(cell).abs() < SMOOTH;
-            for (number, part) in parts(&depths, [arcs[0], arcs[1]]).windows(2).enumerate() {
-                let mut piece = worn_piece(&self.curve, cell, [part[0], part[1]], &depths, side)
+            for (number, part) in parts(depths, [arcs[0], arcs[1]]).windows(2).enumerate() {
+                let mut piece = worn_piece(&self.curve, cell, [part[0], part[1]], depths, side)
                     .map_err(|reason| self.no_wear(reason))?;
                 if let Some(before) = pieces.last_mut() {
                     let gap = meet(before, &mut piece, number > 0 || is_smooth);
@@ -255,18 +308,16 @@ fn meet(before: &mut Piece, after: &mut Piece, smooth: bool) -> f64 {
 /// End of the source of a worn profile.
 const WORN: &str = ", worn";
 
-/// Ends of the parts of a cell: the rows within it divide it, where it is worn at all and the parts are long enough.
+/// Ends of the parts of a cell: the rows within it divide it where the parts are long enough. So a file of the profile has points as close everywhere, which
+/// its reader chooses the cells by.
 fn parts(depths: &Depths, [from, to]: [f64; 2]) -> Vec<f64> {
     let mut parts = vec![from];
-    if !depths.is_zero(from, to) {
-        let first = depths.rows.partition_point(|row| row[0] <= from);
-        for [arc, _] in &depths.rows[first..] {
-            if to - arc < SHORTEST_PART {
-                break;
-            }
-            if arc - parts[parts.len() - 1] >= SHORTEST_PART {
-                parts.push(*arc);
-            }
+    for arc in depths.beyond(from) {
+        if to - arc < SHORTEST_PART {
+            break;
+        }
+        if arc - parts[parts.len() - 1] >= SHORTEST_PART {
+            parts.push(arc);
         }
     }
     parts.push(to);
