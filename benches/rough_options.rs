@@ -1,6 +1,6 @@
 //! Costs of the model's options on the rough track: the median time of a step over that of the plain step, the runs side by side.
 //!
-//! Options are falling friction, its memory, layers, and the heat of the wheel; besides, a wheel that creeps along, V = 0 to 1 m/s, and one that
+//! Options are falling friction, its memory, layers, the heat of the wheel and the wear of profiles; besides, a wheel that creeps along, V = 0 to 1 m/s, and one that
 //! stands, over one that rolls, and a window for a larger load. The processor's time of a step of each, by turns of a few steps, so that a machine that
 //! becomes slower makes them all slower. Iterations a step are the same on every machine.
 
@@ -10,6 +10,7 @@ mod track;
 
 use timing::{target, thread_time};
 use track::{STEP, WARM_UP};
+use wheelrail::parameters::{ContactModel, ProfileWear};
 use wheelrail::wheel_rail::Iterations;
 use wheelrail::{Inputs, Parameters, Simulation, WheelHeating};
 
@@ -125,6 +126,30 @@ fn options(plain: &Parameters, track: &[Inputs]) -> Vec<Setting> {
     ]
 }
 
+/// Profiles that stay new, and profiles that wear.
+fn wear_of_profiles(default: &Parameters, inputs: &[Inputs]) -> Vec<Setting> {
+    let plain = Parameters {
+        contact_model: ContactModel::Profiles,
+        ..braking::patch_parameters(default.patch_nodes, default.patch_strips)
+    };
+    let wearing = Parameters {
+        wheel_profile_wear: ProfileWear::On,
+        rail_profile_wear: ProfileWear::On,
+        wheel_wear_coefficient: plain.wear_coefficient,
+        ..plain.clone()
+    };
+    let option = |name, asked, parameters| Setting {
+        name,
+        parameters,
+        inputs: inputs.to_vec(),
+        asked,
+    };
+    vec![
+        option("plain", f64::INFINITY, plain),
+        option("wear of both profiles", 1.05, wearing),
+    ]
+}
+
 /// A wheel under way, and what its steps took.
 struct Run<'o> {
     setting: &'o Setting,
@@ -234,6 +259,10 @@ fn main() {
     for (nodes, strips) in [(10, 7), (24, 15), (default.patch_nodes, default.patch_strips)] {
         let patch = braking::patch_parameters(nodes, strips);
         compare(&format!("{nodes} x {strips}"), &options(&patch, &track));
+    }
+    for (name, displacement) in track::PROFILES {
+        let inputs = track::on_profiles(&track, displacement);
+        compare(&format!("profiles, {name}"), &wear_of_profiles(&default, &inputs));
     }
     let line = braking::parameters(default.contact_nodes);
     compare("line", &options(&line, &track::straight(&track)));

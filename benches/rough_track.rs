@@ -10,28 +10,12 @@ mod timing;
 mod track;
 
 use track::Run;
+use wheelrail::Parameters;
 use wheelrail::parameters::ContactModel;
-use wheelrail::{Inputs, Parameters};
 
 const ROUNDS: usize = 3;
 /// Cells along and across.
 const GRIDS: [(usize, usize); 6] = [(34, 21), (24, 15), (16, 11), (12, 9), (10, 7), (8, 5)];
-
-/// Lateral displacement of the left wheel S1002 on 60E1: on the tread, and where tread and gauge corner carry, `m`.
-const PROFILES: [(&str, f64); 2] = [("tread", 0.0), ("two", 5.0e-3)];
-/// Part of the track's spin that a contact of profiles has by its inclination, `1/m`.
-const INCLINED: f64 = 0.1;
-
-/// The same load, speeds and creepages for a wheelset at a displacement.
-fn on_profiles(track: &[Inputs], displacement: f64) -> Vec<Inputs> {
-    let inputs = |inputs: &Inputs| Inputs {
-        spin_rate: 0.0,
-        yaw_rate: inputs.spin_rate - INCLINED * inputs.vehicle_speed,
-        lateral_displacement: displacement,
-        ..*inputs
-    };
-    track.iter().map(inputs).collect()
-}
 
 fn main() {
     let track = track::track();
@@ -42,13 +26,13 @@ fn main() {
         names.push(format!("{cells} x {strips}"));
         models.push((braking::patch_parameters(cells, strips), track.clone()));
     }
-    for (name, displacement) in PROFILES {
+    for (name, displacement) in track::PROFILES {
         let parameters = Parameters {
             contact_model: ContactModel::Profiles,
             ..braking::patch_parameters(GRIDS[0].0, GRIDS[0].1)
         };
         names.push(name.to_owned());
-        models.push((parameters, on_profiles(&track, displacement)));
+        models.push((parameters, track::on_profiles(&track, displacement)));
     }
     let runs = track::fastest(ROUNDS, &models, |(parameters, inputs)| Run::new(parameters, inputs));
     println!(

@@ -126,3 +126,19 @@ pub fn fastest<T>(rounds: usize, runs: &[T], run: impl Fn(&T) -> Run) -> Vec<Run
     }
     best
 }
+
+/// Lateral displacement of the left wheel S1002 on 60E1: on the tread, and where tread and gauge corner carry, `m`.
+pub const PROFILES: [(&str, f64); 2] = [("tread", 0.0), ("two", 5.0e-3)];
+/// Part of the track's spin that a contact of profiles has by its inclination, `1/m`.
+const INCLINED: f64 = 0.1;
+
+/// The same load, speeds and creepages for a wheelset at a displacement.
+pub fn on_profiles(track: &[Inputs], displacement: f64) -> Vec<Inputs> {
+    let inputs = |inputs: &Inputs| Inputs {
+        spin_rate: 0.0,
+        yaw_rate: inputs.spin_rate - INCLINED * inputs.vehicle_speed,
+        lateral_displacement: displacement,
+        ..*inputs
+    };
+    track.iter().map(inputs).collect()
+}

@@ -38,6 +38,7 @@ pub mod patch_long;
 pub mod patch_mirrored;
 pub mod patch_power;
 pub mod power_balance;
+pub mod profile_wear;
 pub mod profiles_circle;
 pub mod rigid_wheel;
 pub mod rolling_start;
@@ -261,6 +262,10 @@ pub const CHECKS: &[Check] = &[
     Check {
         name: "Profiles: circle on circle",
         rows: profiles_circle::rows,
+    },
+    Check {
+        name: "Profiles: wear",
+        rows: profile_wear::rows,
     },
     Check {
         name: "Profiles: Manchester benchmark",
