@@ -235,7 +235,7 @@ impl Operators {
     pub fn profile_wear(&self, state: &ContactState) -> Result<ProfileDepths> {
         match (self, state) {
             (Operators::Surface(operators), ContactState::Surface(state)) => {
-                Ok(surface::bodies::depths(operators, &state.fields.worn))
+                Ok(surface::worn_bodies::depths(operators, &state.fields.worn))
             }
             _ => Err(Error::OtherContactModel),
         }
@@ -248,7 +248,7 @@ impl Operators {
     pub fn worn_profiles(&self, state: &ContactState) -> Result<[Profile; 2]> {
         match (self, state) {
             (Operators::Surface(operators), ContactState::Surface(state)) => {
-                surface::bodies::profiles(operators, &state.fields.worn)
+                surface::worn_bodies::profiles(operators, &state.fields.worn)
             }
             _ => Err(Error::OtherContactModel),
         }

@@ -132,7 +132,7 @@ fn real(variable: &shared::Variable, kind: &shared::RealKind, element: usize) ->
         description,
         causality: variable.causality,
         variability: variable.variability,
-        is_total: matches!(kind.variable, shared::RealVariable::Output(row) if matches!(OUTPUTS[row].kind, OutputKind::Total | OutputKind::Kept)),
+        is_total: matches!(kind.variable, shared::RealVariable::Output(row) if OUTPUTS[row].kind == OutputKind::Total),
         kind: Kind::Real {
             unit: kind.unit,
             display_unit: kind.display_unit,

@@ -205,7 +205,7 @@ fn model_structure() -> ModelStructure {
     let is_total = |name: &str| {
         OUTPUTS
             .iter()
-            .any(|row| row.name == name && matches!(row.kind, OutputKind::Total | OutputKind::Kept))
+            .any(|row| row.name == name && row.kind == OutputKind::Total)
     };
     let unknowns = |dependencies: String| {
         let outputs = table().filter(|(_, variable)| variable.causality == Causality::Output);

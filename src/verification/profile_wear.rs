@@ -99,7 +99,7 @@ pub fn rows() -> Result<Vec<Row>> {
     Ok(rows)
 }
 
-/// What is left of the closed form: 0.1 % of a contact 14 mm broad, and the first step, whose surfaces come to move.
+/// Area worn off a wheel that slides. What is left of the closed form is 0.1 % of a contact 14 mm broad, and the first step, whose surfaces come to move.
 fn full_slip(excess: f64) -> Result<Row> {
     let (inputs, turns) = (sliding(excess, 0.0, 0.0), 2.0);
     let steps = (turns * TAU / (inputs.wheel_speed * STEP)).round();

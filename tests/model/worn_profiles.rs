@@ -306,7 +306,10 @@ fn a_profile_that_is_worn_away_is_refused_with_its_place() {
     let mut run = Simulation::new(&parameters, &inputs).unwrap();
     run.step(&inputs, 1e-6).unwrap();
     let change = run.state.convergence.profile_change;
-    assert!(change > 1e-6 && change == largest(&run.profile_wear().unwrap().wheel), "{change}");
+    assert!(
+        change > 1e-6 && change == largest(&run.profile_wear().unwrap().wheel),
+        "{change}"
+    );
     let refused = (0..5).find_map(|_| run.step(&inputs, 1e-3).err()).unwrap().to_string();
     assert!(
         refused.contains("profile is worn by") && refused.contains("wear_acceleration"),

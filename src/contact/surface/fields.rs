@@ -1,8 +1,8 @@
 //! The fields of a contact of profiles: those of a patch in each window, and where the windows are.
 
-use super::bodies::ProfileWear;
 use super::operators::SurfaceOperators;
 use super::windows::{Place, SHAPES, WINDOWS};
+use super::worn_bodies::ProfileWear;
 use crate::contact::fields::{FieldRow, Fields, Number, number, row};
 use crate::contact::patch::fields::PatchFields;
 use crate::friction::memory::Memory;

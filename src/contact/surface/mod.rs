@@ -4,7 +4,7 @@
 //! where they overlap. In each window the fields, the mechanics, heat and wear are those of a patch.
 
 mod apart;
-pub mod bodies;
+mod bodies;
 mod contacts;
 mod engine;
 pub mod fields;
@@ -22,3 +22,4 @@ mod tests;
 pub mod totals;
 mod transfer;
 mod windows;
+pub mod worn_bodies;

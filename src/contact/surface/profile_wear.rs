@@ -96,7 +96,7 @@ fn over(before: &Strip, here: &Strip, after: &Strip, half: f64) -> [f64; 2] {
     stretch
 }
 
-/// What a strip of a window wears off.
+/// Volumes that a strip of a window wears off, and where.
 fn worn_strip(
     problem: &SurfaceProblem,
     bodies: &Bodies,

@@ -1,7 +1,6 @@
 //! Solvers and buffers of a step of a contact of profiles, made once, so that a step allocates nothing.
 
 use super::apart::Apart;
-use super::bodies::WornBodies;
 use super::contacts::{CONTACTS, Wanted};
 use super::fields::SurfaceFields;
 use super::geometry::WindowGeometry;
@@ -9,6 +8,7 @@ use super::operators::SurfaceOperators;
 use super::search::Search;
 use super::transfer::Transfer;
 use super::windows::{LENGTHS, WINDOWS};
+use super::worn_bodies::WornBodies;
 use crate::contact::interface::Interface;
 use crate::contact::patch::solvers::PatchSolvers;
 use crate::heat::strips::StripHeatScratch;

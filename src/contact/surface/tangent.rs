@@ -5,7 +5,6 @@
 //! of all windows to a unit of it, the vertical force changes as the load does.
 
 use super::apart::Apart;
-use super::bodies::WornBodies;
 use super::fields::SurfaceFields;
 use super::geometry::{Pose, WindowGeometry};
 use super::mechanics::{SurfaceProblem, vertical_forces};
@@ -13,6 +12,7 @@ use super::operators::SurfaceOperators;
 use super::search::Search;
 use super::solvers::SurfaceSolvers;
 use super::windows::{BREADTHS, LENGTHS, WINDOWS};
+use super::worn_bodies::WornBodies;
 use crate::contact::engine::{Along, Direction, Linearised};
 use crate::contact::fields::Fields;
 use crate::contact::interface::Interface;

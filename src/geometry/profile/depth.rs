@@ -18,7 +18,7 @@ pub struct DepthGrid {
 }
 
 impl DepthGrid {
-    /// So many cells between two arc lengths, `m`.
+    /// Grid of so many cells between two arc lengths, `m`.
     pub fn new([first, last]: [f64; 2], cells: usize) -> DepthGrid {
         DepthGrid {
             first,

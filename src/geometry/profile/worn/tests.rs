@@ -85,7 +85,7 @@ fn the_area_is_the_integral_of_the_depth() {
         for middle in places {
             for most in [1e-6, 1e-3, 3e-3, -1e-3] {
                 let rows = bump(middle, most);
-                let depths = Depths::new(&rows);
+                let depths = Depths::Rows(Rows::new(&rows));
                 let side = if profile.body() == Body::Wheel { 1.0 } else { -1.0 };
                 // Rows and nodes of the curve lie between the parts of it.
                 let parts = 300_000;

@@ -1,0 +1,179 @@
+//! Rail and wheel as they are worn.
+//!
+//! What a contact has worn off the profiles is kept as depths of cells of the new profiles ([`crate::geometry::profile::DepthGrid`]), which belong to the bodies: windows
+//! may come and go over them. A step takes the shapes at its beginning, by the depths of the fields; what it wears off itself, nanometres, the next
+//! one sees. Here the shapes are kept beside the depths that made them, and follow them where they have changed: they are the same whatever way led to
+//! the depths.
+
+use super::bodies::{Bodies, RAIL, WHEEL, measures};
+use super::operators::SurfaceOperators;
+use crate::contact::profiles::{ProfileDepths, WornPlace};
+use crate::error::{Error, Result};
+use crate::geometry::profile::Profile;
+use serde::{Deserialize, Serialize};
+use std::ops::Range;
+
+/// Names of the bodies, by their numbers.
+const NAMES: [&str; 2] = ["wheel", "rail"];
+
+/// Depths by which the profiles are worn, means over their cells, `m`; without cells of a body that stays new.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ProfileWear {
+    /// Depths at the end of the step.
+    pub depth: [Vec<f64>; 2],
+    /// Depths at its beginning, which the contact saw.
+    pub before: [Vec<f64>; 2],
+}
+
+impl ProfileWear {
+    /// Bodies as they were new.
+    pub fn new(operators: &SurfaceOperators) -> ProfileWear {
+        let unworn = || [WHEEL, RAIL].map(|body| vec![0.0; operators.wear_cells(body)]);
+        ProfileWear {
+            depth: unworn(),
+            before: unworn(),
+        }
+    }
+
+    /// Begins a step with the depths that there are.
+    pub fn begin(&mut self) {
+        for (before, depth) in self.before.iter_mut().zip(&self.depth) {
+            before.copy_from_slice(depth);
+        }
+    }
+
+    /// Takes those of other fields.
+    pub fn copy_from(&mut self, other: &ProfileWear) {
+        for body in [WHEEL, RAIL] {
+            self.depth[body].copy_from_slice(&other.depth[body]);
+            self.before[body].copy_from_slice(&other.before[body]);
+        }
+    }
+}
+
+/// Bodies at depths of wear.
+pub struct WornBodies {
+    /// Bodies at the depths; none where neither of them wears.
+    bodies: Option<Bodies>,
+    depths: [Vec<f64>; 2],
+}
+
+impl WornBodies {
+    /// Bodies as they were new.
+    pub fn new(operators: &SurfaceOperators) -> WornBodies {
+        let depths = [WHEEL, RAIL].map(|body| vec![0.0; operators.wear_cells(body)]);
+        if depths.iter().all(Vec::is_empty) {
+            return WornBodies { bodies: None, depths };
+        }
+        let mut bodies = operators.bodies.clone();
+        if !depths[WHEEL].is_empty() {
+            bodies.wheel.profile = operators.worn_height.function();
+        }
+        if !depths[RAIL].is_empty() {
+            bodies.rail.collect_wear(operators.grids[RAIL]);
+        }
+        WornBodies {
+            bodies: Some(bodies),
+            depths,
+        }
+    }
+
+    /// The bodies as they are.
+    pub fn of<'b>(&'b self, operators: &'b SurfaceOperators) -> &'b Bodies {
+        self.bodies.as_ref().unwrap_or(&operators.bodies)
+    }
+
+    /// Wears the bodies by the given depths.
+    ///
+    /// # Errors
+    /// [`Error::WornAway`].
+    pub fn set(&mut self, operators: &SurfaceOperators, depths: &[Vec<f64>; 2]) -> Result<()> {
+        let WornBodies {
+            bodies: Some(bodies),
+            depths: own,
+        } = self
+        else {
+            return Ok(());
+        };
+        if let Some(cells) = differing(&own[WHEEL], &depths[WHEEL]) {
+            let (grid, depth) = (&operators.grids[WHEEL], &depths[WHEEL]);
+            let reach = grid.reach(cells);
+            let folded = operators
+                .worn_height
+                .wear(&mut bodies.wheel.profile, reach, |arc| grid.at(depth, arc));
+            if let Err(arc) = folded {
+                // Nothing of the shape is known any more.
+                own[WHEEL].fill(f64::NAN);
+                return Err(worn_away(operators, WHEEL, grid.at(depth, arc)[0], arc));
+            }
+            own[WHEEL].copy_from_slice(depth);
+            bodies.measures = measures(&bodies.wheel);
+        }
+        if let Some(cells) = differing(&own[RAIL], &depths[RAIL]) {
+            let (grid, depth) = (&operators.grids[RAIL], &depths[RAIL]);
+            let [from, to] = grid.reach(cells);
+            if let Some(worn) = bodies.rail.depth_mut() {
+                worn.copy_from_slice(depth);
+            }
+            for (arc, point) in &mut bodies.scan {
+                if from <= *arc && *arc <= to {
+                    *point = bodies.rail.at(*arc);
+                    if point.normal[1] <= 0.0 {
+                        own[RAIL].fill(f64::NAN);
+                        return Err(worn_away(operators, RAIL, grid.at(depth, *arc)[0], *arc));
+                    }
+                }
+            }
+            own[RAIL].copy_from_slice(depth);
+        }
+        Ok(())
+    }
+}
+
+/// Places of both profiles with the depth of the spline in the middle of their cells.
+pub fn depths(operators: &SurfaceOperators, worn: &ProfileWear) -> ProfileDepths {
+    let [wheel, rail] = [WHEEL, RAIL].map(|body| {
+        let grid = &operators.grids[body];
+        let place = |cell: usize| {
+            let arc_length = grid.middle(cell);
+            WornPlace {
+                position: operators.profiles[body].at(arc_length).place[0],
+                arc_length,
+                depth: grid.at(&worn.depth[body], arc_length)[0],
+            }
+        };
+        (0..grid.cells).map(place).collect()
+    });
+    ProfileDepths { wheel, rail }
+}
+
+/// Profiles of wheel and rail as they are worn; the rail's is upright. Their origins have moved with the surface ([`Profile::worn_by`]).
+///
+/// # Errors
+/// A profile that is worn beyond its radius of curvature.
+pub fn profiles(operators: &SurfaceOperators, worn: &ProfileWear) -> Result<[Profile; 2]> {
+    let of = |body: usize| {
+        if worn.depth[body].is_empty() {
+            return Ok(operators.profiles[body].clone());
+        }
+        let profile = operators.profiles[body].worn_by_cells(&operators.grids[body], &worn.depth[body]);
+        profile.map_err(Error::Profile)
+    };
+    Ok([of(WHEEL)?, of(RAIL)?])
+}
+
+/// Cells from the first to the last whose values differ.
+fn differing(one: &[f64], other: &[f64]) -> Option<Range<usize>> {
+    let differ = |(a, b): (&f64, &f64)| a != b;
+    let first = one.iter().zip(other).position(differ)?;
+    let last = one.iter().zip(other).rposition(differ)?;
+    Some(first..last + 1)
+}
+
+fn worn_away(operators: &SurfaceOperators, body: usize, depth: f64, arc: f64) -> Error {
+    Error::WornAway {
+        body: NAMES[body],
+        depth,
+        position: operators.profiles[body].at(arc).place[0],
+    }
+}
