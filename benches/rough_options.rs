@@ -256,13 +256,13 @@ fn compare(contact: &str, options: &[Setting]) {
 fn main() {
     let track = track::track();
     let default = Parameters::default();
-    for (nodes, strips) in [(10, 7), (24, 15), (default.patch_nodes, default.patch_strips)] {
-        let patch = braking::patch_parameters(nodes, strips);
-        compare(&format!("{nodes} x {strips}"), &options(&patch, &track));
-    }
     for (name, displacement) in track::PROFILES {
         let inputs = track::on_profiles(&track, displacement);
         compare(&format!("profiles, {name}"), &wear_of_profiles(&default, &inputs));
+    }
+    for (nodes, strips) in [(10, 7), (24, 15), (default.patch_nodes, default.patch_strips)] {
+        let patch = braking::patch_parameters(nodes, strips);
+        compare(&format!("{nodes} x {strips}"), &options(&patch, &track));
     }
     let line = braking::parameters(default.contact_nodes);
     compare("line", &options(&line, &track::straight(&track)));

@@ -314,7 +314,7 @@ class Access:
             )
 
     def worn_profiles(self) -> WornProfiles:
-        """Profiles of wheel and rail as they are worn now, to be looked at, measured and written: FMI 3.0 alone has them.
+        """Profiles of wheel and rail as they are worn now, to be measured and written: FMI 3.0 alone has them.
 
         Raises
         ------

@@ -306,9 +306,11 @@ fn a_profile_that_is_worn_away_is_refused_with_its_place() {
     let mut run = Simulation::new(&parameters, &inputs).unwrap();
     run.step(&inputs, 1e-6).unwrap();
     let change = run.state.convergence.profile_change;
+    // That of a cell's mean, which the spline smooths.
+    let depth = largest(&run.profile_wear().unwrap().wheel);
     assert!(
-        change > 1e-6 && change == largest(&run.profile_wear().unwrap().wheel),
-        "{change}"
+        change > 1e-6 && (0.9..1.3).contains(&(change / depth)),
+        "{change} {depth}"
     );
     let refused = (0..5).find_map(|_| run.step(&inputs, 1e-3).err()).unwrap().to_string();
     assert!(
