@@ -23,7 +23,7 @@ PROFILES = {
     "rail_profile_wear": True,
     "rail_wear_length": 3.0,
     "wheel_wear_coefficient": 1e-12,
-    "wear_acceleration": 400.0,
+    "wear_acceleration": 300.0,
     "profile_wear_points": 800,
     "vehicle_speed": 20.0,
     "wheel_speed": 20.1 / 0.46,
