@@ -200,7 +200,7 @@ fn holds_first(problem: &SurfaceProblem, search: &Search, now: &SurfaceFields) -
     let Some((point, along)) = search.first() else {
         return true;
     };
-    let first = [along, problem.operators.scan[point].0];
+    let first = [along, problem.operators.bodies.scan[point].0];
     let sizes = &problem.operators.sizes;
     let mut windows = now.used();
     windows.any(|(_, place)| place.region(&sizes.grid(place.length, place.breadth)).holds(first))
