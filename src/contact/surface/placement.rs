@@ -65,7 +65,7 @@ pub fn place(
     }
     let wanted = merged(&operators.sizes, &solvers.wanted);
     let mut own = assign(problem, &wanted.0[..wanted.1], now);
-    if approach > 0.0 && !holds_first(problem, &solvers.search, now) {
+    if approach > 0.0 && !holds_first(problem, solvers, now) {
         // Of contacts far apart that were taken for one, a window may have left out the one that carries.
         want_overlaps(problem, approach, solvers);
         let wanted = merged(&operators.sizes, &solvers.wanted);
@@ -196,8 +196,8 @@ fn want_overlaps(problem: &SurfaceProblem, approach: f64, solvers: &mut SurfaceS
 }
 
 /// Whether a window holds the place where the bodies touch first.
-fn holds_first(problem: &SurfaceProblem, search: &Search, now: &SurfaceFields) -> bool {
-    let Some((point, along)) = search.first() else {
+fn holds_first(problem: &SurfaceProblem, solvers: &SurfaceSolvers, now: &SurfaceFields) -> bool {
+    let Some((point, along)) = solvers.search.first() else {
         return true;
     };
     let first = [along, problem.operators.bodies.scan[point].0];
