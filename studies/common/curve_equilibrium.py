@@ -13,19 +13,14 @@ line of this is shared with the bodies in Exudyn, but for the kinematics of a wh
 import numpy as np
 from curve_track import motion, turning
 from curve_vehicle import (
-    ALONG,
     AXLES,
     BODY,
-    BODY_HEIGHT,
     GRAVITY,
-    INERTIA,
-    MASS,
     OF_WHEEL,
-    RAIL_STIFFNESS,
-    SECONDARY_HEIGHT,
     SHOWN,
     SIDES,
     SPEED,
+    VEHICLE,
     Wheel,
     guidance,
     over_rail,
@@ -33,7 +28,6 @@ from curve_vehicle import (
     standing,
     turn,
 )
-from helpers import WHEEL_RADIUS
 
 LONG, SETTLING = 0.5, 3  # s, steps: the rail has passed through the windows many times
 # Of a coordinate: a difference to differentiate by, and the largest change in an iteration.
@@ -48,19 +42,21 @@ PULL_UNIT = 1e4  # N
 class Equilibrium:
     """Unknowns, residual and Newton's method, at a place of a track whose curvature is constant around it."""
 
-    def __init__(self, track, place, speed=SPEED, **parameters):
+    def __init__(self, track, place, speed=SPEED, vehicle=VEHICLE, **parameters):
         """Units of four wheels, and bodies that stand as on straight track."""
-        self.track, self.place, self.speed = track, place, speed
-        self.springs = springs()
+        self.track, self.place, self.speed, self.vehicle = track, place, speed, vehicle
+        self.springs, self.mass, self.inertia = springs(vehicle), vehicle.mass, vehicle.inertia
         self.wheels = [[Wheel(side, **parameters) for side in SIDES] for _ in AXLES]
         x, y, self.heading, self.curvature, _ = track.at(place)
         self.middle = np.array([x, y, 0.0])
         self.turning = np.array([0.0, 0.0, speed * self.curvature])
-        self.base = standing(track, place)
+        self.base = standing(track, place, vehicle)
+        # Displacements of each rail across and up, [axle][side], which the track has under this wheel.
+        self.uneven = np.zeros((2, 2, 2))
         # Bodies' displacements, with the wheels' speeds in place of their turns; rails.
         self.unknown = np.zeros(UNKNOWN_BODIES + RAILS)
         for axle in range(len(AXLES)):
-            self.unknown[6 * axle + 5] = speed / WHEEL_RADIUS
+            self.unknown[6 * axle + 5] = speed / vehicle.wheel_radius
 
     def start_from(self, other):
         """Take over another equilibrium's unknowns, those of a curve that is much the same."""
@@ -101,9 +97,11 @@ class Equilibrium:
         for axle, spin in enumerate(spins):
             rates = self.rates(coordinates[axle])
             rates[5] += spin
-            _, seen = motion(self.track, coordinates[axle], rates, self.place + ALONG[axle])
+            place = self.place + self.vehicle.along[axle]
+            _, seen = motion(self.track, coordinates[axle], rates, place, self.vehicle.wheel_radius)
             self.motions.append(seen)
-            told.append([over_rail(seen, rail, (0.0, 0.0), (0.0, 0.0)) for rail in rails[axle]])
+            pairs = zip(rails[axle], self.uneven[axle], strict=True)
+            told.append([over_rail(seen, rail, (0.0, 0.0), uneven) for rail, uneven in pairs])
         return np.array(told)
 
     def residual(self, unknown, forces):
@@ -112,7 +110,7 @@ class Equilibrium:
         rails = unknown[UNKNOWN_BODIES:].reshape(2, 2, 2)
         turns = [turn(row[3:]) for row in coordinates]
         force, moment = np.zeros((4, 3)), np.zeros((4, 3))
-        force[:, 2] = -GRAVITY * MASS
+        force[:, 2] = -GRAVITY * self.mass
         for spring in self.springs:
             arms = [turns[spring.first] @ spring.at_first, turns[spring.second] @ spring.at_second]
             ends = [coordinates[body, :3] + arm for body, arm in zip((spring.first, spring.second), arms, strict=True)]
@@ -126,11 +124,11 @@ class Equilibrium:
                 force[body] += sign * pull
                 moment[body] += np.cross(arm, sign * pull)
         place = self.track.place_of(*coordinates[BODY, :2], self.place)
-        moment[BODY] += guidance(self.track, turns[BODY], self.turning, self.speed, place)
+        moment[BODY] += guidance(self.track, turns[BODY], self.turning, self.speed, place, self.vehicle)
         forward = self.velocity(self.middle) / self.speed
         held = PULL_UNIT * unknown[PULL] * forward
         force[BODY] += held
-        moment[BODY] += np.cross(turns[BODY] @ [0.0, 0.0, SECONDARY_HEIGHT - BODY_HEIGHT], held)
+        moment[BODY] += np.cross(turns[BODY] @ [0.0, 0.0, self.vehicle.secondary_height - self.vehicle.body_height], held)
         for axle in range(2):
             where = self.track.place_of(*coordinates[axle, :2], self.place)
             _, axes = self.track.axes(where)
@@ -139,14 +137,14 @@ class Equilibrium:
             moment[axle] += axes @ both[3:]
         # What the curve takes.
         accelerations = np.cross(self.turning, self.velocity(coordinates[:, :3]))
-        force -= MASS[:, None] * accelerations
+        force -= self.mass[:, None] * accelerations
         for body in range(4):
             angular = self.turning.copy()
             if body < 2:
                 angular = angular + spins[body] * turns[body][:, 2]
-            momentum = turns[body] @ (INERTIA[body] * (turns[body].T @ angular))
+            momentum = turns[body] @ (self.inertia[body] * (turns[body].T @ angular))
             moment[body] -= np.cross(self.turning, momentum)
-        on_rails = -forces[:, :, 1:3] - np.array(RAIL_STIFFNESS) * rails
+        on_rails = -forces[:, :, 1:3] - np.array(self.vehicle.rail_stiffness) * rails
         return np.concatenate([np.hstack([force, moment]).ravel(), on_rails.ravel()])
 
     # ---- Newton ------------------------------------------------------------------------------------------------------
@@ -159,7 +157,8 @@ class Equilibrium:
         for axle, pair in enumerate(self.wheels):
             for side, wheel in enumerate(pair):
                 for _ in range(SETTLING):
-                    forces[axle, side] = wheel.roll(self.motions[axle], rails[axle, side], (0, 0), (0, 0), LONG)
+                    rail, uneven = rails[axle, side], self.uneven[axle, side]
+                    forces[axle, side] = wheel.roll(self.motions[axle], rail, (0, 0), uneven, LONG)
                 if slopes:
                     derivatives[axle, side] = wheel.slopes()
         return told, forces, derivatives

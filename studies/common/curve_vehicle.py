@@ -1,9 +1,9 @@
-"""What rolls in studies/curve: masses, springs, and the wheels, whose contact is the component's.
+"""What rolls in studies/curve and studies/mileage: masses, springs, and the wheels, whose contact is the component's.
 
-A bogie with two wheelsets and half a passenger car's body on it, after vehicle 1 of the Manchester benchmarks. Bodies
-are numbered: leading wheelset, trailing wheelset, frame, body. Each has x, y, z of its centre and three angles in
-space: it is turned about x, then about the y and then about the z so turned. A wheelset's z is its axle, to the left
-(curve_track.py).
+A bogie with two wheelsets and half a passenger car's body on it, by default after vehicle 1 of the Manchester
+benchmarks. Bodies are numbered: leading wheelset, trailing wheelset, frame, body. Each has x, y, z of its centre and
+three angles in space: it is turned about x, then about the y and then about the z so turned. A wheelset's z is its
+axle, to the left (curve_track.py).
 """
 
 from dataclasses import dataclass
@@ -20,23 +20,73 @@ AXLES = ("leading", "trailing")
 SIDES = {"left": 1, "right": -1}
 WHEELS = [(axle, side) for axle in AXLES for side in SIDES]
 
-MASS = np.array([1813.0, 1813.0, 2615.0, 16000.0])  # kg
-# About x, y and z of each body; a wheelset's z is its axle.
-INERTIA = np.array([[1120.0, 1120.0, 112.0]] * 2 + [[1722.0, 1476.0, 3067.0], [28400.0, 985000.0, 985000.0]])  # kg.m2
-HALF_WHEELBASE, HALF_SPRING_BASE, HALF_SECONDARY_BASE = 1.28, 1.0, 1.0  # m
-ALONG = (HALF_WHEELBASE, -HALF_WHEELBASE, 0.0, 0.0)  # of the bodies from the bogie's middle
-FRAME_HEIGHT, SECONDARY_HEIGHT, BODY_HEIGHT = 0.6, 0.9, 1.8  # m above the rails
-# Of a spring, one at each axle's end and one on each side of the frame: along, across, vertically [N/m], [N.s/m].
-PRIMARY = ((3.14e7, 3.88e6, 1.22e6), (1.5e4, 2.0e4, 1.0e4))
-SECONDARY = ((1.6e5, 1.6e5, 4.3e5), (3.0e4, 4.0e4, 5.0e4))
-# A rail under a wheel, which yields across the track and vertically.
-RAIL_MASS, RAIL_STIFFNESS, RAIL_DAMPING = 300.0, (4.3e7, 7.0e7), (1.5e5, 1.5e5)  # kg, N/m, N.s/m
-# The vehicle's other bogie, this far behind, holds the body's heading and its pitch; the train holds its speed.
-PIVOTS, GUIDE, GUIDE_DAMPING = 19.0, 4.0e7, 5.0e6  # m, N.m/rad, N.m.s/rad
-HOLD = 1.0e6  # N/(m/s)
 
-WHEEL_LOAD = GRAVITY * MASS.sum() / 4.0
-CARRIED = (0.25 * GRAVITY * (MASS[BODY] + MASS[FRAME]), 0.5 * GRAVITY * MASS[BODY])  # N, by a spring
+@dataclass(frozen=True)
+class Vehicle:
+    """A bogie with half a car on it. Of springs and rails: along, across, vertically, or across and vertically."""
+
+    wheel_radius: float = WHEEL_RADIUS  # m
+    wheelset_mass: float = 1813.0  # kg
+    frame_mass: float = 2615.0
+    body_mass: float = 16000.0  # on this bogie
+    wheelset_inertia: tuple = (1120.0, 1120.0, 112.0)  # kg.m2, the last about the axle
+    frame_inertia: tuple = (1722.0, 1476.0, 3067.0)  # about x, y, z
+    body_inertia: tuple = (28400.0, 985000.0, 985000.0)
+    half_wheelbase: float = 1.28  # m
+    half_spring_base: float = 1.0
+    half_secondary_base: float = 1.0
+    frame_height: float = 0.6  # m above the rails
+    secondary_height: float = 0.9
+    body_height: float = 1.8
+    # Of a spring, one at each axle's end and one on each side of the frame.
+    primary_stiffness: tuple = (3.14e7, 3.88e6, 1.22e6)  # N/m
+    primary_damping: tuple = (1.5e4, 2.0e4, 1.0e4)  # N.s/m
+    secondary_stiffness: tuple = (1.6e5, 1.6e5, 4.3e5)
+    secondary_damping: tuple = (3.0e4, 4.0e4, 5.0e4)
+    # A rail under a wheel, which yields across the track and vertically.
+    rail_stiffness: tuple = (4.3e7, 7.0e7)  # N/m
+    # The vehicle's other bogie, this far behind, holds the body's heading and its pitch.
+    pivots: float = 19.0  # m
+    guide_stiffness: float = 4.0e7  # N.m/rad
+    guide_damping: float = 5.0e6  # N.m.s/rad
+
+    @property
+    def mass(self):
+        """Masses of the bodies [kg]."""
+        return np.array([self.wheelset_mass, self.wheelset_mass, self.frame_mass, self.body_mass])
+
+    @property
+    def inertia(self):
+        """Moments of inertia of the bodies about their x, y and z, a row each [kg.m2]."""
+        return np.array([self.wheelset_inertia, self.wheelset_inertia, self.frame_inertia, self.body_inertia])
+
+    @property
+    def along(self):
+        """Places of the bodies along the track from the bogie's middle [m]."""
+        return (self.half_wheelbase, -self.half_wheelbase, 0.0, 0.0)
+
+    @property
+    def wheel_load(self):
+        """Static load of a wheel [N]."""
+        return GRAVITY * self.mass.sum() / 4.0
+
+    @property
+    def carried(self):
+        """Static load of a primary and of a secondary spring [N]."""
+        return (
+            0.25 * GRAVITY * (self.body_mass + self.frame_mass),
+            0.5 * GRAVITY * self.body_mass,
+        )
+
+
+VEHICLE = Vehicle()
+# As studies/curve has it in Exudyn.
+MASS, INERTIA, ALONG, WHEEL_LOAD = VEHICLE.mass, VEHICLE.inertia, VEHICLE.along, VEHICLE.wheel_load
+HALF_WHEELBASE, BODY_HEIGHT, SECONDARY_HEIGHT = VEHICLE.half_wheelbase, VEHICLE.body_height, VEHICLE.secondary_height
+RAIL_STIFFNESS = VEHICLE.rail_stiffness
+RAIL_MASS, RAIL_DAMPING = 300.0, (1.5e5, 1.5e5)  # kg, N.s/m
+# The train holds the bogie's speed.
+HOLD = 1.0e6  # N/(m/s)
 
 CONTACT = {"contact_model": "profiles", "slip_source": "vehicle_speed", "control": "height", "largest_load": 250e3}
 # Coarser than by default, which moves the forces by 0.2 %: a step takes half the time.
@@ -63,26 +113,29 @@ class Spring:
     carried: float
 
 
-def springs():
+def springs(vehicle=VEHICLE):
     """Primary springs at the axles' ends, secondary springs on both sides."""
     made = []
-    for axle, along in ((LEADING, HALF_WHEELBASE), (TRAILING, -HALF_WHEELBASE)):
+    axle_below, body_above = vehicle.wheel_radius - vehicle.frame_height, vehicle.secondary_height - vehicle.body_height
+    primary = (vehicle.primary_stiffness, vehicle.primary_damping)
+    secondary = (vehicle.secondary_stiffness, vehicle.secondary_damping)
+    for axle, along in ((LEADING, vehicle.half_wheelbase), (TRAILING, -vehicle.half_wheelbase)):
         for side in SIDES.values():
-            across = side * HALF_SPRING_BASE
-            frame = (along, across, WHEEL_RADIUS - FRAME_HEIGHT)
-            made.append(Spring(FRAME, frame, axle, (0.0, 0.0, across), *PRIMARY, -CARRIED[0]))
+            across = side * vehicle.half_spring_base
+            frame = (along, across, axle_below)
+            made.append(Spring(FRAME, frame, axle, (0.0, 0.0, across), *primary, -vehicle.carried[0]))
     for side in SIDES.values():
-        across = side * HALF_SECONDARY_BASE
-        frame, body = (0.0, across, SECONDARY_HEIGHT - FRAME_HEIGHT), (0.0, across, SECONDARY_HEIGHT - BODY_HEIGHT)
-        made.append(Spring(FRAME, frame, BODY, body, *SECONDARY, CARRIED[1]))
+        across = side * vehicle.half_secondary_base
+        frame, body = (0.0, across, vehicle.secondary_height - vehicle.frame_height), (0.0, across, body_above)
+        made.append(Spring(FRAME, frame, BODY, body, *secondary, vehicle.carried[1]))
     return made
 
 
-def standing(track, place):
+def standing(track, place, vehicle=VEHICLE):
     """Coordinates of all bodies, a row each, where they stand on the track as on their own, about a place."""
     rows = np.zeros((4, 6))
-    heights = (WHEEL_RADIUS, WHEEL_RADIUS, FRAME_HEIGHT, BODY_HEIGHT)
-    for body, (along, height) in enumerate(zip(ALONG, heights, strict=True)):
+    heights = (vehicle.wheel_radius, vehicle.wheel_radius, vehicle.frame_height, vehicle.body_height)
+    for body, (along, height) in enumerate(zip(vehicle.along, heights, strict=True)):
         middle, axes = track.axes(place + along)
         ahead, left, up = axes.T
         rows[body, :3] = middle + height * up
@@ -93,9 +146,9 @@ def standing(track, place):
     return rows
 
 
-def chord(track, place):
+def chord(track, place, vehicle=VEHICLE):
     """Heading of the line between the body's pivots."""
-    ahead, behind = track.at(place), track.at(place - PIVOTS)
+    ahead, behind = track.at(place), track.at(place - vehicle.pivots)
     return atan2(ahead[1] - behind[1], ahead[0] - behind[0])
 
 
@@ -111,14 +164,15 @@ def turn(angles):
     )
 
 
-def guidance(track, turned, angular_velocity, speed, place):
+def guidance(track, turned, angular_velocity, speed, place, vehicle=VEHICLE):
     """Moment by which the rest of the vehicle holds the body in its heading and level [N.m], in space."""
     forward = turned[:, 0]
     heading = atan2(forward[1], forward[0])
     left = np.array([-np.sin(heading), np.cos(heading), 0.0])
-    turning = speed * (chord(track, place + 0.05) - chord(track, place - 0.05)) / 0.1
-    about_z = -GUIDE * (heading - chord(track, place)) - GUIDE_DAMPING * (angular_velocity[2] - turning)
-    about_left = GUIDE * np.arcsin(forward[2]) - GUIDE_DAMPING * angular_velocity @ left
+    turning = speed * (chord(track, place + 0.05, vehicle) - chord(track, place - 0.05, vehicle)) / 0.1
+    stiffness, damping = vehicle.guide_stiffness, vehicle.guide_damping
+    about_z = -stiffness * (heading - chord(track, place, vehicle)) - damping * (angular_velocity[2] - turning)
+    about_left = stiffness * np.arcsin(forward[2]) - damping * angular_velocity @ left
     return about_left * left + np.array([0.0, 0.0, about_z])
 
 

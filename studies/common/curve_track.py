@@ -1,4 +1,4 @@
-"""The track of studies/curve, straight, transition, curve, transition, and how a wheelset stands and moves on it.
+"""A track, straight, transition, curve, transition, and how a wheelset stands and moves on it.
 
 The world has x and y level and z upward. A place on the track is the length s along its middle, where it has a heading
 ψ (anticlockwise from above), a curvature κ = dψ/ds, positive to the left, and a cant φ, positive where the left rail is
@@ -157,7 +157,7 @@ class Unevenness:
         return tuple(table[k] + part * (table[k + 1] - table[k]) for table in self.tables[side])
 
 
-def motion(track, coordinates, rates, guess):
+def motion(track, coordinates, rates, guess, radius=WHEEL_RADIUS):
     """Return the place of a wheelset and what its wheels are told, over rails in their places.
 
     Coordinates are x, y, z of its centre and three angles (α, β, γ): turned by α about x, by β about the y so turned,
@@ -192,7 +192,7 @@ def motion(track, coordinates, rates, guess):
     wheel_speed = (cy * w_left - sy * w_along) / flat
     yaw_rate = w_up - wheel_speed * up
     return place, (
-        lateral, vertical - WHEEL_RADIUS, roll, yaw, v_along, v_left, v_up, roll_rate, yaw_rate, wheel_speed,
+        lateral, vertical - radius, roll, yaw, v_along, v_left, v_up, roll_rate, yaw_rate, wheel_speed,
     )  # fmt: skip
 
 
