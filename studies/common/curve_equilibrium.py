@@ -46,7 +46,7 @@ class Equilibrium:
         """Units of four wheels, and bodies that stand as on straight track."""
         self.track, self.place, self.speed, self.vehicle = track, place, speed, vehicle
         self.springs, self.mass, self.inertia = springs(vehicle), vehicle.mass, vehicle.inertia
-        self.wheels = [[Wheel(side, **parameters) for side in SIDES] for _ in AXLES]
+        self.wheels = self.made_wheels(**parameters)
         x, y, self.heading, self.curvature, _ = track.at(place)
         self.middle = np.array([x, y, 0.0])
         self.turning = np.array([0.0, 0.0, speed * self.curvature])
@@ -57,6 +57,10 @@ class Equilibrium:
         self.unknown = np.zeros(UNKNOWN_BODIES + RAILS)
         for axle in range(len(AXLES)):
             self.unknown[6 * axle + 5] = speed / vehicle.wheel_radius
+
+    def made_wheels(self, **parameters):
+        """Units of the wheels, [axle][side]."""
+        return [[Wheel(side, **parameters) for side in SIDES] for _ in AXLES]
 
     def start_from(self, other):
         """Take over another equilibrium's unknowns, those of a curve that is much the same."""
@@ -172,6 +176,20 @@ class Equilibrium:
             columns.append((function(self.unknown + change) - function(self.unknown - change)) / (2.0 * DIFFERENCE))
         return np.stack(columns, axis=-1)
 
+    def parts(self, forces):
+        """What derivatives by the unknowns are made of beside the contacts' own: see matrix()."""
+        unit = np.eye(4 * 6).reshape(-1, 2, 2, 6)
+        zero = self.residual(self.unknown, np.zeros((2, 2, 6)))
+        through = np.stack([self.residual(self.unknown, one) - zero for one in unit], axis=-1)
+        suspension = self.differences(lambda unknown: self.residual(unknown, forces))
+        return suspension, through, self.differences(self.told)
+
+    def matrix(self, derivatives, parts):
+        """Derivatives of the residual: the suspension's, and what passes through forces that hang on what is told."""
+        suspension, through, moved = parts
+        of_forces = np.einsum("asfi,asiu->asfu", derivatives, moved)
+        return suspension + through @ of_forces.reshape(4 * 6, -1)
+
     def solve(self, tolerance=1e-3, most=60, report=None):
         """Newton's method, with bounded changes, until no force or moment is above the tolerance [N], [N.m]."""
         self.history = []
@@ -184,13 +202,7 @@ class Equilibrium:
                 report(self)
             if self.history[-1] < tolerance:
                 return self
-            matrix = self.differences(lambda unknown: self.residual(unknown, forces))  # noqa: B023
-            moved = self.differences(self.told)
-            of_forces = np.einsum("asfi,asiu->asfu", derivatives, moved)
-            unit = np.eye(4 * 6).reshape(-1, 2, 2, 6)
-            zero = self.residual(self.unknown, np.zeros((2, 2, 6)))
-            through = np.stack([self.residual(self.unknown, one) - zero for one in unit], axis=-1)
-            matrix += through @ of_forces.reshape(4 * 6, -1)
+            matrix = self.matrix(derivatives, self.parts(forces))
             change = np.linalg.solve(matrix, -left)
             # Shorter where a wheelset would move far: derivatives hold where the contact stays the same.
             wheelsets = np.abs(change[:12].reshape(2, 6)) / MOST

@@ -1,8 +1,7 @@
 """What the jobs on Dask share: workers, the component's way to them, and results that outlive a kill.
 
 A job is a list of keys. Each is computed by a worker and is then at once a Parquet file, whole or not there, with a
-stamp of all that it depends on; what is there with the right stamp is not computed again. Used by sweep.py and
-maintenance.py.
+stamp of all that it depends on; what is there with the right stamp is not computed again.
 """
 
 import hashlib
@@ -54,15 +53,15 @@ def is_done(path, stamp):
     return path.exists() and pq.read_schema(path).metadata.get(b"stamp") == stamp
 
 
-def write_table(path, stamp, columns):
-    """Write columns, each (unit or None for text, values); the file is there as a whole or not at all."""
+def write_table(path, stamp, columns, notes=None):
+    """Write columns, each (unit or None for text, values), and notes by name; the file is there whole or not at all."""
     fields, arrays = [], []
     for name, (unit, values) in columns.items():
         kind = pa.string() if unit is None else pa.float64()
         fields.append(pa.field(name, kind, metadata=None if unit is None else {"unit": unit}))
         arrays.append(pa.array(values, kind))
     unfinished = path.with_suffix(".unfinished")
-    pq.write_table(pa.Table.from_arrays(arrays, schema=pa.schema(fields, metadata={"stamp": stamp})), unfinished)
+    pq.write_table(pa.Table.from_arrays(arrays, schema=pa.schema(fields, metadata={"stamp": stamp} | (notes or {}))), unfinished)
     unfinished.replace(path)
 
 

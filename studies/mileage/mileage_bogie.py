@@ -1,0 +1,322 @@
+"""The bogie of studies/mileage on a worker: four worn wheels in steady curving, and what wears them there.
+
+Steady curving is that of curve_equilibrium.py, by Newton's method with the units' own derivatives, and no time is
+stepped. Two things are added to it.
+
+A wheel has a profile of its own, and the radius that its running circle has left.
+
+Irregularities that are short against the frame's way of following them leave the frame where it is: the rails under a
+wheelset lie off their places by d, and the wheelset finds its own equilibrium between its springs and its contacts.
+States are sampled so, about the equilibrium of the curve, at quantiles of a normal distribution of d.
+"""
+
+import hashlib
+import tempfile
+from dataclasses import dataclass, replace
+from functools import cache
+from pathlib import Path
+from statistics import NormalDist
+
+import numpy as np
+from curve_equilibrium import MOST, RAILS, UNKNOWN_BODIES, Equilibrium
+from curve_track import LATERAL, Layout, Track
+from curve_vehicle import FRAME, SIDES, WHEELS, Vehicle, Wheel
+from dask_runs import local_file
+from helpers import wheelrail
+
+# A place on straight track, one in the curve.
+ON_STRAIGHT, IN_CURVE = 6.0, 100.0  # m
+# Unknowns of the wheelsets and of the rails: what moves where the frame stays.
+OF_WHEELSETS = np.r_[0 : 6 * FRAME, UNKNOWN_BODIES : UNKNOWN_BODIES + RAILS]
+HELD = np.r_[6 * FRAME : UNKNOWN_BODIES]
+# Largest force or moment that is left. Where contacts jump between places, or windows change their strips, forces have
+# steps, and Newton's method may find nothing better than such a step: it is taken, if it is not too large, and counted.
+TOLERANCE, ACCEPTED, MOST_ITERATIONS = 1.0, 3000.0, 45  # N, N.m
+# The suspension's derivatives hardly change: they are renewed after so many iterations.
+RENEWED = 12
+# Below this residual, one that does not fall by a tenth makes the changes shorter, and ends it after some tries.
+NEAR, TRIES = 1e4, 6  # N, N.m
+OFFSET_MOST = 5e-4  # m: by which rails are moved at once
+DEBUG=False
+# What each wheel is asked in each state, beside Y and Q.
+ASKED = ("contacts", "wear_number", "peak_temperature", "contact.peak_pressure[1]", "contact.wheel_position[1]")
+
+
+@dataclass(frozen=True)
+class Settings:
+    """What all tasks of a run have in common: the vehicle, parameters of the units, how many states are sampled."""
+
+    vehicle: Vehicle
+    parameters: tuple  # pairs of name and value
+    samples: int = 5
+    samples_straight: int = 9
+
+
+@dataclass(frozen=True)
+class WornWheel:
+    """A wheel as a worker is given it.
+
+    Profile as a text in SIMPACK's format, depth at its running circle, number of the first cell, ends of the cells on
+    the worn profile, across.
+    """
+
+    profile: str
+    depth: float  # m
+    first: int
+    ends: tuple  # m
+
+
+def profile_file(text):
+    """The file of a profile on this machine."""
+    path = Path(tempfile.gettempdir()) / f"{hashlib.sha256(text.encode()).hexdigest()}.prw"
+    if not path.exists():
+        # Another process on the same machine may be doing the same.
+        with tempfile.NamedTemporaryFile("w", dir=path.parent, delete=False, encoding="utf-8") as own:
+            own.write(text)
+        Path(own.name).replace(path)
+    return path
+
+
+@cache
+def track_of(radius, cant):
+    """The track of a class: straight, or a transition and a curve."""
+    return Track(Layout() if np.isinf(radius) else Layout(radius=radius, cant=cant))
+
+
+def offsets(count, deviation):
+    """Lateral displacements of the track under both wheelsets, as often one as the other: [sample][axle].
+
+    Each wheelset has all quantiles, the trailing one in another order.
+    """
+    quantiles = np.array([NormalDist().inv_cdf((k + 0.5) / count) for k in range(count)])
+    # The order of the trailing one is so that swapping the signs of both gives the same pairs.
+    order = [(2 * k + count // 2 - (count - 1)) % count if count % 2 else count - 1 - k for k in range(count)]
+    return deviation * np.column_stack([quantiles, quantiles[order]])
+
+
+class WornBogie(Equilibrium):
+    """Steady curving on worn wheels in a class of the line."""
+
+    def __init__(self, fmu, settings, wheels, curve, place):
+        """Units of the wheels, leading left and right, trailing left and right."""
+        self.worn, self.fmu = wheels, fmu
+        self.free, self.kept, self.age, self.ahead = slice(None), None, 0, np.zeros(2)
+        parameters = dict(settings.parameters) | {
+            "friction_cold": curve.friction,
+            "gauge_face_friction_scale": curve.gauge_face_friction,
+        }
+        track = track_of(curve.radius, curve.cant)
+        super().__init__(track, place, curve.speed, settings.vehicle, **parameters)
+        # A wheel whose radius has become less stands as if its rail were lower.
+        self.own = np.array([(0.0, -wheel.depth) for wheel in wheels]).reshape(2, 2, 2)
+        self.uneven = self.own.copy()
+
+    def made_wheels(self, **parameters):
+        """Units of the wheels, [axle][side], with profiles and radii of their own."""
+        made = []
+        for (_, side), worn in zip(WHEELS, self.worn, strict=True):
+            radius = self.vehicle.wheel_radius - worn.depth
+            path = str(profile_file(worn.profile))
+            made.append(Wheel(side, self.fmu, wheel_profile=path, wheel_radius=radius, **parameters))
+        return [made[:2], made[2:]]
+
+    def displaced(self, offsets, unknown):
+        """Put the rails under the wheelsets off their places, from an equilibrium whose frame and body stay."""
+        self.uneven, self.unknown = self.own.copy(), unknown.copy()
+        self.free, self.ahead = OF_WHEELSETS, np.array(offsets)
+
+    def parts(self, forces):
+        """Those of the equilibrium, which are kept for some iterations."""
+        if self.kept is None or self.age >= RENEWED:
+            self.kept, self.age = super().parts(forces), 0
+        self.age += 1
+        return self.kept
+
+    def settle(self):
+        """Newton's method; return the largest force that is left, and the iterations.
+
+        Rails that are to lie off their places move there during the first iterations, each of which follows them by
+        its derivatives.
+        """
+        best, at, since, share_of_change = np.inf, self.unknown, 0, 1.0
+        for iteration in range(1, MOST_ITERATIONS + 1):
+            _, forces, derivatives = self.contacts(slopes=True)
+            left = self.residual(self.unknown, forces)[self.free]
+            size, there = np.abs(left).max(), not self.ahead.any()
+            if there and size < 0.9 * best:
+                best, at, since, self.forces = size, self.unknown, 0, forces
+            elif best < NEAR:
+                # It goes to and fro over a step of the forces.
+                since, share_of_change = since + 1, 0.4
+            if since > TRIES:
+                break
+            if there and size < TOLERANCE:
+                return size, iteration
+            parts = self.parts(forces)
+            share = min(1.0, OFFSET_MOST / np.abs(self.ahead).max()) if not there else 0.0
+            moved = share * self.ahead
+            # The rails under a wheelset move: over them it moves the other way.
+            by_rails = -np.einsum("asf,a->asf", derivatives[..., LATERAL], moved).ravel()
+            left = left + (parts[1] @ by_rails)[self.free]
+            change = np.zeros(len(self.unknown))
+            matrix = self.matrix(derivatives, parts)
+            change[self.free] = np.linalg.solve(matrix[self.free][:, self.free], -left)
+            # Shorter where a wheelset would move far: derivatives hold where the contact stays the same.
+            most = np.abs(change[:12].reshape(2, 6)) / MOST
+            self.unknown = self.unknown + share_of_change * change / max(1.0, most.max())
+            self.uneven[:, :, 0] += moved[:, None]
+            self.ahead = self.ahead - moved if share < 1.0 else np.zeros(2)
+        self.unknown = at
+        self.contacts(slopes=False)
+        return best, iteration
+
+    def attempt(self):
+        """Newton's method as settle(), where an overloaded or derailed wheel counts as not found."""
+        try:
+            return self.settle()
+        except wheelrail.SimulationError:
+            return np.inf, MOST_ITERATIONS
+
+    def of_wheels(self):
+        """What tables have of each wheel in this state."""
+        found = []
+        for (axle, side), (_, side_name), wheel in zip(np.ndindex(2, 2), WHEELS, sum(self.wheels, []), strict=True):
+            _, left, up, *_ = self.forces[axle, side]
+            values = dict(zip(ASKED, wheel.get(*ASKED), strict=True))
+            found.append({"Y": -SIDES[side_name] * left, "Q": up} | values)
+        return found
+
+    def worn_off(self, number):
+        """Area of each cell of a wheel that wears off per distance [m]."""
+        y, depth = worn_in(sum(self.wheels, [])[number], self.speed)
+        total = np.concatenate([[0.0], np.cumsum(0.5 * (depth[1:] + depth[:-1]) * np.diff(y))])
+        return np.diff(np.interp(self.worn[number].ends, y, total))
+
+
+# ---- a task ---------------------------------------------------------------------------------------------------------
+
+
+class NoEquilibriumError(RuntimeError):
+    """Newton's method found no steady curving."""
+
+    def __init__(self, curve, offset, left):
+        """Say where, and what force is left [N]."""
+        super().__init__(
+            f"{curve.name}, {3.6 * curve.speed:.0f} km/h, cant {1e3 * curve.cant:.0f} mm, rails off by"
+            f" {1e3 * offset[0]:.1f} and {1e3 * offset[1]:.1f} mm: no equilibrium found, {left:.0f} N are left over"
+        )
+
+
+@dataclass(frozen=True)
+class Starts:
+    """Unknowns of a class's equilibrium and of its samples, and the depths at the running circles that these are of."""
+
+    unknowns: tuple
+    depths: tuple  # m
+
+    def for_wheels(self, number, wheels, radius):
+        """Unknowns of a state, for wheels that have worn on: the wheelsets sink, and turn faster."""
+        unknown = np.array(self.unknowns[number])
+        for axle in range(2):
+            was, now = (0.5 * sum(depths[2 * axle : 2 * axle + 2]) for depths in (self.depths, depths_of(wheels)))
+            unknown[6 * axle + 2] -= now - was
+            unknown[6 * axle + 5] *= (radius - was) / (radius - now)
+        return unknown
+
+
+def depths_of(wheels):
+    """Depths at the running circles."""
+    return tuple(wheel.depth for wheel in wheels)
+
+
+def in_equilibrium(fmu, settings, wheels, curve, starts):
+    """Return the bogie in steady curving, the force that is left and the iterations."""
+    place = IN_CURVE if np.isfinite(curve.radius) else ON_STRAIGHT
+    bogie = WornBogie(fmu, settings, wheels, curve, place)
+    if starts is not None:
+        bogie.unknown = starts.for_wheels(0, wheels, settings.vehicle.wheel_radius)
+        left, iterations = bogie.attempt()
+        if left < ACCEPTED:
+            return bogie, left, iterations
+    # From straight track, where the wheelsets are sunk a little deeper than rails and contacts ask for.
+    straight = replace(curve, radius=np.inf, cant=0.0)
+    running = WornBogie(fmu, settings, wheels, straight, ON_STRAIGHT)
+    for axle in range(2):
+        running.unknown[6 * axle + 2] = -1.1e-3 - 0.5 * sum(depths_of(wheels)[2 * axle : 2 * axle + 2])
+    running.unknown[UNKNOWN_BODIES:] = np.tile([0.0, -0.8e-3], 4)
+    _, before = running.attempt()
+    running.close()
+    bogie.unknown, bogie.kept = running.unknown, None
+    left, iterations = bogie.attempt()
+    if left > ACCEPTED:
+        raise NoEquilibriumError(curve, (0.0, 0.0), left)
+    return bogie, left, before + iterations
+
+
+def in_sample(bogie, settings, wheels, curve, offset, number, starts, middle):
+    """Bring the bogie, whose equilibrium's unknowns are given, into a sampled state; return what is left, iterations."""
+    if starts is not None:
+        bogie.displaced(offset, starts.for_wheels(number, wheels, settings.vehicle.wheel_radius))
+        # Frame and body are those of the equilibrium now, and the rails lie where they are to lie.
+        bogie.unknown[HELD] = middle[HELD]
+        bogie.uneven[:, :, 0], bogie.ahead = np.array(offset)[:, None], np.zeros(2)
+        left, iterations = bogie.attempt()
+        if left < ACCEPTED:
+            return left, iterations
+    bogie.displaced(offset, middle)
+    left, iterations = bogie.attempt()
+    if left > ACCEPTED:
+        raise NoEquilibriumError(curve, offset, left)
+    return left, iterations
+
+
+def worn_in(wheel, speed):
+    """Where a wheel wears in a state, across its profile, and the depth that it loses there per distance [1].
+
+    The short run is one step more of the steady state.
+    """
+    radius, count, volume, power = wheel.get("wheel_radius", "contacts", "wear_rate", "friction_power")
+    count = int(count)
+    y = np.arange(-0.06, 0.06, 1e-4)
+    depth = np.zeros(len(y))
+    for k in range(1, count + 1):
+        c, b, i, pw = wheel.get(*(f"contact.{n}[{k}]" for n in ("wheel_position", "breadth", "inclination", "friction_power")))
+        half = 0.5 * b * np.cos(i)
+        shape = np.sqrt(np.maximum(0.0, 1.0 - ((y - c) / half) ** 2))
+        shape *= np.cos(i) / (shape.sum() * 1e-4)
+        depth += volume / speed * pw / power / (2 * np.pi * radius) * shape
+    return y, depth
+
+
+def rates(component, digest, settings, wheels, curve, starts):
+    """Steady curving on worn wheels in a class of the line, sampled over the track's irregularity.
+
+    Parameters
+    ----------
+    starts
+        What was found on these wheels when they were less worn, or None.
+
+    Returns
+    -------
+    dict
+        area: of each wheel the area of each cell that wears off per distance [m], mean over the samples. rows: what
+        tables have, for each state and wheel. starts: those of the next step. left: the largest force that is left over
+        in a state [N]. iterations: all of Newton's method.
+    """
+    fmu = local_file(component, digest)
+    bogie, left, iterations = in_equilibrium(fmu, settings, wheels, curve, starts)
+    middle = bogie.unknown
+    unknowns, lefts, rows = [middle], [left], []
+    count = settings.samples if np.isfinite(curve.radius) else settings.samples_straight
+    areas = [np.zeros(len(wheel.ends) - 1) for wheel in wheels]
+    for sample, offset in enumerate(offsets(count, curve.irregularity)):
+        left, needed = in_sample(bogie, settings, wheels, curve, offset, 1 + sample, starts, middle)
+        unknowns.append(bogie.unknown)
+        lefts.append(left)
+        iterations += needed
+        for number, (area, row) in enumerate(zip(areas, bogie.of_wheels(), strict=True)):
+            area += bogie.worn_off(number) / count
+            rows.append({"sample": sample, "wheel": number, "left": left} | row)
+    bogie.close()
+    found = Starts(tuple(tuple(unknown.tolist()) for unknown in unknowns), depths_of(wheels))
+    return {"area": areas, "rows": rows, "starts": found, "left": max(lefts), "iterations": iterations}
