@@ -18,7 +18,7 @@ from pathlib import Path
 from statistics import NormalDist
 
 import numpy as np
-from curve_equilibrium import MOST, RAILS, UNKNOWN_BODIES, Equilibrium
+from curve_equilibrium import MOST, PULL, RAILS, UNKNOWN_BODIES, Equilibrium
 from curve_track import LATERAL, Layout, Track
 from curve_vehicle import FRAME, SIDES, WHEELS, Vehicle, Wheel
 from dask_runs import local_file
@@ -31,11 +31,14 @@ OF_WHEELSETS = np.r_[0 : 6 * FRAME, UNKNOWN_BODIES : UNKNOWN_BODIES + RAILS]
 HELD = np.r_[6 * FRAME : UNKNOWN_BODIES]
 # Largest force or moment that is left. Where contacts jump between places, or windows change their strips, forces have
 # steps, and Newton's method may find nothing better than such a step: it is taken, if it is not too large, and counted.
-TOLERANCE, ACCEPTED, MOST_ITERATIONS = 1.0, 3000.0, 45  # N, N.m
+# An equilibrium, about which states are sampled, may be less good than these.
+TOLERANCE, ACCEPTED, ACCEPTED_MIDDLE, MOST_ITERATIONS = 1.0, 3e3, 1e4, 45  # N, N.m
 # The suspension's derivatives hardly change: they are renewed after so many iterations.
 RENEWED = 12
 # Below this residual, one that does not fall by a tenth makes the changes shorter, and ends it after some tries.
 NEAR, TRIES = 1e4, 6  # N, N.m
+# How often a state that a wheel refuses is left, and the way back from the flange where there is no state before it.
+REFUSED_MOST, BACK = 8, 2e-4  # m
 OFFSET_MOST = 5e-4  # m: by which rails are moved at once
 DEBUG=False
 # What each wheel is asked in each state, beside Y and Q.
@@ -120,6 +123,15 @@ class WornBogie(Equilibrium):
             made.append(Wheel(side, self.fmu, wheel_profile=path, wheel_radius=radius, **parameters))
         return [made[:2], made[2:]]
 
+    def start_from(self, other):
+        """Take over the unknowns of the bogie on straight track, in the axes of this one's."""
+        self.unknown, self.kept = other.unknown.copy(), None
+        for body, along in enumerate(self.vehicle.along):
+            _, (there, here) = zip(*(each.track.axes(each.place + along) for each in (other, self)), strict=True)
+            self.unknown[6 * body : 6 * body + 3] = here @ there.T @ other.unknown[6 * body : 6 * body + 3]
+        self.unknown[PULL] = other.unknown[PULL]
+        return self
+
     def displaced(self, offsets, unknown):
         """Put the rails under the wheelsets off their places, from an equilibrium whose frame and body stay."""
         self.uneven, self.unknown = self.own.copy(), unknown.copy()
@@ -139,8 +151,21 @@ class WornBogie(Equilibrium):
         its derivatives.
         """
         best, at, since, share_of_change = np.inf, self.unknown, 0, 1.0
+        previous, refused = None, 0
         for iteration in range(1, MOST_ITERATIONS + 1):
-            _, forces, derivatives = self.contacts(slopes=True)
+            try:
+                _, forces, derivatives = self.contacts(slopes=True)
+            except wheelrail.SimulationError:
+                # Overloaded or beside the rail: half of the way back, or, at first, towards the middle of the track.
+                refused += 1
+                if refused > REFUSED_MOST:
+                    raise
+                if previous is None:
+                    self.unknown[[1, 7]] -= BACK * np.sign(self.unknown[[1, 7]])
+                else:
+                    self.unknown = 0.5 * (self.unknown + previous)
+                continue
+            previous = self.unknown
             left = self.residual(self.unknown, forces)[self.free]
             size, there = np.abs(left).max(), not self.ahead.any()
             if there and size < 0.9 * best:
@@ -233,28 +258,30 @@ def in_equilibrium(fmu, settings, wheels, curve, starts):
     """Return the bogie in steady curving, the force that is left and the iterations."""
     place = IN_CURVE if np.isfinite(curve.radius) else ON_STRAIGHT
     bogie = WornBogie(fmu, settings, wheels, curve, place)
+    tries = []
     if starts is not None:
         bogie.unknown = starts.for_wheels(0, wheels, settings.vehicle.wheel_radius)
-        left, iterations = bogie.attempt()
-        if left < ACCEPTED:
-            return bogie, left, iterations
+        tries.append((*bogie.attempt(), bogie.unknown))
+        if tries[0][0] < ACCEPTED:
+            return bogie, *tries[0][:2]
     # From straight track, where the wheelsets are sunk a little deeper than rails and contacts ask for.
     straight = replace(curve, radius=np.inf, cant=0.0)
     running = WornBogie(fmu, settings, wheels, straight, ON_STRAIGHT)
     for axle in range(2):
         running.unknown[6 * axle + 2] = -1.1e-3 - 0.5 * sum(depths_of(wheels)[2 * axle : 2 * axle + 2])
     running.unknown[UNKNOWN_BODIES:] = np.tile([0.0, -0.8e-3], 4)
-    _, before = running.attempt()
+    running.attempt()
     running.close()
-    bogie.unknown, bogie.kept = running.unknown, None
-    left, iterations = bogie.attempt()
-    if left > ACCEPTED:
+    tries.append((*bogie.start_from(running).attempt(), bogie.unknown))
+    left, _, bogie.unknown = min(tries, key=lambda found: found[0])
+    if left > ACCEPTED_MIDDLE:
         raise NoEquilibriumError(curve, (0.0, 0.0), left)
-    return bogie, left, before + iterations
+    bogie.kept = None
+    return bogie, left, sum(iterations for _, iterations, _ in tries)
 
 
-def in_sample(bogie, settings, wheels, curve, offset, number, starts, middle):
-    """Bring the bogie, whose equilibrium's unknowns are given, into a sampled state; return what is left, iterations."""
+def in_sample(bogie, settings, wheels, offset, number, starts, middle):
+    """Bring the bogie from the unknowns of its equilibrium into a sampled state; return what is left, iterations."""
     if starts is not None:
         bogie.displaced(offset, starts.for_wheels(number, wheels, settings.vehicle.wheel_radius))
         # Frame and body are those of the equilibrium now, and the rails lie where they are to lie.
@@ -264,10 +291,7 @@ def in_sample(bogie, settings, wheels, curve, offset, number, starts, middle):
         if left < ACCEPTED:
             return left, iterations
     bogie.displaced(offset, middle)
-    left, iterations = bogie.attempt()
-    if left > ACCEPTED:
-        raise NoEquilibriumError(curve, offset, left)
-    return left, iterations
+    return bogie.attempt()
 
 
 def worn_in(wheel, speed):
@@ -301,7 +325,7 @@ def rates(component, digest, settings, wheels, curve, starts):
     dict
         area: of each wheel the area of each cell that wears off per distance [m], mean over the samples. rows: what
         tables have, for each state and wheel. starts: those of the next step. left: the largest force that is left over
-        in a state [N]. iterations: all of Newton's method.
+        in a state [N]. missed: samples without an equilibrium, which are left out. iterations: all of Newton's method.
     """
     fmu = local_file(component, digest)
     bogie, left, iterations = in_equilibrium(fmu, settings, wheels, curve, starts)
@@ -310,13 +334,20 @@ def rates(component, digest, settings, wheels, curve, starts):
     count = settings.samples if np.isfinite(curve.radius) else settings.samples_straight
     areas = [np.zeros(len(wheel.ends) - 1) for wheel in wheels]
     for sample, offset in enumerate(offsets(count, curve.irregularity)):
-        left, needed = in_sample(bogie, settings, wheels, curve, offset, 1 + sample, starts, middle)
+        left, needed = in_sample(bogie, settings, wheels, offset, 1 + sample, starts, middle)
+        iterations += needed
+        if left > ACCEPTED:
+            unknowns.append(middle)
+            continue
         unknowns.append(bogie.unknown)
         lefts.append(left)
-        iterations += needed
         for number, (area, row) in enumerate(zip(areas, bogie.of_wheels(), strict=True)):
-            area += bogie.worn_off(number) / count
+            area += bogie.worn_off(number)
             rows.append({"sample": sample, "wheel": number, "left": left} | row)
     bogie.close()
+    reached = len(lefts) - 1
+    if 2 * reached < count:
+        raise NoEquilibriumError(curve, (0.0, 0.0), np.inf)
+    areas = [area / reached for area in areas]
     found = Starts(tuple(tuple(unknown.tolist()) for unknown in unknowns), depths_of(wheels))
-    return {"area": areas, "rows": rows, "starts": found, "left": max(lefts), "iterations": iterations}
+    return {"area": areas, "rows": rows, "starts": found, "left": max(lefts), "missed": count - reached, "iterations": iterations}

@@ -142,6 +142,7 @@ def march(client, plan, folder, component, report=print):
             f"  step {progress.step}: {1e-3 * distance:.0f} of {1e-3 * plan.distance:.0f} km,"
             f" {sum(result['iterations'] for result in results)} iterations,"
             f" largest force left {max(result['left'] for result in results):.0f} N,"
+            f" {sum(result['missed'] for result in results)} samples left out,"
             f" {time.perf_counter() - began:.1f} s"
         )
     return progress.step
