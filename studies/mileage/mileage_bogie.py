@@ -37,6 +37,8 @@ TOLERANCE, ACCEPTED, ACCEPTED_MIDDLE, MOST_ITERATIONS = 1.0, 3e3, 1e4, 45  # N, 
 RENEWED = 12
 # Below this residual, one that does not fall by a tenth makes the changes shorter, and ends it after some tries.
 NEAR, TRIES = 1e4, 6  # N, N.m
+# Share of the residual that an iteration may leave for the contacts' derivatives to be kept in the next one.
+FAST = 0.2
 # How often a state that a wheel refuses is left, and the way back from the flange where there is no state before it.
 REFUSED_MOST, BACK = 8, 2e-4  # m
 OFFSET_MOST = 5e-4  # m: by which rails are moved at once
@@ -144,6 +146,10 @@ class WornBogie(Equilibrium):
         self.age += 1
         return self.kept
 
+    def slopes(self):
+        """Derivatives of the units where they are."""
+        return np.array([[wheel.slopes() for wheel in pair] for pair in self.wheels])
+
     def settle(self):
         """Newton's method; return the largest force that is left, and the iterations.
 
@@ -151,10 +157,10 @@ class WornBogie(Equilibrium):
         its derivatives.
         """
         best, at, since, share_of_change = np.inf, self.unknown, 0, 1.0
-        previous, refused = None, 0
+        previous, refused, renew, last = None, 0, True, np.inf
         for iteration in range(1, MOST_ITERATIONS + 1):
             try:
-                _, forces, derivatives = self.contacts(slopes=True)
+                _, forces, fresh = self.contacts(slopes=renew)
             except wheelrail.SimulationError:
                 # Overloaded or beside the rail: half of the way back, or, at first, towards the middle of the track.
                 refused += 1
@@ -168,6 +174,11 @@ class WornBogie(Equilibrium):
             previous = self.unknown
             left = self.residual(self.unknown, forces)[self.free]
             size, there = np.abs(left).max(), not self.ahead.any()
+            derivatives = fresh if renew else derivatives
+            # Derivatives cost more than steps: they serve as long as the residual falls fast.
+            if not renew and size > FAST * last:
+                derivatives = self.slopes()
+            renew, last = not (there and size < FAST * last), size
             if there and size < 0.9 * best:
                 best, at, since, self.forces = size, self.unknown, 0, forces
             elif best < NEAR:

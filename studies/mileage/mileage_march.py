@@ -96,7 +96,12 @@ def classes_file(folder, step):
     return folder / f"classes_{step:04d}.parquet"
 
 
-def march(client, plan, folder, component, report=print):
+def say(line):
+    """Print a line of progress at once."""
+    print(line, flush=True)
+
+
+def march(client, plan, folder, component, report=say):
     """Run, or go on; return the number of steps.
 
     Parameters
