@@ -34,7 +34,7 @@ HELD = np.r_[6 * FRAME : UNKNOWN_BODIES]
 # An equilibrium, about which states are sampled, may be less good than these.
 TOLERANCE, ACCEPTED, ACCEPTED_MIDDLE, MOST_ITERATIONS = 1.0, 3e3, 1e4, 45  # N, N.m
 # The suspension's derivatives hardly change: they are renewed after so many iterations.
-RENEWED = 12
+RENEWED = 40
 # Below this residual, one that does not fall by a tenth makes the changes shorter, and ends it after some tries.
 NEAR, TRIES = 1e4, 6  # N, N.m
 # Share of the residual that an iteration may leave for the contacts' derivatives to be kept in the next one.
@@ -147,8 +147,14 @@ class WornBogie(Equilibrium):
         return self.kept
 
     def slopes(self):
-        """Derivatives of the units where they are."""
-        return np.array([[wheel.slopes() for wheel in pair] for pair in self.wheels])
+        """Derivatives of the units where they are: of a wheel with one contact from half as many calls."""
+        single = [[wheel.get("contacts")[0] == 1.0 for wheel in pair] for pair in self.wheels]
+        return np.array(
+            [
+                [wheel.main_slopes() if one else wheel.slopes() for one, wheel in zip(ones, pair, strict=True)]
+                for ones, pair in zip(single, self.wheels, strict=True)
+            ]
+        )
 
     def settle(self):
         """Newton's method; return the largest force that is left, and the iterations.
@@ -157,10 +163,10 @@ class WornBogie(Equilibrium):
         its derivatives.
         """
         best, at, since, share_of_change = np.inf, self.unknown, 0, 1.0
-        previous, refused, renew, last = None, 0, True, np.inf
+        previous, refused, derivatives, last = None, 0, None, np.inf
         for iteration in range(1, MOST_ITERATIONS + 1):
             try:
-                _, forces, fresh = self.contacts(slopes=renew)
+                _, forces, _ = self.contacts(slopes=False)
             except wheelrail.SimulationError:
                 # Overloaded or beside the rail: half of the way back, or, at first, towards the middle of the track.
                 refused += 1
@@ -174,11 +180,10 @@ class WornBogie(Equilibrium):
             previous = self.unknown
             left = self.residual(self.unknown, forces)[self.free]
             size, there = np.abs(left).max(), not self.ahead.any()
-            derivatives = fresh if renew else derivatives
             # Derivatives cost more than steps: they serve as long as the residual falls fast.
-            if not renew and size > FAST * last:
+            if derivatives is None or not there or size > FAST * last:
                 derivatives = self.slopes()
-            renew, last = not (there and size < FAST * last), size
+            last = size
             if there and size < 0.9 * best:
                 best, at, since, self.forces = size, self.unknown, 0, forces
             elif best < NEAR:
