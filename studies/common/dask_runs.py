@@ -36,9 +36,9 @@ def local_file(component, digest):
 # ---- on the client --------------------------------------------------------------------------------------------------
 
 
-def read_component():
+def read_component(fmu=FMU):
     """Return the component as data, and its digest."""
-    component = FMU.read_bytes()
+    component = fmu.read_bytes()
     return component, hashlib.sha256(component).hexdigest()
 
 

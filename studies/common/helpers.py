@@ -21,10 +21,11 @@ from wheelrail import Instance  # noqa: E402
 from wheelrail.plots import BLACK, BLUE, GREEN, ORANGE, RED, SKY, STYLE  # noqa: E402
 
 FMU = REPOSITORY / "target" / "WheelRailContact.fmu"
+FMU3 = REPOSITORY / "target" / "WheelRailContact-fmi3.fmu"
 RESULTS = REPOSITORY / "results"
 WHEEL_RADIUS = 0.46  # m, the component's default
 
-__all__ = ["BLACK", "BLUE", "FMU", "GREEN", "ORANGE", "RED", "REPOSITORY", "RESULTS", "SKY", "WHEEL_RADIUS", "Instance"]
+__all__ = ["BLACK", "BLUE", "FMU", "FMU3", "GREEN", "ORANGE", "RED", "REPOSITORY", "RESULTS", "SKY", "WHEEL_RADIUS", "Instance"]
 __all__ += ["markdown_table", "profile", "reused", "save", "show", "wheelrail", "write_csv", "write_tables"]
 
 plt.rcParams.update(STYLE)

@@ -18,7 +18,7 @@ from pathlib import Path
 from statistics import NormalDist
 
 import numpy as np
-from curve_equilibrium import MOST, PULL, RAILS, UNKNOWN_BODIES, Equilibrium
+from curve_equilibrium import LONG, MOST, PULL, RAILS, UNKNOWN_BODIES, Equilibrium
 from curve_track import LATERAL, Layout, Track
 from curve_vehicle import FRAME, SIDES, WHEELS, Vehicle, Wheel
 from dask_runs import local_file
@@ -61,13 +61,12 @@ class Settings:
 class WornWheel:
     """A wheel as a worker is given it.
 
-    Profile as a text in SIMPACK's format, depth at its running circle, number of the first cell, ends of the cells on
-    the worn profile, across.
+    Profile as a text in SIMPACK's format, depth at its running circle, ends of the cells as arc lengths of the worn
+    profile.
     """
 
     profile: str
     depth: float  # m
-    first: int
     ends: tuple  # m
 
 
@@ -105,8 +104,8 @@ class WornBogie(Equilibrium):
     def __init__(self, fmu, settings, wheels, curve, place):
         """Units of the wheels, leading left and right, trailing left and right."""
         self.worn, self.fmu = wheels, fmu
-        self.free, self.kept, self.age, self.ahead = slice(None), None, 0, np.zeros(2)
-        parameters = dict(settings.parameters) | {
+        self.free, self.kept, self.age, self.ahead, self.saved = slice(None), None, 0, np.zeros(2), None
+        parameters = {"wheel_profile_wear": "on", "wheel_wear_law": "wear_law"} | dict(settings.parameters) | {
             "friction_cold": curve.friction,
             "gauge_face_friction_scale": curve.gauge_face_friction,
         }
@@ -138,10 +137,19 @@ class WornBogie(Equilibrium):
         """Put the rails under the wheelsets off their places, from an equilibrium whose frame and body stay."""
         self.uneven, self.unknown = self.own.copy(), unknown.copy()
         self.free, self.ahead = OF_WHEELSETS, np.array(offsets)
+        # Whatever was before: a state is the same in any order, and on any worker.
+        if self.saved is None:
+            self.saved = [wheel.save() for wheel in self.all_wheels()]
+        for wheel, saved in zip(self.all_wheels(), self.saved, strict=True):
+            wheel.restore(saved)
+
+    def all_wheels(self):
+        """Units of the wheels, one after the other."""
+        return sum(self.wheels, [])
 
     def parts(self, forces):
-        """Those of the equilibrium, which are kept for some iterations."""
-        if self.kept is None or self.age >= RENEWED:
+        """Those of the equilibrium, which are kept for some iterations, and for all samples about it."""
+        if self.kept is None or (self.age >= RENEWED and self.saved is None):
             self.kept, self.age = super().parts(forces), 0
         self.age += 1
         return self.kept
@@ -221,7 +229,7 @@ class WornBogie(Equilibrium):
     def of_wheels(self):
         """What tables have of each wheel in this state."""
         found = []
-        for (axle, side), (_, side_name), wheel in zip(np.ndindex(2, 2), WHEELS, sum(self.wheels, []), strict=True):
+        for (axle, side), (_, side_name), wheel in zip(np.ndindex(2, 2), WHEELS, self.all_wheels(), strict=True):
             _, left, up, *_ = self.forces[axle, side]
             values = dict(zip(ASKED, wheel.get(*ASKED), strict=True))
             found.append({"Y": -SIDES[side_name] * left, "Q": up} | values)
@@ -229,9 +237,7 @@ class WornBogie(Equilibrium):
 
     def worn_off(self, number):
         """Area of each cell of a wheel that wears off per distance [m]."""
-        y, depth = worn_in(sum(self.wheels, [])[number], self.speed)
-        total = np.concatenate([[0.0], np.cumsum(0.5 * (depth[1:] + depth[:-1]) * np.diff(y))])
-        return np.diff(np.interp(self.worn[number].ends, y, total))
+        return np.diff(np.interp(self.worn[number].ends, *worn_in(self.all_wheels()[number])))
 
 
 # ---- a task ---------------------------------------------------------------------------------------------------------
@@ -292,7 +298,6 @@ def in_equilibrium(fmu, settings, wheels, curve, starts):
     left, _, bogie.unknown = min(tries, key=lambda found: found[0])
     if left > ACCEPTED_MIDDLE:
         raise NoEquilibriumError(curve, (0.0, 0.0), left)
-    bogie.kept = None
     return bogie, left, sum(iterations for _, iterations, _ in tries)
 
 
@@ -310,22 +315,24 @@ def in_sample(bogie, settings, wheels, offset, number, starts, middle):
     return bogie.attempt()
 
 
-def worn_in(wheel, speed):
-    """Where a wheel wears in a state, across its profile, and the depth that it loses there per distance [1].
+def worn_in(wheel):
+    """Area that a wheel loses per distance up to places of its profile, in the state that it is in.
 
-    The short run is one step more of the steady state.
+    One step more of the steady state is a short run, whose wear is the difference of the depths.
+
+    Returns
+    -------
+    tuple
+        Arc length on the profile as it was read [m], at the ends of the component's cells; area from the flange's side
+        up to there, per distance [m].
     """
-    radius, count, volume, power = wheel.get("wheel_radius", "contacts", "wear_rate", "friction_power")
-    count = int(count)
-    y = np.arange(-0.06, 0.06, 1e-4)
-    depth = np.zeros(len(y))
-    for k in range(1, count + 1):
-        c, b, i, pw = wheel.get(*(f"contact.{n}[{k}]" for n in ("wheel_position", "breadth", "inclination", "friction_power")))
-        half = 0.5 * b * np.cos(i)
-        shape = np.sqrt(np.maximum(0.0, 1.0 - ((y - c) / half) ** 2))
-        shape *= np.cos(i) / (shape.sum() * 1e-4)
-        depth += volume / speed * pw / power / (2 * np.pi * radius) * shape
-    return y, depth
+    before, start = wheel.profile_wear(), wheel.get("distance")[0]
+    wheel.step(LONG)
+    after, end = wheel.profile_wear(), wheel.get("distance")[0]
+    arc = after.wheel_arc_length
+    ends = np.concatenate([[1.5 * arc[0] - 0.5 * arc[1]], 0.5 * (arc[1:] + arc[:-1]), [1.5 * arc[-1] - 0.5 * arc[-2]]])
+    lost = (after.wheel_depth - before.wheel_depth) / (end - start)
+    return ends, np.concatenate([[0.0], np.cumsum(lost * np.diff(ends))])
 
 
 def rates(component, digest, settings, wheels, curve, starts):

@@ -132,13 +132,14 @@ def march(client, plan, folder, component, report=say):
             results = client.gather([client.submit(rates, shared, *given, pure=False) for given in arguments])
         else:
             results = [rates(shared, *given) for given in arguments]
-        rate = weighted(plan, classes, results, wheels, new)
+        raw = weighted(plan, classes, results)
+        rate = np.stack([smoothed(area, new.cell, plan.smoothing) for area in raw])
         growth = np.stack([new.depth_of(area, depth) for area, depth in zip(rate, progress.depth, strict=True)])
         # The last steps are alike.
         left = plan.distance - progress.distance
         length = plan.largest_depth / growth.max()
         length = left / np.ceil(left / length - 1e-9)
-        write_classes(folder, stamp, progress, length, classes, results)
+        write_classes(folder, stamp, progress, length, classes, results, raw, rate)
         starts = {curve.name: result["starts"] for curve, result in zip(classes, results, strict=True)}
         distance = plan.distance if left - length < 1.0 else progress.distance + length
         progress = Progress(progress.step + 1, distance, progress.depth + length * growth, starts)
@@ -160,21 +161,18 @@ def to_compute(line, wheels):
     return list(line)
 
 
-def weighted(plan, classes, results, wheels, new):
+def weighted(plan, classes, results):
     """Areas of the cells that all classes together take away per distance, of each wheel [m]."""
-    whole = len(classes) == len(plan.line)
-    total = np.zeros((len(wheels), len(new.place)))
+    whole, total = len(classes) == len(plan.line), 0.0
     for curve, result in zip(classes, results, strict=True):
-        areas = np.zeros_like(total)
-        for number, (wheel, area) in enumerate(zip(wheels, result["area"], strict=True)):
-            areas[number, wheel.first :] = area
+        areas = np.stack(result["area"])
         if whole:
-            total += curve.share * areas
+            total = total + curve.share * areas
         else:
             # Straight track is its own mirror.
             share = curve.share if np.isinf(curve.radius) else 2.0 * curve.share
-            total += 0.5 * share * (areas + areas[list(MIRROR)])
-    return np.stack([plan.wear_factor * smoothed(area, new.cell, plan.smoothing) for area in total])
+            total = total + 0.5 * share * (areas + areas[list(MIRROR)])
+    return plan.wear_factor * total
 
 
 # ---- what is kept ---------------------------------------------------------------------------------------------------
@@ -206,18 +204,28 @@ def read_state(path):
     return Progress(notes["step"], notes["distance"], depth, starts)
 
 
-def write_classes(folder, stamp, progress, length, classes, results):
-    """Write what each class had: rows of its states and wheels."""
+def write_classes(folder, stamp, progress, length, classes, results, raw, rate):
+    """Write what each class had: rows of its states and wheels; and what the whole line takes, before and smoothed."""
     rows = []
     for curve, result in zip(classes, results, strict=True):
         for row in result["rows"]:
             axle, side = WHEELS[row["wheel"]]
-            rows.append({"class": curve.name, "wheel": f"{axle} {side}", "radius": curve.radius, "share": curve.share} | {
-                name: value for name, value in row.items() if name != "wheel"
-            })
+            known = {"class": curve.name, "wheel": f"{axle} {side}", "radius": curve.radius, "share": curve.share}
+            rows.append(known | {name: value for name, value in row.items() if name != "wheel"})
     columns = {}
     for name in rows[0]:
         values = [row[name] for row in rows]
         columns[name] = (None, values) if isinstance(values[0], str) else (UNITS.get(name, "1"), list(map(float, values)))
-    notes = {"from": progress.distance, "length": length}
+    notes = {
+        "from": progress.distance,
+        "length": length,
+        "area": raw.sum(axis=1).tolist(),
+        "moved": (0.5 * np.abs(rate - raw).sum(axis=1)).tolist(),
+        "lost": (raw - rate).sum(axis=1).tolist(),
+        "states": len(rows) // len(WHEELS),
+        "iterations": sum(result["iterations"] for result in results),
+        "left": max(result["left"] for result in results),
+        "above": sum(row["left"] > 100.0 for row in rows) // len(WHEELS),
+        "missed": sum(result["missed"] for result in results),
+    }
     write_table(classes_file(folder, progress.step), stamp, columns, {"step": json.dumps(notes)})

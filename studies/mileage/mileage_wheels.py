@@ -68,11 +68,11 @@ class NewWheel:
         """What a worker needs of a worn wheel: its profile, the depth at its running circle, and the cells on it."""
         at_ends = np.interp(self.edges, self.place, depth)
         y, z = self.y + at_ends * self.normal[0], self.z + at_ends * self.normal[1]
-        # Contacts are on the tread and on the flange's face: nothing is asked beyond its tip.
+        # On the side of the tread: the flange's back has the same y as no other place, but for its round edge.
         tip = int(np.argmin(z))
         at_running_circle = float(np.interp(0.0, y[tip:], z[tip:]) - np.interp(0.0, self.y[tip:], self.z[tip:]))
-        ends = np.maximum.accumulate(y[tip:])
-        return WornWheel(self.worn(depth)._text, at_running_circle, tip, tuple(ends.tolist()))
+        ends = np.concatenate([[0.0], np.cumsum(np.hypot(np.diff(y), np.diff(z)))])
+        return WornWheel(self.worn(depth)._text, at_running_circle, tuple(ends.tolist()))
 
     def depth_of(self, area, depth):
         """Growth of the depths by areas of the cells."""

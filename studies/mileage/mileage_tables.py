@@ -1,0 +1,133 @@
+"""Tables of studies/mileage: what is measured on the worn wheels, and what wears in which curve."""
+
+import json
+
+import numpy as np
+import pyarrow.parquet as pq
+from curve_vehicle import AXLES, WHEELS
+from dask_runs import is_done, stamp_of, write_table
+from helpers import markdown_table, wheelrail
+from mileage_march import classes_file, read_state, state_file
+from mileage_wheels import MEASURES, NewWheel
+
+NAMES = [f"{axle} {side}" for axle, side in WHEELS]
+# So many states of a run are measured.
+MEASURED = 21
+RAIL = "60E1"
+
+
+def steps_of(folder):
+    """How many steps there are."""
+    return len(list(folder.glob("wheels_*.parquet"))) - 1
+
+
+def chosen(folder, most=MEASURED):
+    """Steps after which wheels are looked at: evenly over the mileage, with the first and the last."""
+    distances = np.array([read_state(state_file(folder, step)).distance for step in range(steps_of(folder) + 1)])
+    wanted = np.linspace(0.0, distances[-1], most)
+    return sorted({int(np.abs(distances - one).argmin()) for one in wanted})
+
+
+def measures(plan, folder, most=MEASURED):
+    """Measures of the wheels over the mileage, a column each, which are kept beside the run."""
+    steps = chosen(folder, most)
+    stamp = stamp_of(pq.read_schema(state_file(folder, steps[-1])).metadata[b"stamp"], steps)
+    path = folder / "measures.parquet"
+    if not is_done(path, stamp):
+        new = NewWheel.of(plan.wheel)
+        rows = [row for step in steps for row in measured(plan, new, read_state(state_file(folder, step)))]
+        units = {"mileage": "m", "worn_area": "m2", "conicity": "1", "largest_depth": "m"} | dict.fromkeys(MEASURES, "m")
+        columns = {"wheel": (None, [row["wheel"] for row in rows])}
+        columns |= {name: (unit, [row[name] for row in rows]) for name, unit in units.items()}
+        write_table(path, stamp, columns)
+    table = pq.read_table(path)
+    return {name: np.array(table[name].to_pylist()) for name in table.column_names}
+
+
+def measured(plan, new, progress):
+    """Measures of the four wheels in a state, with the equivalent conicity of their wheelset at 3 mm."""
+    worn = [new.worn(depth) for depth in progress.depth]
+    radius = plan.vehicle.wheel_radius
+    rows = []
+    for axle in range(len(AXLES)):
+        left, right = worn[2 * axle : 2 * axle + 2]
+        depths = [new.for_units(progress.depth[2 * axle + side]).depth for side in range(2)]
+        geometry = wheelrail.contact_geometry(
+            RAIL, left, wheel_right=right, wheel_radius=radius - depths[0], wheel_radius_right=radius - depths[1]
+        )
+        for side in range(2):
+            number = 2 * axle + side
+            found = worn[number].measures()
+            conicity = geometry.attrs["conicity"]
+            row = {"wheel": NAMES[number], "mileage": progress.distance, "worn_area": new.area(progress.depth[number])}
+            row |= {"conicity": np.nan if conicity is None else conicity, "largest_depth": progress.depth[number].max()}
+            rows.append(row | {name: getattr(found, name) for name in MEASURES})
+    return rows
+
+
+def classes_of(folder, step):
+    """What the classes had in a step, a column each, and the notes."""
+    table = pq.read_table(classes_file(folder, step))
+    notes = json.loads(table.schema.metadata[b"step"])
+    return {name: np.array(table[name].to_pylist()) for name in table.column_names}, notes
+
+
+def measures_table(found):
+    """What is measured on each wheel when it is new and at the end."""
+    lines = []
+    for name in NAMES:
+        own = {key: values[found["wheel"] == name] for key, values in found.items()}
+        line = [name]
+        for key in MEASURES:
+            line.append(f"{1e3 * own[key][0]:.2f} → {1e3 * own[key][-1]:.2f} mm")
+        line.append(f"{1e6 * own['worn_area'][-1]:.1f} mm²")
+        line.append(f"{own['conicity'][0]:.3f} → {own['conicity'][-1]:.3f}")
+        lines.append(line)
+    return markdown_table(["wheel", "Sh", "Sd", "qR", "hollow", "worn area", "conicity of its wheelset at 3 mm"], lines)
+
+
+def run_table(plan, folder):
+    """How a run went."""
+    count = steps_of(folder)
+    notes = [classes_of(folder, step)[1] for step in range(count)]
+    lengths = 1e-3 * np.array([one["length"] for one in notes])
+    taken = sum(one["length"] * np.array(one["area"]) for one in notes)
+    moved = sum(one["length"] * np.array(one["moved"]) for one in notes)
+    lost = sum(one["length"] * np.array(one["lost"]) for one in notes)
+    states = sum(one["states"] for one in notes)
+    rows = {
+        "mileage, steps, kilometres of a step": f"{1e-3 * plan.distance:.0f} km, {count}, {lengths.min():.0f} to {lengths.max():.0f} km",
+        "steady states, iterations of Newton's method": f"{states}, {sum(one['iterations'] for one in notes)}",
+        "of them with more than 100 N left, largest": (
+            f"{sum(one['above'] for one in notes)}, {max(one['left'] for one in notes):.0f} N"
+        ),
+        "sampled states left out": f"{sum(one['missed'] for one in notes)}",
+        "area that smoothing moves, of what is worn": f"{100 * (moved / taken).max():.1f} % at most",
+        "area that smoothing loses": f"{(abs(lost) / taken).max():.0e} of it",
+    }
+    return markdown_table(["", ""], [list(row) for row in rows.items()])
+
+
+def curves_table(folder, steps):
+    """Tγ of the four wheels in each class, mean over the sampled states, in some steps: of new wheels and of worn ones."""
+    lines = []
+    tables = [by_class(folder, step) for step in steps]
+    for name in tables[0]:
+        line = [name, f"{100 * tables[0][name]['share']:.1f} %"]
+        for number in range(len(NAMES)):
+            line.append(" → ".join(f"{table[name]['wear_number'][number]:.0f} N" for table in tables))
+        lines.append(line)
+    return markdown_table(["class", "of the line", *NAMES], lines)
+
+
+def by_class(folder, step, quantities=("wear_number", "Y", "Q")):
+    """Means over the sampled states by class, an element for each wheel."""
+    table, _ = classes_of(folder, step)
+    found = {}
+    for name in dict.fromkeys(table["class"]):
+        own = table["class"] == name
+        entry = {"share": table["share"][own][0], "radius": table["radius"][own][0]}
+        for quantity in quantities:
+            entry[quantity] = [float(table[quantity][own & (table["wheel"] == wheel)].mean()) for wheel in NAMES]
+        found[str(name)] = entry
+    return found
