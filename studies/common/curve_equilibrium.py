@@ -132,7 +132,8 @@ class Equilibrium:
         forward = self.velocity(self.middle) / self.speed
         held = PULL_UNIT * unknown[PULL] * forward
         force[BODY] += held
-        moment[BODY] += np.cross(turns[BODY] @ [0.0, 0.0, self.vehicle.secondary_height - self.vehicle.body_height], held)
+        down = self.vehicle.secondary_height - self.vehicle.body_height
+        moment[BODY] += np.cross(turns[BODY] @ [0.0, 0.0, down], held)
         for axle in range(2):
             where = self.track.place_of(*coordinates[axle, :2], self.place)
             _, axes = self.track.axes(where)

@@ -61,7 +61,8 @@ def write_table(path, stamp, columns, notes=None):
         fields.append(pa.field(name, kind, metadata=None if unit is None else {"unit": unit}))
         arrays.append(pa.array(values, kind))
     unfinished = path.with_suffix(".unfinished")
-    pq.write_table(pa.Table.from_arrays(arrays, schema=pa.schema(fields, metadata={"stamp": stamp} | (notes or {}))), unfinished)
+    schema = pa.schema(fields, metadata={"stamp": stamp} | (notes or {}))
+    pq.write_table(pa.Table.from_arrays(arrays, schema=schema), unfinished)
     unfinished.replace(path)
 
 

@@ -25,8 +25,8 @@ FMU3 = REPOSITORY / "target" / "WheelRailContact-fmi3.fmu"
 RESULTS = REPOSITORY / "results"
 WHEEL_RADIUS = 0.46  # m, the component's default
 
-__all__ = ["BLACK", "BLUE", "FMU", "FMU3", "GREEN", "ORANGE", "RED", "REPOSITORY", "RESULTS", "SKY", "WHEEL_RADIUS", "Instance"]
-__all__ += ["markdown_table", "profile", "reused", "save", "show", "wheelrail", "write_csv", "write_tables"]
+__all__ = ["BLACK", "BLUE", "FMU", "FMU3", "GREEN", "ORANGE", "RED", "REPOSITORY", "RESULTS", "SKY", "WHEEL_RADIUS"]
+__all__ += ["Instance", "markdown_table", "profile", "reused", "save", "show", "wheelrail", "write_csv", "write_tables"]
 
 plt.rcParams.update(STYLE)
 

@@ -42,9 +42,9 @@ FAST = 0.2
 # How often a state that a wheel refuses is left, and the way back from the flange where there is no state before it.
 REFUSED_MOST, BACK = 8, 2e-4  # m
 OFFSET_MOST = 5e-4  # m: by which rails are moved at once
-DEBUG=False
+DEBUG = False
 # What each wheel is asked in each state, beside Y and Q.
-ASKED = ("contacts", "wear_number", "peak_temperature", "contact.peak_pressure[1]", "contact.wheel_position[1]")
+ASKED = ("contacts", "wear_number", "peak_temperature", "peak_pressure")
 
 
 @dataclass(frozen=True)
@@ -105,10 +105,14 @@ class WornBogie(Equilibrium):
         """Units of the wheels, leading left and right, trailing left and right."""
         self.worn, self.fmu = wheels, fmu
         self.free, self.kept, self.age, self.ahead, self.saved = slice(None), None, 0, np.zeros(2), None
-        parameters = {"wheel_profile_wear": "on", "wheel_wear_law": "wear_law"} | dict(settings.parameters) | {
-            "friction_cold": curve.friction,
-            "gauge_face_friction_scale": curve.gauge_face_friction,
-        }
+        parameters = (
+            {"wheel_profile_wear": "on", "wheel_wear_law": "wear_law"}
+            | dict(settings.parameters)
+            | {
+                "friction_cold": curve.friction,
+                "gauge_face_friction_scale": curve.gauge_face_friction,
+            }
+        )
         track = track_of(curve.radius, curve.cant)
         super().__init__(track, place, curve.speed, settings.vehicle, **parameters)
         # A wheel whose radius has become less stands as if its rail were lower.
@@ -145,7 +149,7 @@ class WornBogie(Equilibrium):
 
     def all_wheels(self):
         """Units of the wheels, one after the other."""
-        return sum(self.wheels, [])
+        return [wheel for pair in self.wheels for wheel in pair]
 
     def parts(self, forces):
         """Those of the equilibrium, which are kept for some iterations, and for all samples about it."""
@@ -154,9 +158,9 @@ class WornBogie(Equilibrium):
         self.age += 1
         return self.kept
 
-    def slopes(self):
-        """Derivatives of the units where they are: of a wheel with one contact from half as many calls."""
-        single = [[wheel.get("contacts")[0] == 1.0 for wheel in pair] for pair in self.wheels]
+    def slopes(self, whole):
+        """Derivatives of the units where they are: if not whole, of a wheel with one contact from half as many calls."""
+        single = [[not whole and wheel.get("contacts")[0] == 1.0 for wheel in pair] for pair in self.wheels]
         return np.array(
             [
                 [wheel.main_slopes() if one else wheel.slopes() for one, wheel in zip(ones, pair, strict=True)]
@@ -190,7 +194,7 @@ class WornBogie(Equilibrium):
             size, there = np.abs(left).max(), not self.ahead.any()
             # Derivatives cost more than steps: they serve as long as the residual falls fast.
             if derivatives is None or not there or size > FAST * last:
-                derivatives = self.slopes()
+                derivatives = self.slopes(whole=since > 0)
             last = size
             if there and size < 0.9 * best:
                 best, at, since, self.forces = size, self.unknown, 0, forces
@@ -338,10 +342,8 @@ def worn_in(wheel):
 def rates(component, digest, settings, wheels, curve, starts):
     """Steady curving on worn wheels in a class of the line, sampled over the track's irregularity.
 
-    Parameters
-    ----------
-    starts
-        What was found on these wheels when they were less worn, or None.
+    The component comes as data with its digest; starts are what was found on these wheels when they were less worn, or
+    None.
 
     Returns
     -------
@@ -373,4 +375,5 @@ def rates(component, digest, settings, wheels, curve, starts):
         raise NoEquilibriumError(curve, (0.0, 0.0), np.inf)
     areas = [area / reached for area in areas]
     found = Starts(tuple(tuple(unknown.tolist()) for unknown in unknowns), depths_of(wheels))
-    return {"area": areas, "rows": rows, "starts": found, "left": max(lefts), "missed": count - reached, "iterations": iterations}
+    counts = {"missed": count - reached, "iterations": iterations}
+    return {"area": areas, "rows": rows, "starts": found, "left": max(lefts), **counts}

@@ -69,6 +69,15 @@ class Curve:
         return self if math.isinf(self.radius) else replace(self, radius=-self.radius)
 
 
+def named(line):
+    """The classes by names, each its own: those that share a radius are numbered."""
+    found = {}
+    for curve in line:
+        alike = sum(name.partition(",")[0] == curve.name for name in found)
+        found[f"{curve.name}, {alike + 1}" if alike else curve.name] = curve
+    return found
+
+
 def both_hands(radius, cant, speed, share, **others):
     """Curves to the right and to the left, of half the share each: m, mm, km/h, 1."""
     right = Curve(-radius, 1e-3 * cant, speed / 3.6, 0.5 * share, **others)
@@ -167,7 +176,8 @@ def row_of(where, columns, cells):
         if not least <= value <= most or math.isnan(value):
             raise wrong(where, name, f"{value:g}{unit}", f"{least:g} to {most:g}{unit}")
         if name == "radius" and abs(value) < LEAST_RADIUS:
-            raise wrong(where, name, f"{value:g} m", f"{LEAST_RADIUS:g} m or more, negative to the right, 0 on straight track")
+            allowed = f"{LEAST_RADIUS:g} m or more, negative to the right, 0 on straight track"
+            raise wrong(where, name, f"{value:g} m", allowed)
         found[name] = value
     if math.isinf(found["radius"]) and found["cant"] != 0.0:
         raise wrong(where, "cant", f"{found['cant']:g} m", "0 on straight track")

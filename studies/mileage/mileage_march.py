@@ -3,8 +3,8 @@
 A step of mileage is explicit: the rates on the profiles as they are, weighted by the line's shares, and as many
 kilometres as take the largest depth by a given amount. What is there after a step is two Parquet files, whole or not
 there: the depths of the four wheels and what the next step begins from, and what each class had. A run that was killed
-goes on behind its last step. Sums run in the order of the line's classes whoever computed them, so that the bits are the
-same for any number of workers.
+goes on behind its last step. Sums run in the order of the line's classes whoever computed them, so that the bits are
+the same for any number of workers.
 
 Where each curve of the line has its like to the other hand, and both wheels of each wheelset are the same, one hand is
 computed and the other one is its mirror.
@@ -12,21 +12,19 @@ computed and the other one is its mirror.
 
 import json
 import time
-from dataclasses import asdict, dataclass, field, replace
-from pathlib import Path
+from dataclasses import asdict, dataclass, field
 
 import numpy as np
 import pyarrow.parquet as pq
 from curve_vehicle import VEHICLE, WHEELS, Vehicle
 from dask_runs import is_done, stamp_of, write_table
 from mileage_bogie import Settings, Starts, rates
-from mileage_line import by_size, is_its_own_mirror, mirrored
+from mileage_line import by_size, is_its_own_mirror, named
 from mileage_wheels import NewWheel, smoothed
 
 # Of the four wheels, those of the other side.
 MIRROR = (1, 0, 3, 2)
-UNITS = {"Y": "N", "Q": "N", "wear_number": "N", "peak_temperature": "K", "contact.peak_pressure[1]": "Pa"}
-UNITS |= {"contact.wheel_position[1]": "m", "left": "N"}
+UNITS = {"Y": "N", "Q": "N", "wear_number": "N", "peak_temperature": "K", "peak_pressure": "Pa", "left": "N"}
 
 
 @dataclass(frozen=True)
@@ -108,10 +106,14 @@ def march(client, plan, folder, component, report=say):
     ----------
     client
         Client of Dask, or None: then all is computed here.
+    plan
+        What is run.
     folder
         Where results are, and the state to go on from.
     component
         The FMU as data and its digest.
+    report
+        Called with a line after each step.
     """
     data, digest = component
     folder.mkdir(parents=True, exist_ok=True)
@@ -127,12 +129,14 @@ def march(client, plan, folder, component, report=say):
         began = time.perf_counter()
         wheels = [new.for_units(depth) for depth in progress.depth]
         classes = to_compute(plan.line, wheels)
-        arguments = [(digest, plan.settings(), wheels, curve, progress.starts.get(curve.name)) for curve in classes]
+        starts = [progress.starts.get(name) for name in classes]
+        pairs = zip(classes.values(), starts, strict=True)
+        arguments = [(digest, plan.settings(), wheels, curve, start) for curve, start in pairs]
         if client:
             results = client.gather([client.submit(rates, shared, *given, pure=False) for given in arguments])
         else:
             results = [rates(shared, *given) for given in arguments]
-        raw = weighted(plan, classes, results)
+        raw = weighted(plan, classes.values(), results)
         rate = np.stack([smoothed(area, new.cell, plan.smoothing) for area in raw])
         growth = np.stack([new.depth_of(area, depth) for area, depth in zip(rate, progress.depth, strict=True)])
         # The last steps are alike.
@@ -140,7 +144,7 @@ def march(client, plan, folder, component, report=say):
         length = plan.largest_depth / growth.max()
         length = left / np.ceil(left / length - 1e-9)
         write_classes(folder, stamp, progress, length, classes, results, raw, rate)
-        starts = {curve.name: result["starts"] for curve, result in zip(classes, results, strict=True)}
+        starts = {name: result["starts"] for name, result in zip(classes, results, strict=True)}
         distance = plan.distance if left - length < 1.0 else progress.distance + length
         progress = Progress(progress.step + 1, distance, progress.depth + length * growth, starts)
         write_state(folder, stamp, new, progress)
@@ -155,10 +159,10 @@ def march(client, plan, folder, component, report=say):
 
 
 def to_compute(line, wheels):
-    """Classes that are computed: of a line that is its own mirror, on wheels that are too, one hand."""
+    """Classes that are computed, by name: of a line that is its own mirror, on wheels that are too, one hand."""
     if is_its_own_mirror(line) and all(wheels[k] == wheels[other] for k, other in enumerate(MIRROR)):
-        return [curve for curve in line if curve.radius < 0.0 or np.isinf(curve.radius)]
-    return list(line)
+        return {name: curve for name, curve in named(line).items() if curve.radius < 0.0 or np.isinf(curve.radius)}
+    return named(line)
 
 
 def weighted(plan, classes, results):
@@ -181,7 +185,8 @@ def weighted(plan, classes, results):
 def write_state(folder, stamp, new, progress):
     """Write the wheels' depths, the mileage and what the next step begins from."""
     columns = {"arc_length": ("m", new.place)}
-    columns |= {f"depth_{axle}_{side}": ("m", depth) for (axle, side), depth in zip(WHEELS, progress.depth, strict=True)}
+    wheels = zip(WHEELS, progress.depth, strict=True)
+    columns |= {f"depth_{axle}_{side}": ("m", depth) for (axle, side), depth in wheels}
     starts = {name: asdict(found) for name, found in progress.starts.items()}
     notes = {"step": progress.step, "distance": progress.distance, "starts": starts}
     write_table(state_file(folder, progress.step), stamp, columns, {"progress": json.dumps(notes)})
@@ -207,15 +212,16 @@ def read_state(path):
 def write_classes(folder, stamp, progress, length, classes, results, raw, rate):
     """Write what each class had: rows of its states and wheels; and what the whole line takes, before and smoothed."""
     rows = []
-    for curve, result in zip(classes, results, strict=True):
+    for (name, curve), result in zip(classes.items(), results, strict=True):
         for row in result["rows"]:
             axle, side = WHEELS[row["wheel"]]
-            known = {"class": curve.name, "wheel": f"{axle} {side}", "radius": curve.radius, "share": curve.share}
+            known = {"class": name, "wheel": f"{axle} {side}", "radius": curve.radius, "share": curve.share}
             rows.append(known | {name: value for name, value in row.items() if name != "wheel"})
     columns = {}
     for name in rows[0]:
         values = [row[name] for row in rows]
-        columns[name] = (None, values) if isinstance(values[0], str) else (UNITS.get(name, "1"), list(map(float, values)))
+        words = isinstance(values[0], str)
+        columns[name] = (None, values) if words else (UNITS.get(name, "1"), list(map(float, values)))
     notes = {
         "from": progress.distance,
         "length": length,
@@ -225,7 +231,7 @@ def write_classes(folder, stamp, progress, length, classes, results, raw, rate):
         "states": len(rows) // len(WHEELS),
         "iterations": sum(result["iterations"] for result in results),
         "left": max(result["left"] for result in results),
-        "above": sum(row["left"] > 100.0 for row in rows) // len(WHEELS),
+        "above": int(sum(row["left"] > 100.0 for row in rows)) // len(WHEELS),
         "missed": sum(result["missed"] for result in results),
     }
     write_table(classes_file(folder, progress.step), stamp, columns, {"step": json.dumps(notes)})

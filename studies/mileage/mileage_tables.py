@@ -36,7 +36,8 @@ def measures(plan, folder, most=MEASURED):
     if not is_done(path, stamp):
         new = NewWheel.of(plan.wheel)
         rows = [row for step in steps for row in measured(plan, new, read_state(state_file(folder, step)))]
-        units = {"mileage": "m", "worn_area": "m2", "conicity": "1", "largest_depth": "m"} | dict.fromkeys(MEASURES, "m")
+        units = {"mileage": "m", "worn_area": "m2", "conicity": "1", "largest_depth": "m"}
+        units |= dict.fromkeys(MEASURES, "m")
         columns = {"wheel": (None, [row["wheel"] for row in rows])}
         columns |= {name: (unit, [row[name] for row in rows]) for name, unit in units.items()}
         write_table(path, stamp, columns)
@@ -96,7 +97,7 @@ def run_table(plan, folder):
     lost = sum(one["length"] * np.array(one["lost"]) for one in notes)
     states = sum(one["states"] for one in notes)
     rows = {
-        "mileage, steps, kilometres of a step": f"{1e-3 * plan.distance:.0f} km, {count}, {lengths.min():.0f} to {lengths.max():.0f} km",
+        "mileage, steps": f"{1e-3 * plan.distance:.0f} km, {count} of {lengths.min():.0f} to {lengths.max():.0f} km",
         "steady states, iterations of Newton's method": f"{states}, {sum(one['iterations'] for one in notes)}",
         "of them with more than 100 N left, largest": (
             f"{sum(one['above'] for one in notes)}, {max(one['left'] for one in notes):.0f} N"
@@ -109,7 +110,7 @@ def run_table(plan, folder):
 
 
 def curves_table(folder, steps):
-    """Tγ of the four wheels in each class, mean over the sampled states, in some steps: of new wheels and of worn ones."""
+    """Tγ of the four wheels in each class, mean over the sampled states, in some steps: on new wheels and on worn."""
     lines = []
     tables = [by_class(folder, step) for step in steps]
     for name in tables[0]:

@@ -1,0 +1,232 @@
+"""A bogie's wheels over 100 000 km of a line with its curves: they wear, and meet the rails anew.
+
+    .venv/bin/python studies mileage                       two workers on this machine (or `make coupling-mileage`)
+    .venv/bin/python studies mileage --small               a few kilometres of two classes, within a minute
+    .venv/bin/python studies mileage --line line.csv --vehicle vehicle.toml --wheel wheel.prw --distance 50000
+    .venv/bin/python studies mileage --scheduler tcp://... an existing cluster
+
+mileage_line.py reads line and vehicle, mileage_bogie.py has steady curving and its wear on a worker, mileage_wheels.py
+the worn wheels, mileage_march.py the way from mileage to mileage, mileage_tables.py and mileage_pictures.py what is
+shown. After a kill, the same command goes on. docs/couplings/mileage.md.
+"""
+
+import argparse
+import shutil
+import sys
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+from dask_runs import add_options, client_for, read_component
+from helpers import FMU3, RESULTS, markdown_table, write_tables
+from mileage_bogie import rates
+from mileage_line import BadInputError, main_line, read_line, read_vehicle, short_line, wrong
+from mileage_march import Plan, march, read_state, state_file, to_compute, weighted
+from mileage_pictures import draw_curves, draw_depths, draw_laws, draw_measures, draw_profiles
+from mileage_tables import NAMES, curves_table, measures, measures_table, run_table, steps_of
+from mileage_wheels import MEASURES, NewWheel, smoothed
+
+WORK = RESULTS / "mileage"
+MODULES = ("mileage_line", "mileage_bogie", "curve_equilibrium", "curve_vehicle", "curve_track")
+DISTANCE = 100_000e3  # m
+# The grid of a contact's window, the coarsest that has a name; a table says how far finer ones are from it.
+GRID = {"patch_nodes": 10, "patch_strips": 7}
+FINER = ((10, 7), (16, 11), (24, 15))
+# Friction is constant, so that what lubrication changes is seen alone.
+PARAMETERS = GRID | {"friction_law": "constant", "wear_law": "energy"}
+# Of dry discs in a laboratory to a line in all weathers: chosen so that treads lose a millimetre in 100 000 km or two.
+WEAR_FACTOR = 0.1
+LUBRICATED = 0.3
+LAWS = ("energy", "archard_map", "archard")
+# What limits a number on the command line: least and largest.
+LIMITS = {"distance": (1.0, 1e7), "wear_factor": (1e-6, 100.0), "largest_depth": (1e-3, 0.5), "smoothing": (0.0, 20.0)}
+LIMITS |= {"samples": (1, 99), "samples_straight": (1, 99)}
+
+
+def main_plan(**changes):
+    """The plan of the page: dry gauge faces, energy's law."""
+    return Plan(tuple(main_line()), DISTANCE, parameters=PARAMETERS, wear_factor=WEAR_FACTOR, **changes)
+
+
+def small_plan(**changes):
+    """A plan that ends within a minute: straight track and one curve, two steps."""
+    given = {"parameters": PARAMETERS, "wear_factor": WEAR_FACTOR, "largest_depth": 4e-5, "samples": 2}
+    return Plan(tuple(short_line()), **({"distance": 400e3, "samples_straight": 2} | given | changes))
+
+
+# ---- comparisons ----------------------------------------------------------------------------------------------------
+
+
+def first_rates(client, component, plan, parameters):
+    """What all classes take away from new wheels with other parameters: whole line, and area per distance by class."""
+    data, digest = component
+    new = NewWheel.of(plan.wheel)
+    wheels = [new.for_units(new.none())] * len(NAMES)
+    changed = replace(plan, parameters=plan.parameters | parameters)
+    classes = to_compute(plan.line, wheels)
+    shared = client.scatter(data, broadcast=True)
+    arguments = [(digest, changed.settings(), wheels, curve, None) for curve in classes.values()]
+    results = client.gather([client.submit(rates, shared, *given, pure=False) for given in arguments])
+    areas = weighted(changed, classes.values(), results)
+    sums = {name: [area.sum() for area in result["area"]] for name, result in zip(classes, results, strict=True)}
+    return np.stack([smoothed(area, new.cell, plan.smoothing) for area in areas]), sums
+
+
+def laws_table(found):
+    """Area that each law takes from a new wheel in each class [mm² per 1000 km], as the law has it."""
+    lines = []
+    for name in found[LAWS[0]][1]:
+        line = [name]
+        for wheel in (0, 1, 2):
+            line.append(", ".join(f"{1e12 * found[law][1][name][wheel]:.3g}" for law in LAWS))
+        lines.append(line)
+    return markdown_table(["class", *(f"{NAMES[wheel]}: {', '.join(LAWS)}" for wheel in (0, 1, 2))], lines)
+
+
+def grids_table(found):
+    """Area that the whole line takes from new wheels on finer grids, over that of the study's grid."""
+    lines = []
+    base = found[next(iter(found))][0]
+    for grid, (whole, _) in found.items():
+        sums = [area.sum() for area in whole[::2]]
+        more = [own / area.sum() - 1.0 for own, area in zip(sums, base[::2], strict=True)]
+        lines.append([grid, *(f"{1e12 * own:.3f}" for own in sums), *(f"{100.0 * share:+.1f} %" for share in more)])
+    head = ["cells", "leading [mm² per 1000 km]", "trailing", "leading, against the first", "trailing"]
+    return markdown_table(head, lines)
+
+
+# ---- runs -----------------------------------------------------------------------------------------------------------
+
+
+def study(client, component):
+    """The runs of the page, its tables and its pictures."""
+    plan = main_plan()
+    oiled = replace(plan, line=tuple(main_line(LUBRICATED)))
+    base, lubricated = WORK / "dry", WORK / "lubricated"
+    for title, one, folder in (("dry gauge faces", plan, base), ("lubricated gauge faces", oiled, lubricated)):
+        print(f"  {title}", flush=True)
+        march(client, one, folder, component)
+    new = NewWheel.of(plan.wheel)
+    laws = {law: first_rates(client, component, plan, {"wear_law": law}) for law in LAWS}
+    finer = {f"{n} × {m}": {"patch_nodes": n, "patch_strips": m} for n, m in FINER}
+    grids = {title: first_rates(client, component, plan, grid) for title, grid in finer.items()}
+    found = {"dry": measures(plan, base), "lubricated": measures(oiled, lubricated)}
+    last = steps_of(base) - 1
+    tables = {"run": run_table(plan, base), "measures": measures_table(found["dry"])}
+    tables |= {"lubricated": measures_table(found["lubricated"]), "curves": curves_table(base, (0, last))}
+    tables |= {"laws": laws_table(laws), "grids": grids_table(grids)}
+    write_tables("mileage.md", tables)
+    draw_profiles(plan, new, base, "mileage_profiles.png")
+    draw_depths(new, base, "mileage_depths.png")
+    draw_measures(found, "mileage_measures.png", {})
+    draw_curves(base, (0, last), ("new", "at the end"), "mileage_curves.png")
+    draw_laws(new, {law: whole for law, (whole, _) in laws.items()}, "mileage_laws.png")
+
+
+def own_run(client, component, plan, name, limits):
+    """A run of the user's own: its tables and pictures under its name."""
+    folder = WORK / name
+    march(client, plan, folder, component)
+    new, found, last = NewWheel.of(plan.wheel), measures(plan, folder), steps_of(folder) - 1
+    tables = {"run": run_table(plan, folder), "measures": measures_table(found)}
+    tables |= {"curves": curves_table(folder, (0, last))}
+    write_tables(f"mileage_{name}.md", tables)
+    draw_profiles(plan, new, folder, f"mileage_{name}_profiles.png")
+    draw_depths(new, folder, f"mileage_{name}_depths.png")
+    draw_measures({"": found}, f"mileage_{name}_measures.png", limits)
+    draw_curves(folder, (0, last), ("new", "at the end"), f"mileage_{name}_curves.png")
+    for title, depth in zip(NAMES, read_state(state_file(folder, last + 1)).depth, strict=True):
+        new.worn(depth).write(folder / f"{title.replace(' ', '_')}.prw")
+    print(f"  wrote results/mileage/{name}: wheels and classes of each step, measures, profiles at the end")
+
+
+# ---- the command line -----------------------------------------------------------------------------------------------
+
+
+def pairs(texts, kind, option):
+    """NAME=VALUE of an option, by name; values that are numbers as numbers."""
+    found = {}
+    for text in texts or ():
+        name, equals, value = text.partition("=")
+        if not equals:
+            raise BadInputError(f"--{option} {text}: NAME=VALUE is needed")
+        try:
+            found[name] = float(value)
+        except ValueError:
+            if kind is float:
+                raise wrong(f"--{option}", name, repr(value), "a number") from None
+            found[name] = value
+    return found
+
+
+def plan_of(chosen):
+    """The plan that the options ask for, or None for the study."""
+    for name, (least, most) in LIMITS.items():
+        value = getattr(chosen, name)
+        if value is not None and not least <= value <= most:
+            raise wrong("the command line", f"--{name.replace('_', '-')}", f"{value:g}", f"{least:g} to {most:g}")
+    given = {name: getattr(chosen, name) for name in LIMITS if getattr(chosen, name) is not None}
+    for name, factor in (("distance", 1e3), ("largest_depth", 1e-3), ("smoothing", 1e-3)):
+        if name in given:
+            given[name] *= factor
+    if chosen.line:
+        given["line"] = tuple(read_line(chosen.line))
+    if chosen.vehicle:
+        given["vehicle"] = read_vehicle(chosen.vehicle)
+    if chosen.wheel:
+        given["wheel"] = chosen.wheel
+    parameters = pairs(chosen.set, None, "set") | ({"wear_law": chosen.wear_law} if chosen.wear_law else {})
+    if not given and not parameters and not chosen.small:
+        return None
+    base = small_plan() if chosen.small else main_plan()
+    return replace(base, parameters=base.parameters | parameters, **given)
+
+
+def options():
+    """The command line's options."""
+    parser = argparse.ArgumentParser(description="A bogie's wheels over the mileage of a line, as a Dask job")
+    add_options(parser, "steps")
+    parser.add_argument("--small", action="store_true", help="straight track and one curve, within a minute")
+    parser.add_argument("--line", type=Path, help="CSV: radius, cant, speed, share or length, gauge_face_friction, …")
+    parser.add_argument("--vehicle", type=Path, help="TOML: fields of Vehicle in studies/common/curve_vehicle.py")
+    parser.add_argument("--wheel", help="new profile of the wheels: a name or a file (S1002)")
+    parser.add_argument("--distance", type=float, help="mileage [km] (100000)")
+    parser.add_argument("--wear-law", choices=LAWS, help="law of wear (energy)")
+    parser.add_argument("--wear-factor", type=float, help=f"factor on the law of wear ({WEAR_FACTOR:g})")
+    parser.add_argument("--largest-depth", type=float, help="by which a profile changes in a step [mm] (0.1)")
+    parser.add_argument("--smoothing", type=float, help="wavelength that is halved in what a step takes [mm] (5)")
+    parser.add_argument("--samples", type=int, help="states about the equilibrium of a curve (5)")
+    parser.add_argument("--samples-straight", type=int, help="states about that of straight track (9)")
+    parser.add_argument("--set", action="append", metavar="NAME=VALUE", help="parameter of the component")
+    parser.add_argument("--limit", action="append", metavar="NAME=MM", help=f"line to draw: {', '.join(MEASURES)}")
+    parser.add_argument("--name", default=None, help="of the run's folder and files (own, or small)")
+    return parser
+
+
+def main():
+    """The study, or a run of the user's own."""
+    chosen = options().parse_args()
+    if not FMU3.exists():
+        sys.exit(f"{FMU3} is not there: run `make fmu fmu3` first")
+    try:
+        plan = plan_of(chosen)
+        limits = {name: 1e-3 * value for name, value in pairs(chosen.limit, float, "limit").items()}
+        if unknown := [name for name in limits if name not in MEASURES]:
+            raise BadInputError(f"--limit {unknown[0]}: there are {', '.join(MEASURES)}")
+        if plan is not None:
+            NewWheel.of(plan.wheel)
+    except (BadInputError, ValueError, FileNotFoundError) as error:
+        sys.exit(f"mileage: {error}")
+    name = chosen.name or ("small" if chosen.small else "own")
+    if chosen.fresh:
+        shutil.rmtree(WORK if plan is None else WORK / name, ignore_errors=True)
+    component = read_component(FMU3)
+    with client_for(chosen.scheduler, chosen.workers, MODULES) as client:
+        if plan is None:
+            study(client, component)
+        else:
+            own_run(client, component, plan, name, limits)
+
+
+if __name__ == "__main__":
+    main()
