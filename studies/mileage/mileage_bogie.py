@@ -43,6 +43,7 @@ FAST = 0.2
 REFUSED_MOST, BACK = 8, 2e-4  # m
 OFFSET_MOST = 5e-4  # m: by which rails are moved at once
 DEBUG = False
+ACCELERATION = 1e-3  # of the wear that is measured
 # What each wheel is asked in each state, beside Y and Q.
 ASKED = ("contacts", "wear_number", "peak_temperature", "peak_pressure")
 
@@ -106,7 +107,7 @@ class WornBogie(Equilibrium):
         self.worn, self.fmu = wheels, fmu
         self.free, self.kept, self.age, self.ahead, self.saved = slice(None), None, 0, np.zeros(2), None
         parameters = (
-            {"wheel_profile_wear": "on", "wheel_wear_law": "wear_law"}
+            {"wheel_profile_wear": "on", "wheel_wear_law": "wear_law", "wear_acceleration": 0.0}
             | dict(settings.parameters)
             | {
                 "friction_cold": curve.friction,
@@ -159,7 +160,7 @@ class WornBogie(Equilibrium):
         return self.kept
 
     def slopes(self, whole):
-        """Derivatives of the units where they are: if not whole, of a wheel with one contact from half as many calls."""
+        """Derivatives of the units where they are: if not whole, of a wheel with one contact from half of the calls."""
         single = [[not whole and wheel.get("contacts")[0] == 1.0 for wheel in pair] for pair in self.wheels]
         return np.array(
             [
@@ -197,7 +198,7 @@ class WornBogie(Equilibrium):
                 derivatives = self.slopes(whole=since > 0)
             last = size
             if there and size < 0.9 * best:
-                best, at, since, self.forces = size, self.unknown, 0, forces
+                best, at, since, share_of_change, self.forces = size, self.unknown, 0, 1.0, forces
             elif best < NEAR:
                 # It goes to and fro over a step of the forces.
                 since, share_of_change = since + 1, 0.4
@@ -322,7 +323,8 @@ def in_sample(bogie, settings, wheels, offset, number, starts, middle):
 def worn_in(wheel):
     """Area that a wheel loses per distance up to places of its profile, in the state that it is in.
 
-    One step more of the steady state is a short run, whose wear is the difference of the depths.
+    One step more of the steady state is a short run, whose wear is the difference of the depths: a thousandth of it, so
+    that the profile stays as it is, as it does as long as Newton's method seeks.
 
     Returns
     -------
@@ -331,11 +333,13 @@ def worn_in(wheel):
         up to there, per distance [m].
     """
     before, start = wheel.profile_wear(), wheel.get("distance")[0]
+    wheel.set(wear_acceleration=ACCELERATION)
     wheel.step(LONG)
+    wheel.set(wear_acceleration=0.0)
     after, end = wheel.profile_wear(), wheel.get("distance")[0]
     arc = after.wheel_arc_length
     ends = np.concatenate([[1.5 * arc[0] - 0.5 * arc[1]], 0.5 * (arc[1:] + arc[:-1]), [1.5 * arc[-1] - 0.5 * arc[-2]]])
-    lost = (after.wheel_depth - before.wheel_depth) / (end - start)
+    lost = (after.wheel_depth - before.wheel_depth) / (ACCELERATION * (end - start))
     return ends, np.concatenate([[0.0], np.cumsum(lost * np.diff(ends))])
 
 
