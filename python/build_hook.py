@@ -22,8 +22,11 @@ class Files(BuildHookInterface):
         build_data["force_include"][f"{self.root}/examples/braking.csv"] = "wheelrail/data/braking.csv"
         for path in sorted(Path(self.root, "presets").glob("*.toml")):
             build_data["force_include"][str(path)] = f"wheelrail/presets/{path.name}"
+        # What is linked in, as CycloneDX, where PEP 770 has it.
+        build_data["sbom_files"].append("modelDescription/licenses/THIRD-PARTY.cdx.json")
         if os.environ.get("WHEELRAIL_WHEEL") == "any":
             return
+        build_data["sbom_files"].append("python/licenses/COMMAND.cdx.json")
         command = needed(target / "release" / ("wheelrail.exe" if os.name == "nt" else "wheelrail"))
         build_data["shared_scripts"][str(command)] = command.name
         build_data["pure_python"] = False

@@ -34,8 +34,8 @@ GRID = {"patch_nodes": 10, "patch_strips": 7}
 FINER = ((10, 7), (16, 11), (24, 15))
 # Friction is constant, so that what lubrication changes is seen alone.
 PARAMETERS = GRID | {"friction_law": "constant", "wear_law": "energy"}
-# Of dry discs in a laboratory to a line in all weathers: chosen so that treads lose a millimetre in 100 000 km or two.
-WEAR_FACTOR = 0.1
+# Of dry discs in a laboratory to a line in all weathers: chosen so that flanges lose some millimetre in 100 000 km.
+WEAR_FACTOR = 0.05
 LUBRICATED = 0.3
 LAWS = ("energy", "archard_map", "archard")
 # What limits a number on the command line: least and largest.
@@ -195,8 +195,8 @@ def options():
     parser.add_argument("--wear-factor", type=float, help=f"factor on the law of wear ({WEAR_FACTOR:g})")
     parser.add_argument("--largest-depth", type=float, help="by which a profile changes in a step [mm] (0.1)")
     parser.add_argument("--smoothing", type=float, help="wavelength that is halved in what a step takes [mm] (5)")
-    parser.add_argument("--samples", type=int, help="states about the equilibrium of a curve (5)")
-    parser.add_argument("--samples-straight", type=int, help="states about that of straight track (9)")
+    parser.add_argument("--samples", type=int, help="states about the equilibrium of a curve (4)")
+    parser.add_argument("--samples-straight", type=int, help="states about that of straight track (7)")
     parser.add_argument("--set", action="append", metavar="NAME=VALUE", help="parameter of the component")
     parser.add_argument("--limit", action="append", metavar="NAME=MM", help=f"line to draw: {', '.join(MEASURES)}")
     parser.add_argument("--name", default=None, help="of the run's folder and files (own, or small)")

@@ -54,8 +54,8 @@ class Settings:
 
     vehicle: Vehicle
     parameters: tuple  # pairs of name and value
-    samples: int = 5
-    samples_straight: int = 9
+    samples: int
+    samples_straight: int
 
 
 @dataclass(frozen=True)

@@ -59,8 +59,8 @@ class Plan:
     largest_depth: float = 1e-4
     smoothing: float = 5e-3
     wear_factor: float = 1.0
-    samples: int = 5
-    samples_straight: int = 9
+    samples: int = 4
+    samples_straight: int = 7
 
     def settings(self):
         """What tasks need of it."""
@@ -123,6 +123,8 @@ def march(client, plan, folder, component, report=say):
     if progress.step:
         report(f"  {progress.step} steps, {1e-3 * progress.distance:.0f} km, are there from before")
     else:
+        for left_over in (*folder.glob("wheels_*.parquet"), *folder.glob("classes_*.parquet")):
+            left_over.unlink()
         write_state(folder, stamp, new, progress)
     shared = client.scatter(data, broadcast=True) if client else data
     while progress.distance < plan.distance:
