@@ -94,8 +94,9 @@ def offsets(count, deviation):
     Each wheelset has all quantiles, the trailing one in another order.
     """
     quantiles = np.array([NormalDist().inv_cdf((k + 0.5) / count) for k in range(count)])
-    # The order of the trailing one is so that swapping the signs of both gives the same pairs.
-    order = [(2 * k + count // 2 - (count - 1)) % count if count % 2 else count - 1 - k for k in range(count)]
+    # Pairs change their signs only where both do, so that the mirrored track has the same pairs.
+    number = np.arange(count)
+    order = (2 * number + count // 2 + 1) % count if count % 2 else (2 * number + 1) % (count + 1)
     return deviation * np.column_stack([quantiles, quantiles[order]])
 
 
