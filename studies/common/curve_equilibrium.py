@@ -39,6 +39,12 @@ PULL = BODY * 6  # the body's place along the track is given; in its stead stand
 PULL_UNIT = 1e4  # N
 
 
+def cross(a, b):
+    """Vector product of vectors or of rows, in a tenth of the time of numpy's on so few."""
+    a, b = np.asarray(a).T, np.asarray(b).T
+    return np.array([a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]).T
+
+
 class Equilibrium:
     """Unknowns, residual and Newton's method, at a place of a track whose curvature is constant around it."""
 
@@ -72,7 +78,7 @@ class Equilibrium:
     def velocity(self, points):
         """Velocity of what turns with the curve."""
         forward = self.speed * np.array([np.cos(self.heading), np.sin(self.heading), 0.0])
-        return forward + np.cross(self.turning, points - self.middle)
+        return forward + cross(self.turning, points - self.middle)
 
     def bodies(self, unknown):
         """Coordinates of all bodies, and the wheels' speeds."""
@@ -126,14 +132,14 @@ class Equilibrium:
             pull = turns[spring.first] @ pull
             for body, arm, sign in zip((spring.first, spring.second), arms, (1.0, -1.0), strict=True):
                 force[body] += sign * pull
-                moment[body] += np.cross(arm, sign * pull)
+                moment[body] += cross(arm, sign * pull)
         place = self.track.place_of(*coordinates[BODY, :2], self.place)
         moment[BODY] += guidance(self.track, turns[BODY], self.turning, self.speed, place, self.vehicle)
         forward = self.velocity(self.middle) / self.speed
         held = PULL_UNIT * unknown[PULL] * forward
         force[BODY] += held
         down = self.vehicle.secondary_height - self.vehicle.body_height
-        moment[BODY] += np.cross(turns[BODY] @ [0.0, 0.0, down], held)
+        moment[BODY] += cross(turns[BODY] @ [0.0, 0.0, down], held)
         for axle in range(2):
             where = self.track.place_of(*coordinates[axle, :2], self.place)
             _, axes = self.track.axes(where)
@@ -141,14 +147,14 @@ class Equilibrium:
             force[axle] += axes @ both[:3]
             moment[axle] += axes @ both[3:]
         # What the curve takes.
-        accelerations = np.cross(self.turning, self.velocity(coordinates[:, :3]))
+        accelerations = cross(self.turning, self.velocity(coordinates[:, :3]))
         force -= self.mass[:, None] * accelerations
         for body in range(4):
             angular = self.turning.copy()
             if body < 2:
                 angular = angular + spins[body] * turns[body][:, 2]
             momentum = turns[body] @ (self.inertia[body] * (turns[body].T @ angular))
-            moment[body] -= np.cross(self.turning, momentum)
+            moment[body] -= cross(self.turning, momentum)
         on_rails = -forces[:, :, 1:3] - np.array(self.vehicle.rail_stiffness) * rails
         return np.concatenate([np.hstack([force, moment]).ravel(), on_rails.ravel()])
 

@@ -1,0 +1,233 @@
+"""studies/mileage: wheels that wear over a line, the same for any number of workers, after a kill, and mirrored."""
+
+import os
+import subprocess
+import sys
+from dataclasses import replace
+from itertools import pairwise
+
+import folders
+import mileage
+import numpy as np
+import pytest
+from curve_vehicle import VEHICLE
+from dask_runs import read_component
+from helpers import FMU3, wheelrail
+from mileage_line import BadInputError, is_its_own_mirror, main_line, mirrored, named, read_line, vehicle_of
+from mileage_march import MIRROR, march, read_state, state_file
+from mileage_wheels import NewWheel, smoothed
+
+# The small run in a process of its own on two workers, which goes on after each file when it is told to.
+PROGRAM = """
+import os, sys
+from pathlib import Path
+sys.path[:0] = sys.argv[1].split(os.pathsep)
+import mileage, mileage_march
+from dask_runs import local_client, read_component
+from helpers import FMU3
+for name in ("write_state", "write_classes"):
+    def waiting(*arguments, write=getattr(mileage_march, name)):
+        write(*arguments)
+        print("written", flush=True)
+        sys.stdin.readline()
+    setattr(mileage_march, name, waiting)
+if __name__ == "__main__":
+    with local_client(2) as client:
+        mileage_march.march(client, mileage.small_plan(), Path(sys.argv[2]), read_component(FMU3))
+"""
+
+
+@pytest.fixture(scope="module")
+def component():
+    """Return the component and its digest."""
+    return read_component(FMU3)
+
+
+@pytest.fixture(scope="module")
+def run(component, tmp_path_factory):
+    """Return the small run, computed here without Dask: its folder and the wheels after each step."""
+    folder = tmp_path_factory.mktemp("run")
+    count = march(None, mileage.small_plan(), folder, component)
+    return folder, [read_state(state_file(folder, step)) for step in range(count + 1)]
+
+
+@pytest.fixture(scope="module")
+def new():
+    """Return the new wheel."""
+    return NewWheel.of("S1002")
+
+
+def middle(new, depth):
+    """Where half of the worn area lies to each side, across the wheel [m]."""
+    total = np.cumsum(depth) / depth.sum()
+    return np.interp(0.5, total, 0.5 * (new.y[1:] + new.y[:-1]))
+
+
+def test_wheels_wear_where_they_roll(run, new):
+    """In a curve to the right the outer leading wheel wears at its flange's root, the inner one to the field side."""
+    _, states = run
+    assert len(states) >= 3
+    last = states[-1]
+    assert last.distance == 400e3
+    outer, inner, *trailing = (middle(new, depth) for depth in last.depth)
+    assert -0.040 < outer < -0.025
+    assert 0.005 < inner < 0.025
+    assert all(-0.020 < place < 0.020 for place in trailing)
+    # All wear, the leading ones more, and no step takes more than it may.
+    areas = [new.area(depth) for depth in last.depth]
+    assert min(areas) > 0.0
+    assert min(areas[:2]) > 3.0 * max(areas[2:])
+    most = mileage.small_plan().largest_depth
+    for before, after in pairwise(states):
+        assert (after.depth >= before.depth).all()
+        assert (after.depth - before.depth).max() <= most * (1.0 + 1e-9)
+
+
+def test_killed_run_goes_on(run, tmp_path, killed_half_way):
+    """Killed within a step and gone on with, on two workers, it has the bits of one without Dask."""
+    folder, states = run
+    program = tmp_path / "program.py"
+    program.write_text(PROGRAM)
+    command = [sys.executable, program, os.pathsep.join(folders.folders()), tmp_path / "broken"]
+    killed_half_way(command)
+    broken = sorted(path.name for path in (tmp_path / "broken").glob("*.parquet"))
+    assert broken == ["classes_0000.parquet", "classes_0001.parquet", "wheels_0000.parquet", "wheels_0001.parquet"]
+    done = subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=900)
+    assert done.returncode == 0, done.stderr
+    assert "1 steps, 200 km, are there from before" in done.stdout
+    for step in range(len(states)):
+        for path in (state_file(folder, step), folder / f"classes_{step:04d}.parquet"):
+            if path.exists():
+                assert (tmp_path / "broken" / path.name).read_bytes() == path.read_bytes(), path.name
+
+
+def test_mirrored_line_mirrors_the_wheels(run, component, tmp_path):
+    """Curves to the other hand wear the wheels of the other side, to what Newton's method leaves."""
+    _, states = run
+    plan = mileage.small_plan(distance=200e3)
+    march(None, replace(plan, line=tuple(mirrored(plan.line))), tmp_path, component)
+    found = read_state(state_file(tmp_path, 1))
+    assert found.distance == states[1].distance
+    difference = np.abs(found.depth[list(MIRROR)] - states[1].depth).max()
+    assert difference < 1e-6 * states[1].depth.max()
+
+
+def test_half_the_step(run, component, new, tmp_path):
+    """Steps of half the length change the worn areas by less than 2 %."""
+    _, states = run
+    plan = mileage.small_plan(distance=200e3, largest_depth=0.5 * mileage.small_plan().largest_depth)
+    assert march(None, plan, tmp_path, component) == 2
+    halved = read_state(state_file(tmp_path, 2))
+    for depth, finer in zip(states[1].depth, halved.depth, strict=True):
+        assert new.area(finer) == pytest.approx(new.area(depth), rel=0.02)
+
+
+def test_depths_make_the_profile(new):
+    """The area of depths is that between the new and the worn profile; an area that is taken away is found again."""
+    y = 0.5 * (new.y[1:] + new.y[:-1])
+    depth = 1e-3 * np.exp(-(((y + 0.032) / 0.004) ** 2)) + 5e-4 * np.exp(-(((y - 0.01) / 0.01) ** 2))
+    depth[: np.argmin(new.z)] = 0.0
+    worn = new.worn(depth)
+    assert worn.worn_area(wheelrail.Profile("S1002")) == pytest.approx(new.area(depth), rel=1e-3)
+    area = 1e-9 * np.exp(-(((y - 0.005) / 0.005) ** 2))
+    more = depth + new.depth_of(area, depth)
+    assert new.area(more) - new.area(depth) == pytest.approx(area.sum(), rel=1e-2)
+    # A wheel for the units: its cells lie along the worn profile, to what chords are shorter, and its running circle is
+    # lower.
+    wheel = new.for_units(depth)
+    assert wheel.ends[-1] == pytest.approx(float(worn.points["arc_length"].iloc[-1]), abs=5e-6)
+    assert wheel.depth == pytest.approx(5e-4 * np.exp(-1.0), rel=0.02)
+
+
+def test_smoothing_loses_nothing(new):
+    """A wave of the given length is halved, and no area is lost."""
+    wave = 5e-3
+    place = new.place - new.place.mean()
+    window = np.exp(-((place / 0.02) ** 2))
+    area = window * (1.0 + 0.3 * np.cos(2.0 * np.pi * place / wave))
+    found = smoothed(area, new.cell, wave)
+    assert found.sum() == pytest.approx(area.sum(), rel=1e-9)
+    centre = np.abs(place) < 0.5 * wave
+    swing = np.ptp((found / smoothed(window, new.cell, wave))[centre])
+    assert swing == pytest.approx(0.5 * 0.6, rel=0.03)
+
+
+def test_line_of_the_page():
+    """Its shares are 1, it is its own mirror, and no class asks for more than 70 mm more cant than it has."""
+    line = main_line()
+    assert sum(curve.share for curve in line) == pytest.approx(1.0)
+    assert is_its_own_mirror(line)
+    assert len(named([*line, *line])) == 2 * len(line)
+    for curve in line:
+        assert 1.5 * curve.speed**2 / (9.81 * abs(curve.radius)) - curve.cant < 0.07
+
+
+LINE = "radius [m],cant [mm],speed [km/h],length [km],gauge_face_friction\n,0,140,60,1\n-300,100,60,20,0.3\n"
+
+
+def test_line_from_a_table(tmp_path):
+    """Units in the headings, lengths as shares, straight track without a radius."""
+    path = tmp_path / "line.csv"
+    path.write_text(LINE + "300,100,60,20,0.3\n")
+    line = read_line(path)
+    assert [curve.name for curve in line] == ["straight", "R 300 right", "R 300 left"]
+    assert [curve.share for curve in line] == pytest.approx([0.6, 0.2, 0.2])
+    assert line[1].cant == pytest.approx(0.1)
+    assert line[1].speed == pytest.approx(60.0 / 3.6)
+    assert line[1].gauge_face_friction == 0.3
+    assert is_its_own_mirror(line)
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        (LINE.replace("-300", "-30"), "line.csv, row 2: radius = -30 m: 150 m or more, negative to the right"),
+        (LINE.replace("-300", "abc"), "line.csv, row 2: radius = 'abc': a number is needed"),
+        (LINE.replace("100,60", "1000,60"), "line.csv, row 2: cant = 1 m: 0 to 0.2 m is needed"),
+        (LINE.replace("[km/h]", "[mph]"), "line.csv: speed [mph]: the unit is not known; allowed is m/s, km/h"),
+        (LINE.replace("length", "share_of"), "line.csv: there is no column share_of; there are radius"),
+        (LINE.replace("speed [km/h]", "share"), "line.csv: column speed is needed"),
+        (LINE.replace(",0,140", ",20,140"), "line.csv, row 1: cant = 0.02 m: 0 on straight track is needed"),
+        (LINE.replace("60,20,0.3", "60,20"), "line.csv, row 2: 4 values under 5 headings"),
+        ("radius\n", "line.csv: headings and at least one row are needed"),
+    ],
+)
+def test_bad_lines(tmp_path, text, words):
+    """The file, the row, the field, its value and what is allowed."""
+    path = tmp_path / "line.csv"
+    path.write_text(text)
+    with pytest.raises(BadInputError) as caught:
+        read_line(path)
+    assert words in str(caught.value)
+
+
+def test_vehicle_of_the_user():
+    """Fields by name; what is wrong is named with what is allowed."""
+    vehicle = vehicle_of({"half_wheelbase": 1.3, "primary_stiffness": [1e7, 4e6, 1e6]})
+    assert vehicle == replace(VEHICLE, half_wheelbase=1.3, primary_stiffness=(1e7, 4e6, 1e6))
+    for given, words in (
+        ({"wheelbase": 2.6}, "there is no field wheelbase; there are wheel_radius, wheelset_mass"),
+        ({"half_wheelbase": 26}, "half_wheelbase = 26: 0.5 to 5 is needed"),
+        ({"primary_stiffness": [1e7]}, "primary_stiffness = [10000000.0]: a list of 3 numbers is needed"),
+        ({"body_mass": "heavy"}, "body_mass = heavy: a number is needed"),
+    ):
+        with pytest.raises(BadInputError) as caught:
+            vehicle_of(given)
+        assert words in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        (["--distance", "-5"], "mileage: the command line: --distance = -5: 1 to 1e+07 is needed"),
+        (["--wheel", "60E1"], "60E1 is the profile of a rail, and that of a wheel is needed"),
+        (["--limit", "flange=22"], "--limit flange: there are flange_height"),
+        (["--set", "friction_law"], "--set friction_law: NAME=VALUE is needed"),
+    ],
+)
+def test_bad_options(monkeypatch, options, words):
+    """Refused before anything is computed."""
+    monkeypatch.setattr(sys, "argv", ["mileage", *options])
+    with pytest.raises(SystemExit) as caught:
+        mileage.main()
+    assert words in str(caught.value.code)
