@@ -20,10 +20,19 @@ import numpy as np
 from dask_runs import add_options, client_for, read_component
 from helpers import FMU3, RESULTS, markdown_table, write_tables
 from mileage_bogie import rates
-from mileage_line import BadInputError, main_line, read_line, read_vehicle, short_line, wrong
+from mileage_line import BadInputError, main_line, read_line, read_vehicle, short_line, straight_line, wrong
 from mileage_march import Plan, march, read_state, state_file, to_compute, weighted
 from mileage_pictures import draw_curves, draw_depths, draw_laws, draw_measures, draw_profiles
-from mileage_tables import NAMES, curves_table, measures, measures_table, run_table, steps_of
+from mileage_tables import (
+    NAMES,
+    curves_table,
+    depths_at,
+    lubrication_table,
+    measures,
+    measures_table,
+    run_table,
+    steps_of,
+)
 from mileage_wheels import MEASURES, NewWheel, smoothed
 
 WORK = RESULTS / "mileage"
@@ -36,7 +45,8 @@ FINER = ((10, 7), (16, 11), (24, 15))
 PARAMETERS = GRID | {"friction_law": "constant", "wear_law": "energy"}
 # Of dry discs in a laboratory to a line in all weathers: chosen so that flanges lose some millimetre in 100 000 km.
 WEAR_FACTOR = 0.05
-LUBRICATED = 0.3
+# Factor on friction at the gauge faces of curves up to 800 m, and the mileage at which the two are compared.
+LUBRICATED, COMPARED = 0.3, 30_000e3  # 1, m
 LAWS = ("energy", "archard_map", "archard")
 # What limits a number on the command line: least and largest.
 LIMITS = {"distance": (1.0, 1e7), "wear_factor": (1e-6, 100.0), "largest_depth": (1e-3, 0.5), "smoothing": (0.0, 20.0)}
@@ -101,26 +111,35 @@ def grids_table(found):
 def study(client, component):
     """The runs of the page, its tables and its pictures."""
     plan = main_plan()
-    oiled = replace(plan, line=tuple(main_line(LUBRICATED)))
-    base, lubricated = WORK / "dry", WORK / "lubricated"
-    for title, one, folder in (("dry gauge faces", plan, base), ("lubricated gauge faces", oiled, lubricated)):
-        print(f"  {title}", flush=True)
+    oiled = replace(plan, line=tuple(main_line(LUBRICATED)), distance=COMPARED)
+    plain = replace(plan, line=tuple(straight_line()))
+    base, lubricated, straights = (WORK / name for name in ("hills", "lubricated", "plain"))
+    for one, folder in ((plan, base), (plain, straights), (oiled, lubricated)):
+        print(f"  {folder.name}", flush=True)
         march(client, one, folder, component)
     new = NewWheel.of(plan.wheel)
     laws = {law: first_rates(client, component, plan, {"wear_law": law}) for law in LAWS}
     finer = {f"{n} × {m}": {"patch_nodes": n, "patch_strips": m} for n, m in FINER}
     grids = {title: first_rates(client, component, plan, grid) for title, grid in finer.items()}
-    found = {"dry": measures(plan, base), "lubricated": measures(oiled, lubricated)}
+    found = {"hills": measures(plan, base), "plain": measures(plain, straights)}
     last = steps_of(base) - 1
-    tables = {"run": run_table(plan, base), "measures": measures_table(found["dry"])}
-    tables |= {"lubricated": measures_table(found["lubricated"]), "curves": curves_table(base, (0, last))}
-    tables |= {"laws": laws_table(laws), "grids": grids_table(grids)}
+    tables = {
+        "run": run_table(plan, base),
+        "hills": measures_table(found["hills"]),
+        "run plain": run_table(plain, straights),
+    }
+    tables |= {"plain": measures_table(found["plain"]), "curves": curves_table(base, (0, last))}
+    dry_and_oiled = {"dry": base, "lubricated": lubricated}
+    tables |= {"lubrication": lubrication_table(new, dry_and_oiled, COMPARED), "laws": laws_table(laws)}
+    tables |= {"grids": grids_table(grids)}
     write_tables("mileage.md", tables)
-    draw_profiles(plan, new, base, "mileage_profiles.png")
+    draw_profiles(new, base, "mileage_profiles.png")
     draw_depths(new, base, "mileage_depths.png")
+    draw_depths(new, straights, "mileage_plain.png")
     draw_measures(found, "mileage_measures.png", {})
     draw_curves(base, (0, last), ("new", "at the end"), "mileage_curves.png")
-    draw_laws(new, {law: whole for law, (whole, _) in laws.items()}, "mileage_laws.png")
+    depths = {title: depths_at(folder, COMPARED) for title, folder in dry_and_oiled.items()}
+    draw_laws(new, {law: whole for law, (whole, _) in laws.items()}, depths, COMPARED, "mileage_laws.png")
 
 
 def own_run(client, component, plan, name, limits):
@@ -131,7 +150,7 @@ def own_run(client, component, plan, name, limits):
     tables = {"run": run_table(plan, folder), "measures": measures_table(found)}
     tables |= {"curves": curves_table(folder, (0, last))}
     write_tables(f"mileage_{name}.md", tables)
-    draw_profiles(plan, new, folder, f"mileage_{name}_profiles.png")
+    draw_profiles(new, folder, f"mileage_{name}_profiles.png")
     draw_depths(new, folder, f"mileage_{name}_depths.png")
     draw_measures({"": found}, f"mileage_{name}_measures.png", limits)
     draw_curves(folder, (0, last), ("new", "at the end"), f"mileage_{name}_curves.png")

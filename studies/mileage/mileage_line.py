@@ -100,6 +100,12 @@ def main_line(gauge_face_friction=1.0):
     ]
 
 
+def straight_line():
+    """A line over plains at 160 km/h: five sixths straight, the others curves of 3000 m."""
+    curves = both_hands(3000.0, 50.0, 160.0, 1.0 / 6.0)
+    return [Curve(STRAIGHT, 0.0, 160.0 / 3.6, 5.0 / 6.0), *curves]
+
+
 def short_line():
     """Straight track and one curve to the right: for the test."""
     return [Curve(STRAIGHT, 0.0, 30.0, 0.7), Curve(-500.0, 0.11, 85.0 / 3.6, 0.3)]

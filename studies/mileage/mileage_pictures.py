@@ -18,7 +18,7 @@ def middles(new):
     return 5e2 * (new.y[1:] + new.y[:-1])
 
 
-def draw_profiles(plan, new, folder, name):
+def draw_profiles(new, folder, name):
     """Profiles of the left wheels as they wear: flange and tread, new and after the mileage."""
     states = [read_state(state_file(folder, step)) for step in chosen(folder, 5)]
     figure, panels = plt.subplots(2, 2, figsize=(9.0, 6.2), layout="constrained", width_ratios=(1.0, 1.35))
@@ -131,14 +131,18 @@ def draw_curves(folder, steps, titles, name):
     save(figure, name)
 
 
-def draw_laws(new, shapes, name):
-    """Where each law of wear takes how much off the wheels as new, over the whole line, by its own area."""
-    figure, panels = plt.subplots(1, 2, figsize=(9.0, 3.4), sharex=True, layout="constrained")
-    for axes, (number, title) in zip(panels, ((0, NAMES[0]), (2, NAMES[2])), strict=True):
-        for (law, areas), colour in zip(shapes.items(), (BLACK, GREEN, ORANGE), strict=True):
-            share = areas[number] / areas[number].sum() / (1e3 * new.cell)
-            axes.plot(middles(new), 100.0 * share, color=colour, lw=1.2, label=law)
-        axes.set(title=title, xlim=(-45, 40), xlabel="across the wheel [mm]")
-    panels[0].set_ylabel("share of the worn area [% per mm]")
-    panels[0].legend(fontsize=7)
+def draw_laws(new, shapes, depths, distance, name):
+    """Where each law of wear takes its area from the leading wheel as new, and what lubricated gauge faces change."""
+    figure, (left, right) = plt.subplots(1, 2, figsize=(9.0, 3.6), sharex=True, layout="constrained")
+    for (law, areas), colour in zip(shapes.items(), (BLACK, GREEN, ORANGE), strict=True):
+        left.plot(middles(new), 100.0 * areas[0] / areas[0].sum() / (1e3 * new.cell), color=colour, lw=1.2, label=law)
+    left.set(title="leading wheel, new: the laws of wear", ylabel="share of the worn area [% per mm]")
+    for (title, depth), style in zip(depths.items(), ("-", "--"), strict=True):
+        for number, colour in ((0, BLUE), (2, RED)):
+            text = f"{NAMES[number].partition(' ')[0]}, {title}"
+            right.plot(middles(new), 1e3 * depth[number], style, color=colour, lw=1.2, label=text)
+    right.set(title=f"gauge faces dry and lubricated, {label(distance)}", ylabel=DEPTH)
+    for axes in (left, right):
+        axes.set(xlim=(-50, 40), xlabel="across the wheel [mm]")
+        axes.legend(fontsize=7)
     save(figure, name)

@@ -66,6 +66,35 @@ def measured(plan, new, progress):
     return rows
 
 
+def depths_at(folder, distance):
+    """Depths of the wheels at a mileage, linear between two steps."""
+    states = [read_state(state_file(folder, step)) for step in range(steps_of(folder) + 1)]
+    after = next(state for state in states if state.distance >= distance)
+    if after.step == 0:
+        return after.depth
+    before = states[after.step - 1]
+    share = (distance - before.distance) / (after.distance - before.distance)
+    return before.depth + share * (after.depth - before.depth)
+
+
+def lubrication_table(new, folders, distance):
+    """Worn area on flange, where it is steeper than 45°, and tread at a mileage, of runs by their titles."""
+    steep = new.normal[1] < np.cos(np.pi / 4.0)
+    steep = 0.5 * (steep[1:] + steep[:-1]) > 0.25
+    root = (new.y[1:] < -0.026) & ~steep
+    parts = {"flange, steeper than 45°": steep, "its root, to -26 mm": root, "tread": ~(steep | root)}
+    lines = []
+    for title, folder in folders.items():
+        depth = depths_at(folder, distance)
+        for number in (0, 2):
+            areas = [new.area(np.where(part, depth[number], 0.0)) for part in parts.values()]
+            sd = new.worn(depth[number]).measures().flange_thickness
+            line = [f"{title}, {NAMES[number].partition(' ')[0]}", *(f"{1e6 * area:.2f} mm²" for area in areas)]
+            lines.append([*line, f"{1e3 * sd:.2f} mm", f"{1e3 * depth[number].max():.2f} mm"])
+    head = [f"after {1e-3 * distance:.0f} km", *parts, "Sd", "largest depth"]
+    return markdown_table(head, lines)
+
+
 def classes_of(folder, step):
     """What the classes had in a step, a column each, and the notes."""
     table = pq.read_table(classes_file(folder, step))
