@@ -49,7 +49,7 @@ say = @printf '\n\033[1m== %s\033[0m\n' '$(1)'
 install = $(PY) -m uv pip install --quiet --python $(PY) -r $(1) \
 	|| $(PY) -m pip install --quiet --disable-pip-version-check -r $(1)
 
-COUPLINGS := longitudinal stiff multibody train sweep hunting adhesion maintenance height curve
+COUPLINGS := longitudinal stiff multibody train sweep hunting adhesion maintenance height curve mileage
 WHEELSET := target/Wheelset.fmu
 
 .PHONY: fmu fmu3 platforms wheel demo measurements measurements-docs test test-debug soak derivatives bits docs site bench bench-check clean lint rust-test verify python-test hosts library command couplings packages
@@ -168,7 +168,7 @@ measurements-docs: measurements
 $(WHEELSET): studies/longitudinal/wheelset.py $(VENV)/couplings
 	@$(PY) -m pythonfmu build -f studies/longitudinal/wheelset.py -d target
 
-couplings-set-up: fmu hosts $(WHEELSET)
+couplings-set-up: fmu fmu3 hosts $(WHEELSET)
 
 couplings: $(addprefix coupling-,$(COUPLINGS))
 
@@ -176,12 +176,13 @@ $(addprefix coupling-,$(COUPLINGS)): coupling-%: couplings-set-up
 	$(call say,Coupling: $*)
 	@$(PY) studies $*
 
+MILEAGE := $(addprefix mileage_,$(addsuffix .png,profiles depths plain measures curves laws))
 HUNTING := $(addsuffix .png,hunting_stability hunting_cycle hunting_curve hunting_contact)
 
 # The pictures of the pages in docs/couplings/, and their tables where they are generated; commit what changes.
 couplings-docs: couplings
 	@$(PY) tools/update_docs.py couplings
-	@cp $(addprefix results/,longitudinal.png stiff.png stiff_stop.png multibody.png train.png creep_curves.png $(HUNTING) adhesion.png maintenance.png height.png curve.png curve_above.png) docs/couplings/
+	@cp $(addprefix results/,longitudinal.png stiff.png stiff_stop.png multibody.png train.png creep_curves.png $(HUNTING) adhesion.png maintenance.png height.png curve.png curve_above.png $(MILEAGE)) docs/couplings/
 
 # The time that the sweep takes on two workers against one.
 sweep-scaling: couplings-set-up

@@ -219,9 +219,11 @@ def test_vehicle_of_the_user():
 @pytest.mark.parametrize(
     ("options", "words"),
     [
-        (["--distance", "-5"], "mileage: the command line: --distance = -5: 1 to 1e+07 is needed"),
+        (["--distance", "-5"], "mileage: plan: distance = -5000.0: 1000 to 1e+10 is needed"),
         (["--wheel", "60E1"], "60E1 is the profile of a rail, and that of a wheel is needed"),
         (["--limit", "flange=22"], "--limit flange: there are flange_height"),
+        (["--samples", "0"], "plan: samples = 0: 1 to 99 is needed"),
+        (["--set", "friction=0.3"], "there is no variable friction"),
         (["--set", "friction_law"], "--set friction_law: NAME=VALUE is needed"),
     ],
 )

@@ -26,7 +26,7 @@ PAGE = REPOSITORY / "modelDescription" / "documentation" / "index.html"
 VERIFICATION = REPOSITORY / "target" / "verification.txt"
 STIFF, *_ = COUPLING_PAGES = tuple(
     REPOSITORY / "docs" / "couplings" / f"{name}.md"
-    for name in ("stiff", "hunting", "adhesion", "maintenance", "height", "curve")
+    for name in ("stiff", "hunting", "adhesion", "maintenance", "height", "curve", "mileage")
 )
 MEASUREMENTS = REPOSITORY / "docs" / "measurements.md"
 MEASURED = ("measurements_eurosprinter.md", "measurements_twin_disc.md")

@@ -17,6 +17,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+from curve_vehicle import Wheel
 from dask_runs import add_options, client_for, read_component
 from helpers import FMU3, RESULTS, markdown_table, write_tables
 from mileage_bogie import rates
@@ -48,9 +49,15 @@ WEAR_FACTOR = 0.05
 # Factor on friction at the gauge faces of curves up to 800 m, and the mileage at which the two are compared.
 LUBRICATED, COMPARED = 0.3, 30_000e3  # 1, m
 LAWS = ("energy", "archard_map", "archard")
-# What limits a number on the command line: least and largest.
-LIMITS = {"distance": (1.0, 1e7), "wear_factor": (1e-6, 100.0), "largest_depth": (1e-3, 0.5), "smoothing": (0.0, 20.0)}
-LIMITS |= {"samples": (1, 99), "samples_straight": (1, 99)}
+# Options that are numbers of the plan, and their units on the command line.
+NUMBERS = {
+    "distance": 1e3,
+    "wear_factor": 1.0,
+    "largest_depth": 1e-3,
+    "smoothing": 1e-3,
+    "samples": 1,
+    "samples_straight": 1,
+}
 
 
 def main_plan(**changes):
@@ -180,14 +187,8 @@ def pairs(texts, kind, option):
 
 def plan_of(chosen):
     """The plan that the options ask for, or None for the study."""
-    for name, (least, most) in LIMITS.items():
-        value = getattr(chosen, name)
-        if value is not None and not least <= value <= most:
-            raise wrong("the command line", f"--{name.replace('_', '-')}", f"{value:g}", f"{least:g} to {most:g}")
-    given = {name: getattr(chosen, name) for name in LIMITS if getattr(chosen, name) is not None}
-    for name, factor in (("distance", 1e3), ("largest_depth", 1e-3), ("smoothing", 1e-3)):
-        if name in given:
-            given[name] *= factor
+    numbers = {name: (getattr(chosen, name), unit) for name, unit in NUMBERS.items()}
+    given = {name: value * unit for name, (value, unit) in numbers.items() if value is not None}
     if chosen.line:
         given["line"] = tuple(read_line(chosen.line))
     if chosen.vehicle:
@@ -233,7 +234,9 @@ def main():
         if unknown := [name for name in limits if name not in MEASURES]:
             raise BadInputError(f"--limit {unknown[0]}: there are {', '.join(MEASURES)}")
         if plan is not None:
+            # What is wrong with either is said before anything is computed.
             NewWheel.of(plan.wheel)
+            Wheel("left", FMU3, **plan.parameters).close()
     except (BadInputError, ValueError, FileNotFoundError) as error:
         sys.exit(f"mileage: {error}")
     name = chosen.name or ("small" if chosen.small else "own")

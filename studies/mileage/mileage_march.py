@@ -19,9 +19,12 @@ import pyarrow.parquet as pq
 from curve_vehicle import VEHICLE, WHEELS, Vehicle
 from dask_runs import is_done, stamp_of, write_table
 from mileage_bogie import Settings, Starts, rates
-from mileage_line import by_size, is_its_own_mirror, named
+from mileage_line import by_size, is_its_own_mirror, named, wrong
 from mileage_wheels import NewWheel, smoothed
 
+# Least and largest value of what a plan has as numbers, in SI units.
+RANGES = {"distance": (1e3, 1e10), "wear_factor": (1e-6, 100.0), "largest_depth": (1e-6, 5e-4)}
+RANGES |= {"smoothing": (0.0, 0.02), "samples": (1, 99), "samples_straight": (1, 99)}
 # Of the four wheels, those of the other side.
 MIRROR = (1, 0, 3, 2)
 UNITS = {"Y": "N", "Q": "N", "wear_number": "N", "peak_temperature": "K", "peak_pressure": "Pa", "left": "N"}
@@ -61,6 +64,16 @@ class Plan:
     wear_factor: float = 1.0
     samples: int = 4
     samples_straight: int = 7
+
+    def __post_init__(self):
+        """Refuse what is out of range, with its name."""
+        for name, (least, most) in RANGES.items():
+            value = getattr(self, name)
+            if not isinstance(value, int | float) or not least <= value <= most:
+                raise wrong("plan", name, value, f"{least:g} to {most:g}")
+        shares = sum(curve.share for curve in self.line)
+        if abs(shares - 1.0) > 1e-9:
+            raise wrong("plan", "the sum of the line's shares", f"{shares:g}", "1")
 
     def settings(self):
         """What tasks need of it."""
