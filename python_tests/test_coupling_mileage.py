@@ -143,7 +143,7 @@ def test_smoothing_loses_nothing(new):
     """A wave of the given length is halved, and no area is lost."""
     wave = 5e-3
     place = new.place - new.place.mean()
-    window = np.exp(-((place / 0.02) ** 2))
+    window = np.exp(-((place / 0.015) ** 2))
     area = window * (1.0 + 0.3 * np.cos(2.0 * np.pi * place / wave))
     found = smoothed(area, new.cell, wave)
     assert found.sum() == pytest.approx(area.sum(), rel=1e-9)

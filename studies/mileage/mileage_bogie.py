@@ -31,7 +31,8 @@ OF_WHEELSETS = np.r_[0 : 6 * FRAME, UNKNOWN_BODIES : UNKNOWN_BODIES + RAILS]
 HELD = np.r_[6 * FRAME : UNKNOWN_BODIES]
 # Largest force or moment that is left. Where contacts jump between places, or windows change their strips, forces have
 # steps, and Newton's method may find nothing better than such a step: it is taken, if it is not too large, and counted.
-# An equilibrium, about which states are sampled, may be less good than these.
+# An equilibrium, about which states are sampled, may be less good than these; where it is not even that, frame and body
+# stay where the step of mileage before had them.
 TOLERANCE, ACCEPTED, ACCEPTED_MIDDLE, MOST_ITERATIONS = 1.0, 3e3, 1e4, 45  # N, N.m
 # The suspension's derivatives hardly change: they are renewed after so many iterations.
 RENEWED = 40
@@ -303,7 +304,9 @@ def in_equilibrium(fmu, settings, wheels, curve, starts):
     tries.append((*bogie.start_from(running).attempt(), bogie.unknown))
     left, _, bogie.unknown = min(tries, key=lambda found: found[0])
     if left > ACCEPTED_MIDDLE:
-        raise NoEquilibriumError(curve, (0.0, 0.0), left)
+        if starts is None:
+            raise NoEquilibriumError(curve, (0.0, 0.0), left)
+        bogie.unknown = starts.for_wheels(0, wheels, settings.vehicle.wheel_radius)
     return bogie, left, sum(iterations for _, iterations, _ in tries)
 
 
@@ -355,12 +358,14 @@ def rates(component, digest, settings, wheels, curve, starts):
     dict
         area: of each wheel the area of each cell that wears off per distance [m], mean over the samples. rows: what
         tables have, for each state and wheel. starts: those of the next step. left: the largest force that is left over
-        in a state [N]. missed: samples without an equilibrium, which are left out. iterations: all of Newton's method.
+        in a state [N]. missed: samples without an equilibrium, which are left out. held: 1 where the frame is that of the step
+        before. iterations: all of Newton's method.
     """
     fmu = local_file(component, digest)
     bogie, left, iterations = in_equilibrium(fmu, settings, wheels, curve, starts)
     middle = bogie.unknown
-    unknowns, lefts, rows = [middle], [left], []
+    missed = int(left > ACCEPTED_MIDDLE)
+    unknowns, lefts, rows = [middle], [], []
     count = settings.samples if np.isfinite(curve.radius) else settings.samples_straight
     areas = [np.zeros(len(wheel.ends) - 1) for wheel in wheels]
     for sample, offset in enumerate(offsets(count, curve.irregularity)):
@@ -375,10 +380,10 @@ def rates(component, digest, settings, wheels, curve, starts):
             area += bogie.worn_off(number)
             rows.append({"sample": sample, "wheel": number, "left": left} | row)
     bogie.close()
-    reached = len(lefts) - 1
+    reached = len(lefts)
     if 2 * reached < count:
-        raise NoEquilibriumError(curve, (0.0, 0.0), np.inf)
+        raise NoEquilibriumError(curve, (0.0, 0.0), left)
     areas = [area / reached for area in areas]
     found = Starts(tuple(tuple(unknown.tolist()) for unknown in unknowns), depths_of(wheels))
-    counts = {"missed": count - reached, "iterations": iterations}
+    counts = {"missed": count - reached, "held": missed, "iterations": iterations}
     return {"area": areas, "rows": rows, "starts": found, "left": max(lefts), **counts}

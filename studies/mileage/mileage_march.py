@@ -248,5 +248,6 @@ def write_classes(folder, stamp, progress, length, classes, results, raw, rate):
         "left": max(result["left"] for result in results),
         "above": int(sum(row["left"] > 100.0 for row in rows)) // len(WHEELS),
         "missed": sum(result["missed"] for result in results),
+        "held": sum(result["held"] for result in results),
     }
     write_table(classes_file(folder, progress.step), stamp, columns, {"step": json.dumps(notes)})
