@@ -11,14 +11,16 @@ shown. After a kill, the same command goes on. docs/couplings/mileage.md.
 """
 
 import argparse
+import json
 import shutil
 import sys
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+import pyarrow.parquet as pq
 from curve_vehicle import Wheel
-from dask_runs import add_options, client_for, read_component
+from dask_runs import add_options, client_for, is_done, read_component, write_table
 from helpers import FMU3, RESULTS, markdown_table, write_tables
 from mileage_bogie import rates
 from mileage_line import BadInputError, main_line, read_line, read_vehicle, short_line, straight_line, wrong
@@ -80,15 +82,24 @@ def first_rates(client, component, plan, parameters):
     """What all classes take away from new wheels with other parameters: whole line, and area per distance by class."""
     data, digest = component
     new = NewWheel.of(plan.wheel)
-    wheels = [new.for_units(new.none())] * len(NAMES)
     changed = replace(plan, parameters=plan.parameters | parameters)
-    classes = to_compute(plan.line, wheels)
-    shared = client.scatter(data, broadcast=True)
-    arguments = [(digest, changed.settings(), wheels, curve, None) for curve in classes.values()]
-    results = client.gather([client.submit(rates, shared, *given, pure=False) for given in arguments])
-    areas = weighted(changed, classes.values(), results)
-    sums = {name: [area.sum() for area in result["area"]] for name, result in zip(classes, results, strict=True)}
-    return np.stack([smoothed(area, new.cell, plan.smoothing) for area in areas]), sums
+    stamp = changed.stamp(digest, new)
+    path = WORK / "new_wheels" / f"{'_'.join(str(value) for value in parameters.values())}.parquet"
+    if not is_done(path, stamp):
+        wheels = [new.for_units(new.none())] * len(NAMES)
+        classes = to_compute(plan.line, wheels)
+        shared = client.scatter(data, broadcast=True)
+        arguments = [(digest, changed.settings(), wheels, curve, None) for curve in classes.values()]
+        results = client.gather([client.submit(rates, shared, *given, pure=False) for given in arguments])
+        areas = weighted(changed, classes.values(), results)
+        sums = {name: [area.sum() for area in result["area"]] for name, result in zip(classes, results, strict=True)}
+        path.parent.mkdir(parents=True, exist_ok=True)
+        columns = {
+            name: ("m", smoothed(area, new.cell, plan.smoothing)) for name, area in zip(NAMES, areas, strict=True)
+        }
+        write_table(path, stamp, columns, {"sums": json.dumps(sums)})
+    table = pq.read_table(path)
+    return np.stack([table[name].to_numpy() for name in NAMES]), json.loads(table.schema.metadata[b"sums"])
 
 
 def laws_table(found):
@@ -145,7 +156,8 @@ def study(client, component):
     draw_profiles(new, base, "mileage_profiles.png")
     draw_depths(new, base, "mileage_depths.png")
     draw_depths(new, straights, "mileage_plain.png")
-    draw_measures(found, "mileage_measures.png", {})
+    draw_measures(found["hills"], "mileage_measures.png", {})
+    draw_measures(found["plain"], "mileage_plain_measures.png", {})
     draw_curves(base, (0, last), ("new", "at the end"), "mileage_curves.png")
     depths = {title: depths_at(folder, COMPARED) for title, folder in dry_and_oiled.items()}
     draw_laws(new, {law: whole for law, (whole, _) in laws.items()}, depths, COMPARED, "mileage_laws.png")
@@ -161,7 +173,7 @@ def own_run(client, component, plan, name, limits):
     write_tables(f"mileage_{name}.md", tables)
     draw_profiles(new, folder, f"mileage_{name}_profiles.png")
     draw_depths(new, folder, f"mileage_{name}_depths.png")
-    draw_measures({"": found}, f"mileage_{name}_measures.png", limits)
+    draw_measures(found, f"mileage_{name}_measures.png", limits)
     draw_curves(folder, (0, last), ("new", "at the end"), f"mileage_{name}_curves.png")
     for title, depth in zip(NAMES, read_state(state_file(folder, last + 1)).depth, strict=True):
         new.worn(depth).write(folder / f"{title.replace(' ', '_')}.prw")

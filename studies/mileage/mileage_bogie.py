@@ -358,13 +358,13 @@ def rates(component, digest, settings, wheels, curve, starts):
     dict
         area: of each wheel the area of each cell that wears off per distance [m], mean over the samples. rows: what
         tables have, for each state and wheel. starts: those of the next step. left: the largest force that is left over
-        in a state [N]. missed: samples without an equilibrium, which are left out. held: 1 where the frame is that of the step
-        before. iterations: all of Newton's method.
+        in a state [N]. missed: samples without an equilibrium, which are left out. held: 1 where the frame is that of
+        the step before. iterations: all of Newton's method.
     """
     fmu = local_file(component, digest)
     bogie, left, iterations = in_equilibrium(fmu, settings, wheels, curve, starts)
     middle = bogie.unknown
-    missed = int(left > ACCEPTED_MIDDLE)
+    held = int(left > ACCEPTED_MIDDLE)
     unknowns, lefts, rows = [middle], [], []
     count = settings.samples if np.isfinite(curve.radius) else settings.samples_straight
     areas = [np.zeros(len(wheel.ends) - 1) for wheel in wheels]
@@ -385,5 +385,5 @@ def rates(component, digest, settings, wheels, curve, starts):
         raise NoEquilibriumError(curve, (0.0, 0.0), left)
     areas = [area / reached for area in areas]
     found = Starts(tuple(tuple(unknown.tolist()) for unknown in unknowns), depths_of(wheels))
-    counts = {"missed": count - reached, "held": missed, "iterations": iterations}
+    counts = {"missed": count - reached, "held": held, "iterations": iterations}
     return {"area": areas, "rows": rows, "starts": found, "left": max(lefts), **counts}

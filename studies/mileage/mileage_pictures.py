@@ -65,31 +65,29 @@ def draw_depths(new, folder, name):
     for axes in panels[:, 0]:
         axes.set_ylabel(DEPTH)
     for axes in panels[1]:
-        axes.set_xlabel("across the wheel, from the running circle to the field side [mm]")
+        axes.set_xlabel("across the wheel, to the field side [mm]")
     figure.colorbar(ScalarMappable(norm, "viridis_r"), ax=panels, label="mileage [km]", shrink=0.7)
     save(figure, name)
 
 
-def draw_measures(runs, name, limits):
-    """Sh, Sd, qR, hollow, worn area and conicity over the mileage, of runs by their labels: the second one dashed."""
+def draw_measures(found, name, limits):
+    """Sh, Sd, qR, hollow, worn area and conicity over the mileage, with the user's limits."""
     figure, panels = plt.subplots(2, 3, figsize=(9.6, 5.6), sharex=True, layout="constrained")
     shown = [("flange_height", "Sh [mm]", 1e3), ("flange_thickness", "Sd [mm]", 1e3)]
     shown += [("flange_gradient", "qR [mm]", 1e3), ("hollow_depth", "hollow [mm]", 1e3)]
     shown += [("worn_area", "worn area [mm²]", 1e6)]
     shown += [("conicity", "equivalent conicity at 3 mm [1]", 1.0)]
     for axes, (key, title, factor) in zip(panels.flat, shown, strict=True):
-        for (run, found), style in zip(runs.items(), ("-", "--"), strict=False):
-            for number, colour in alike(found, key):
-                own = found["wheel"] == NAMES[number]
-                text = ", ".join(word for word in (who(found, key, number), run) if word)
-                x, y = 1e-3 * found["mileage"][own], factor * found[key][own]
-                axes.plot(x, y, style, color=colour, lw=1.3, label=text)
+        for number, colour in alike(found, key):
+            own = found["wheel"] == NAMES[number]
+            x, y = 1e-3 * found["mileage"][own], factor * found[key][own]
+            axes.plot(x, y, color=colour, lw=1.3, label=who(found, key, number))
         if key in limits:
             axes.axhline(1e3 * limits[key], color=BLACK, lw=0.8, ls=":")
         axes.set_title(title)
     for axes in panels[1]:
         axes.set_xlabel("mileage [km]")
-    panels[0, 0].legend(fontsize=7)
+    panels[1, 1].legend(fontsize=7)
     save(figure, name)
 
 
