@@ -20,7 +20,7 @@ LISTS = [(output, output.with_suffix(".cdx.json"), features) for output, _, feat
 
 
 def test_version_is_that_of_the_crate():
-    """Citation, changelog, lock files, both model descriptions and both bills of materials have Cargo.toml's version."""
+    """Citation, changelog, lock files, model descriptions and bills of materials have Cargo.toml's version."""
     version = CARGO["version"]
     citation = (REPOSITORY / "CITATION.cff").read_text()
     assert re.findall(r"^version: (.+)$", citation, re.MULTILINE) == [version]
