@@ -24,7 +24,7 @@ def draw_profiles(new, folder, name):
     figure, panels = plt.subplots(2, 2, figsize=(9.0, 6.2), layout="constrained", width_ratios=(1.0, 1.35))
     for row, number in zip(panels, (0, 2), strict=True):
         for axes, (title, x, equal) in zip(
-            row, (("flange", (-52, -18), True), ("tread, height enlarged", (-25, 45), False)), strict=True
+            row, (("flange", (-44, -24), True), ("tread, height enlarged", (-25, 45), False)), strict=True
         ):
             for k, state in enumerate(states):
                 shade = plt.cm.plasma(0.85 * k / (len(states) - 1))
