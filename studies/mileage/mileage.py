@@ -147,7 +147,6 @@ def study(client, component):
     tables = {
         "run": run_table(plan, base),
         "hills": measures_table(found["hills"]),
-        "run plain": run_table(plain, straights),
     }
     tables |= {"plain": measures_table(found["plain"]), "curves": curves_table(base, (0, last))}
     dry_and_oiled = {"dry": base, "lubricated": lubricated}

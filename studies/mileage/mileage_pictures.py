@@ -36,7 +36,7 @@ def draw_profiles(new, folder, name):
             axes.set_ylim(low - 0.06 * (high - low) - 0.1, high + 0.12 * (high - low) + 0.1)
             axes.set_aspect("equal" if equal else "auto")
         row[0].set_ylabel("height [mm]")
-    panels[0, 0].legend(loc="upper left", fontsize=7)
+    panels[0, 0].legend(loc="lower right", fontsize=7)
     save(figure, name)
 
 
