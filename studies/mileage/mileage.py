@@ -71,7 +71,7 @@ def main_plan(**changes):
 
 def small_plan(**changes):
     """A plan that ends within a minute: straight track and one curve, two steps."""
-    given = {"parameters": PARAMETERS, "wear_factor": WEAR_FACTOR, "largest_depth": 4e-5, "samples": 2}
+    given = {"parameters": PARAMETERS, "wear_factor": 0.05, "largest_depth": 4e-5, "samples": 2}
     return Plan(tuple(short_line()), **({"distance": 400e3, "samples_straight": 2} | given | changes))
 
 
