@@ -17,9 +17,10 @@ from mileage_line import BadInputError, is_its_own_mirror, main_line, mirrored, 
 from mileage_march import MIRROR, march, read_state, state_file
 from mileage_wheels import NewWheel, smoothed
 
-# The small run in a process of its own on two workers, which goes on after each file when it is told to.
+# The small run in a process of its own, which goes on after each file when it is told to: on workers, or on none.
 PROGRAM = """
 import os, sys
+from contextlib import nullcontext
 from pathlib import Path
 sys.path[:0] = sys.argv[1].split(os.pathsep)
 import mileage, mileage_march
@@ -32,7 +33,7 @@ for name in ("write_state", "write_classes"):
         sys.stdin.readline()
     setattr(mileage_march, name, waiting)
 if __name__ == "__main__":
-    with local_client(2) as client:
+    with local_client(int(sys.argv[3])) if len(sys.argv) > 3 else nullcontext() as client:
         mileage_march.march(client, mileage.small_plan(), Path(sys.argv[2]), read_component(FMU3))
 """
 
@@ -84,7 +85,7 @@ def test_wheels_wear_where_they_roll(run, new):
 
 
 def test_killed_run_goes_on(run, tmp_path, killed_half_way):
-    """Killed within a step and gone on with, on two workers, it has the bits of one without Dask."""
+    """Killed within a step and gone on with on two workers, it has the bits of one without Dask."""
     folder, states = run
     program = tmp_path / "program.py"
     program.write_text(PROGRAM)
@@ -92,7 +93,7 @@ def test_killed_run_goes_on(run, tmp_path, killed_half_way):
     killed_half_way(command)
     broken = sorted(path.name for path in (tmp_path / "broken").glob("*.parquet"))
     assert broken == ["classes_0000.parquet", "classes_0001.parquet", "wheels_0000.parquet", "wheels_0001.parquet"]
-    done = subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=900)
+    done = subprocess.run([*command, "2"], stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=900)
     assert done.returncode == 0, done.stderr
     assert "1 steps, 200 km, are there from before" in done.stdout
     for step in range(len(states)):
