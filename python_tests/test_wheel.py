@@ -104,6 +104,9 @@ def test_files_of_the_wheel(wheel, fmu):
             assert archive.read(f"wheelrail/fmu/{built.name}") == built.read_bytes()
         for licence in ("LICENSE-MIT", "THIRD-PARTY.txt", "COMMAND.txt"):
             assert any(name.startswith("wheelrail-") and name.endswith(f"/{licence}") for name in names)
+        # Lists of what is linked into the library and into the command.
+        for bill in ("THIRD-PARTY.cdx.json", "COMMAND.cdx.json"):
+            assert any(name.endswith(f".dist-info/sboms/{bill}") for name in names)
 
 
 def test_command_in_the_wheel(wheel, command):
