@@ -52,7 +52,7 @@ install = $(PY) -m uv pip install --quiet --python $(PY) -r $(1) \
 COUPLINGS := longitudinal stiff multibody train sweep hunting adhesion maintenance height curve mileage
 WHEELSET := target/Wheelset.fmu
 
-.PHONY: fmu fmu3 platforms wheel demo measurements measurements-docs test test-debug soak derivatives bits docs site bench bench-check clean lint rust-test rust-tests-compiled verify python-test hosts library command couplings packages
+.PHONY: fmu fmu3 platforms wheel demo measurements measurements-docs test test-debug soak derivatives bits docs site bench bench-check clean lint rust-test verify python-test hosts library command couplings packages
 .PHONY: pytest couplings-set-up couplings-docs sweep-scaling description $(addprefix coupling-,$(COUPLINGS))
 
 # ---- set-up -------------------------------------------------------------------------------------------------------
@@ -190,12 +190,11 @@ sweep-scaling: couplings-set-up
 
 # ---- checks -------------------------------------------------------------------------------------------------------
 
-# First what the tests need, compiled and downloaded side by side. The library is one long call of the compiler, the verification one thread:
-# lints and the tests' compilation have the other core. Then the tests, each with its output in one piece.
+# First what the checks need, compiled and downloaded side by side; then the checks, each with its output in one piece.
 test:
-	+@$(BESIDE) --keep-going verify fmu fmu3 packages lint rust-tests-compiled
-	$(call say,Rust tests - Python tests: each is printed as it ends)
-	+@$(BESIDE) --output-sync=target --keep-going rust-test pytest
+	+@$(BESIDE) verify fmu fmu3 packages
+	$(call say,Rust tests - Python tests - lints: each is printed as it ends)
+	+@$(BESIDE) --output-sync=target --keep-going rust-test pytest lint
 	$(call say,All checks passed)
 
 packages: couplings-set-up $(VENV)/site
@@ -215,10 +214,6 @@ lint: $(VENV)/ready
 rust-test: $(VENV)/build
 	$(call say,Rust tests)
 	$(CARGO) test --no-fail-fast -- --skip 'verify: '
-
-rust-tests-compiled: library
-	$(call say,Rust tests - compiled)
-	@$(CARGO) test --no-run --quiet
 
 # What a release build leaves out: overflow of integers, debug assertions.
 test-debug:
