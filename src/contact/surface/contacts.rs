@@ -33,7 +33,7 @@ pub struct Wanted {
     pub depth: f64,
 }
 
-/// Distance of the bodies, `m`, more than the rail bulges or was worn: a contact that is as far open after a jump of the wheelset has ended.
+/// Gap at the expected approach from which on a contact of the step before has ended, `m`: the wheelset has jumped. Heat and wear change the gap by less.
 const LIFTED: f64 = 5e-4;
 
 /// Contacts to expect of fields.

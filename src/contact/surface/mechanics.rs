@@ -56,10 +56,10 @@ const FIRST_TOLERANCE: f64 = 1e-3;
 const TOLERANCE_SHARE: f64 = 0.03;
 /// Approach that counts for a step of it, over that of the largest load.
 const LEAST_SIZE: f64 = 0.05;
-/// Approach that no contact has, over that of the largest load: where a search gets there, nothing carries the load.
+/// Limit of the approach in units of that under the largest load. A search that goes farther is given up: no height carries the load.
 const FARTHEST: f64 = 50.0;
-/// Least friction over pressure, as vertical forces of a window, with which a load is carried where it is not found otherwise: the approach under twice
-/// the load.
+/// Least ratio of a window's vertical force by friction to that by pressure in a staggered step that finds no height otherwise. At -0.5 the pressure carries
+/// twice the load at most.
 const LEAST_FRICTION_SHARE: f64 = -0.5;
 /// Limit of the rounds over windows that displace each other.
 const ROUNDS: usize = 60;

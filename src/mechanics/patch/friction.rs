@@ -98,8 +98,9 @@ pub struct Friction {
     given: Vec<Vector>,
     /// Law of the cells where μ depends on slip.
     on_path: OnPath,
-    /// Multiplications and additions in this step, and those after which Newton's method goes no further.
+    /// Multiplications and additions in this step.
     work: u64,
+    /// Multiplications and additions after which Newton's method stops.
     work_limit: u64,
     /// Newton steps, Krylov iterations and factorisations since the solver was made.
     iterations: [u64; 3],
