@@ -106,6 +106,7 @@
 
 mod body;
 mod contact;
+mod damage;
 pub mod error;
 #[cfg(feature = "fmi")]
 pub mod fmi;

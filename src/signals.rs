@@ -325,6 +325,14 @@ outputs! {
     /// Depth of the hollow of the wheel's tread, as worn at the beginning of the last step: the largest radius to the field side of a
     /// place less the radius there, where that is most; 0 of a wheel without a flange
     hollow_depth: "m" shown in "mm", Kept, at least 0.0, nominal 1e-3, only [profiles];
+    /// Damage by rolling contact fatigue that the wheel does to the rail with one passage, that of the contact that does most: of the wear number,
+    /// 1 being that at which cracks begin; negative where all contacts wear more off than fatigue damages
+    rcf_damage: "1", Instantaneous, nominal 1e-5, only [patch, profiles];
+    /// Surface fatigue index: the largest value over the contact of the shear traction less shear_yield_stress, over the pressure; positive where the
+    /// surface ratchets; 0 without contact
+    surface_fatigue_index "FI": "1", Instantaneous, nominal 0.1;
+    /// Largest depth below its surface to which the rail is hotter than austenite_temperature, in the contact and next to it; 0 where no surface is
+    austenite_depth: "m" shown in "µm", Instantaneous, at least 0.0, nominal 1e-4;
 }
 
 contact_outputs! {
@@ -366,6 +374,13 @@ contact_outputs! {
     friction_power: "W" shown in "kW", at least 0.0, nominal 1e4;
     /// Wear number of a contact: creep forces and spin moment times their creepages, work per distance rolled
     wear_number: "N", nominal 100.0;
+    /// Damage by rolling contact fatigue that a contact does to the rail with one passage: of its wear number, 1 being that at which cracks begin;
+    /// negative where it wears more off than fatigue damages
+    rcf_damage: "1", nominal 1e-5;
+    /// Surface fatigue index of a contact: the largest value of the shear traction less shear_yield_stress, over the pressure
+    surface_fatigue_index: "1", nominal 0.1;
+    /// Largest depth below its surface to which the rail is hotter than austenite_temperature, in a contact and next to it
+    austenite_depth: "m" shown in "µm", at least 0.0, nominal 1e-4;
 }
 
 /// The outputs in the order in which they are listed: numbers, then what the contacts have.

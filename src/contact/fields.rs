@@ -16,6 +16,19 @@ pub enum Outputs {
     Linear,
     /// The outputs are other functions of it: tractions, slip, friction.
     Nonlinear,
+    /// The depth of the austenite alone is made of it, where there is any: temperature below the surface.
+    Deep,
+}
+
+impl Outputs {
+    /// Whether outputs are made of the field, where there is austenite or none.
+    fn matter(self, austenite: bool) -> bool {
+        match self {
+            Outputs::Independent => false,
+            Outputs::Linear | Outputs::Nonlinear => true,
+            Outputs::Deep => austenite,
+        }
+    }
 }
 
 /// First guess of a field at the end of a step.
@@ -155,11 +168,11 @@ pub trait Fields: Clone + PartialEq + std::fmt::Debug + Serialize + DeserializeO
         }
     }
 
-    /// Takes what the outputs are made of from `fields`, moved by `step` times a change of them.
-    fn move_along(&mut self, fields: &Self, change: &Self, step: f64) {
+    /// Takes what the outputs are made of from `fields`, moved by `step` times a change of them; what the depth of the austenite is made of, where there is any.
+    fn move_along(&mut self, fields: &Self, change: &Self, step: f64, austenite: bool) {
         self.copy_places(fields);
         for (number, row) in Self::ROWS.iter().enumerate() {
-            if row.outputs == Outputs::Independent || !fields.is_used(number) {
+            if !row.outputs.matter(austenite) || !fields.is_used(number) {
                 continue;
             }
             let values = (row.get)(fields).iter().zip((row.get)(change));
@@ -181,7 +194,8 @@ pub trait Fields: Clone + PartialEq + std::fmt::Debug + Serialize + DeserializeO
             .filter(|(number, _)| self.is_used(*number))
             .filter_map(|(_, row)| {
                 let share = match row.outputs {
-                    Outputs::Independent => return None,
+                    // Below the surface the temperature changes with that of the surface.
+                    Outputs::Independent | Outputs::Deep => return None,
                     Outputs::Linear => settings.linear_output_step,
                     Outputs::Nonlinear => settings.output_step,
                 };

@@ -1,5 +1,6 @@
 //! Forces on a wheelset, and the contacts that make them, one by one.
 
+use super::integrals::PointDamage;
 use crate::geometry::profile::WheelMeasures;
 
 /// Largest number of contacts.
@@ -53,4 +54,6 @@ pub struct OneContact {
     pub peak_rise: f64,
     /// Friction power, `W`.
     pub friction_power: f64,
+    /// Damage to the points of the rail.
+    pub damage: PointDamage,
 }

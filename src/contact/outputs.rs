@@ -4,6 +4,7 @@ use super::integrals::Integrals;
 use super::on_wheelset::OneContact;
 use super::problem::StepConditions;
 use super::rim;
+use crate::damage;
 use crate::friction;
 use crate::parameters::{ContactModel, Control, Parameters, WearLaw, WheelWearLaw};
 use crate::signals::{ContactOutputs, Inputs, Motion, Outputs, Totals};
@@ -66,10 +67,11 @@ impl Integrals {
             - outputs.lateral_force * motion.lateral_speed
             - outputs.spin_moment * motion.spin_rate)
             / motion.rolling_speed.abs().max(LEAST_CREEPAGE_SPEED);
+        outputs.rcf_damage = damage::rolling_contact_fatigue(parameters, outputs.wear_number);
     }
 
     /// Writes the outputs that profiles have: forces on the wheelset, the contacts one by one.
-    fn add_profiles(&self, ambient: f64, outputs: &mut Outputs) {
+    fn add_profiles(&self, parameters: &Parameters, ambient: f64, outputs: &mut Outputs) {
         let all = &self.on_wheelset;
         outputs.normal_force = all.contacts[..all.count]
             .iter()
@@ -109,8 +111,15 @@ impl Integrals {
                 peak_temperature: ambient + contact.peak_rise,
                 friction_power: contact.friction_power,
                 wear_number: contact.wear_number(),
+                rcf_damage: damage::rolling_contact_fatigue(parameters, contact.wear_number()),
+                surface_fatigue_index: contact.damage.surface_fatigue_index(),
+                austenite_depth: contact.damage.austenite_depth,
             };
         }
+        let damages = outputs.contact[..contacts.len()]
+            .iter()
+            .map(|contact| contact.rcf_damage);
+        outputs.rcf_damage = damages.reduce(f64::max).unwrap_or(0.0);
     }
 
     /// The outputs at one instant, with the totals until then.
@@ -161,12 +170,14 @@ impl Integrals {
             wheel_worn_volume: totals.wheel_worn_volume,
             wheel_worn_area: totals.wheel_worn_area,
             rail_worn_area: totals.rail_worn_area,
+            surface_fatigue_index: self.damage.surface_fatigue_index(),
+            austenite_depth: self.damage.austenite_depth,
             ..Outputs::default()
         };
         match parameters.contact_model {
             ContactModel::Line => {}
             ContactModel::Patch => self.add_patch(parameters, inputs, &motion, &mut outputs),
-            ContactModel::Profiles => self.add_profiles(ambient, &mut outputs),
+            ContactModel::Profiles => self.add_profiles(parameters, ambient, &mut outputs),
         }
         outputs
     }

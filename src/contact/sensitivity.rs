@@ -34,6 +34,7 @@ pub fn outputs<E: Engine>(
     E::begin_linearisation(problem, trial, solvers);
     E::read(problem, trial, solvers, iterate);
     let tolerance = E::sensitivity_settings(problem.settings).tolerance;
+    let austenite = E::integrals(problem, fields, solvers).damage.austenite_depth > 0.0;
     let mut at = Linearised::new(problem, iterate, trial, solvers, &mut newton.tangent, tolerance)?;
     inputs
         .into_iter()
@@ -48,6 +49,7 @@ pub fn outputs<E: Engine>(
                 at.solvers,
                 &direction,
                 least_step,
+                austenite,
                 change,
                 &mut newton.moved,
             ))
@@ -69,13 +71,14 @@ fn direction<E: Engine>(problem: &Problem<E>, input: usize) -> Direction {
 }
 
 /// Derivatives of the outputs along a change of inputs and fields, by a central difference of at least `least_step`: the outputs
-/// are short expressions of the fields, and a step is known that suits all of them.
+/// are short expressions of the fields, and a step is known that suits all of them. Without austenite its depth stays 0.
 fn output_tangent<E: Engine>(
     problem: &Problem<E>,
     fields: &E::Fields,
     solvers: &E::Solvers,
     direction: &Direction,
     least_step: f64,
+    austenite: bool,
     change: &E::Fields,
     moved: &mut E::Fields,
 ) -> Outputs {
@@ -85,7 +88,7 @@ fn output_tangent<E: Engine>(
         .max(least_step);
     moved.copy_from(fields);
     let mut outputs = |step: f64| {
-        moved.move_along(fields, change, step);
+        moved.move_along(fields, change, step, austenite);
         let problem = problem.under(conditions.inputs.advanced(&direction.inputs, step));
         let (parameters, conditions) = (problem.parameters, &problem.conditions);
         let integrals = E::integrals(&problem, moved, solvers);
@@ -100,6 +103,13 @@ fn output_tangent<E: Engine>(
     for signal in OUTPUTS.iter().filter(moves) {
         let difference = (signal.get)(&ahead) - (signal.get)(&behind);
         (signal.set)(&mut derivative, difference / (2.0 * step));
+    }
+    if !austenite {
+        derivative.austenite_depth = 0.0;
+        derivative
+            .contact
+            .iter_mut()
+            .for_each(|contact| contact.austenite_depth = 0.0);
     }
     // The distance follows from the motion alone, whose tangent is exact.
     derivative.distance = direction.speed * conditions.duration;

@@ -85,9 +85,10 @@ impl DepthBasis {
     }
 
     /// Value at a row of a column given by its modal amplitudes.
-    pub fn value(&self, amplitudes: &[f64], row: usize) -> f64 {
-        (0..self.len())
-            .map(|mode| amplitudes[mode] * self.modes[(row, mode)])
+    pub fn value(&self, amplitudes: impl Iterator<Item = f64>, row: usize) -> f64 {
+        amplitudes
+            .zip(self.modes.row(row).iter())
+            .map(|(amplitude, mode)| amplitude * mode)
             .sum()
     }
 

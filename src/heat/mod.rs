@@ -2,12 +2,13 @@
 //!
 //! [`basis`] takes the depth apart into modes, [`march`] carries them through the columns, by [`step`] and [`factors`], under the condition of
 //! [`surface`], [`incoming`] is the rail that the wheel ahead has left, [`thermal_map`] the displacement of the contact
-//! nodes, compressed by [`compression`]. [`Heat`] holds what of this is computed once.
+//! nodes, compressed by [`compression`], and [`isotherm`] how deep the rail is hotter than a given temperature. [`Heat`] holds what of this is computed once.
 
 pub mod basis;
 pub mod compression;
 pub mod factors;
 pub mod incoming;
+pub mod isotherm;
 pub mod march;
 pub mod step;
 // The patch engine uses it.

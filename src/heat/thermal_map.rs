@@ -252,7 +252,7 @@ mod tests {
         let mut temperature = vec![0.0; mesh.nodes()];
         for (column, a) in amplitudes.chunks_exact(basis.len()).enumerate() {
             for row in 0..mesh.rows() {
-                temperature[mesh.node(column, row)] = basis.value(a, row);
+                temperature[mesh.node(column, row)] = basis.value(a.iter().copied(), row);
             }
         }
         exact.tr_mul(&DVector::from_vec(temperature)).as_slice().to_vec()

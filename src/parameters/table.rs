@@ -360,6 +360,19 @@ parameters! {
     /// Factor on what is worn off the profiles, so that a short run stands for a long one, used where contact_model is profiles; heat and totals
     /// do not see it
     wear_acceleration: f64 = real { "1", 1.0, 0.0, 1e9, tunable }
+    /// Wear number up to which a contact does no damage by rolling contact fatigue, used where contact_model is patch or profiles
+    rcf_threshold: f64 = real { "N", 15.0, 0.0, 1e9 }
+    /// Wear number at which damage by rolling contact fatigue is largest, used where contact_model is patch or profiles
+    rcf_peak: f64 = real { "N", 65.0, 0.0, 1e9 }
+    /// Wear number beyond which more is worn off than fatigue damages: the damage is negative, used where contact_model is patch or profiles
+    rcf_balance: f64 = real { "N", 175.0, 0.0, 1e9 }
+    /// Largest damage by rolling contact fatigue that one passage of a contact does, 1 being that at which cracks begin, used where contact_model is
+    /// patch or profiles; 0 switches the damage off
+    rcf_peak_damage: f64 = real { "1", 1e-5, 0.0, 1.0 }
+    /// Yield stress in shear of the rail, for surface_fatigue_index
+    shear_yield_stress "k": f64 = real { "Pa" shown in "MPa", 300e6, 0.0, 1e12 }
+    /// Absolute temperature above which the rail's steel becomes austenite, for austenite_depth
+    austenite_temperature: f64 = real { "K" shown in "degC", 1000.15, 1.0, 5000.0 }
 }
 
 /// The start values of the friction table: the default piecewise linear law, its hot end repeated.

@@ -39,6 +39,7 @@ impl Parameters {
         self.validate_friction()?;
         self.validate_control()?;
         self.validate_wear()?;
+        self.validate_damage()?;
         if self.patch_geometry == PatchGeometry::Inputs && self.contact_model != ContactModel::Patch {
             return combination(
                 ("patch_geometry", f64::from(self.patch_geometry as i32 + 1)),
@@ -190,6 +191,30 @@ impl Parameters {
                 )
             }
             _ => Ok(()),
+        }
+    }
+
+    /// Thresholds of damage by rolling contact fatigue, which must ascend where there is damage.
+    fn validate_damage(&self) -> Result<()> {
+        let threshold = ("rcf_threshold", self.rcf_threshold);
+        let peak = ("rcf_peak", self.rcf_peak);
+        let balance = ("rcf_balance", self.rcf_balance);
+        if self.contact_model == ContactModel::Line || self.rcf_peak_damage == 0.0 {
+            Ok(())
+        } else if peak.1 <= threshold.1 {
+            combination(
+                peak,
+                threshold,
+                "fatigue must be largest at a larger wear number than that at which it begins",
+            )
+        } else if balance.1 <= peak.1 {
+            combination(
+                balance,
+                peak,
+                "wear must balance fatigue at a larger wear number than that at which fatigue is largest",
+            )
+        } else {
+            Ok(())
         }
     }
 

@@ -303,7 +303,9 @@ fn temperature_error(contact_nodes: usize, cells: usize, speed: f64) -> Result<f
     for node in 0..contact_nodes {
         let column = mesh.contact_column(node);
         let amplitudes = &after[column * basis.len()..(column + 1) * basis.len()];
-        let rows: Vec<f64> = (0..mesh.rows()).map(|row| basis.value(amplitudes, row)).collect();
+        let rows: Vec<f64> = (0..mesh.rows())
+            .map(|row| basis.value(amplitudes.iter().copied(), row))
+            .collect();
         let value = along(mesh.x[column]).0;
         square += depth_integral(&mesh.depth, |row, weight, z| {
             let marched = rows[row] * (1.0 - weight) + rows[row + 1] * weight;

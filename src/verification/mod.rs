@@ -10,6 +10,7 @@ pub mod contact_points;
 pub mod convergence;
 pub mod creep_curve;
 pub mod creepage_jump;
+pub mod damage;
 pub mod elastic_wheel;
 pub mod energy;
 pub mod equivalent_conicity;
@@ -254,6 +255,10 @@ pub const CHECKS: &[Check] = &[
     Check {
         name: "Laws of wear",
         rows: wear_laws::rows,
+    },
+    Check {
+        name: "Damage beside wear",
+        rows: damage::rows,
     },
     Check {
         name: "Equivalent conicity",

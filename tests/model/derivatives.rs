@@ -121,16 +121,17 @@ struct Pieces {
     ends: [Vec<Option<[bool; 2]>>; 2],
     broadest: Option<usize>,
     /// Where what an output is the largest of is largest: for [`PEAKS`].
-    largest: [Option<usize>; 5],
+    largest: [Option<usize>; PEAKS.len()],
 }
 
 /// Outputs that are the largest value of something.
-const PEAKS: [&str; 5] = [
+const PEAKS: [&str; 6] = [
     "peak_pressure",
     "peak_shear",
     "peak_temperature",
     "wear_depth",
     "contact_length",
+    "surface_fatigue_index",
 ];
 
 /// Temperatures at which μ(θ) has corners, `K`.
@@ -196,10 +197,10 @@ fn pieces(model: &Model, state: &State) -> Pieces {
             },
         }
     };
-    let largest = |value: fn(&ContactNode) -> f64| place_of_largest(nodes.iter().map(value));
+    let largest = |value: &dyn Fn(&ContactNode) -> f64| place_of_largest(nodes.iter().map(value));
     // None where the rail is hottest beside the window, which what enters or has left may be.
     let rise = state.outputs.peak_temperature - state.inputs.ambient_temperature;
-    let hottest = largest(|node| node.temperature).filter(|&node| nodes[node].temperature >= rise - 1e-12);
+    let hottest = largest(&|node| node.temperature).filter(|&node| nodes[node].temperature >= rise - 1e-12);
     // Strips along the rail, and rows across it.
     let cells = if line { nodes.len() } else { parameters.patch_nodes };
     let strips: Vec<Vec<usize>> = (0..nodes.len() / cells)
@@ -231,11 +232,15 @@ fn pieces(model: &Model, state: &State) -> Pieces {
         ends: [along, across],
         broadest,
         largest: [
-            largest(|node| node.pressure),
-            largest(|node| node.shear.hypot(node.lateral_shear)),
+            largest(&|node| node.pressure),
+            largest(&|node| node.shear.hypot(node.lateral_shear)),
             hottest,
             place_of_largest(strips.iter().map(rear)),
             longest,
+            largest(&|node| match node.pressure > 0.0 {
+                true => (node.shear.hypot(node.lateral_shear) - parameters.shear_yield_stress) / node.pressure,
+                false => f64::NEG_INFINITY,
+            }),
         ],
         nodes: nodes.iter().map(piece).collect(),
     }
@@ -282,12 +287,12 @@ fn differences(
     let expected = pieces(model, &here);
     let all: Vec<Pieces> = near.iter().chain(&far).map(|state| pieces(model, state)).collect();
     let anywhere = Pieces {
-        largest: [None; 5],
+        largest: [None; PEAKS.len()],
         ..expected.clone()
     };
     let same_pieces = all.iter().all(|pieces| {
         let pieces = Pieces {
-            largest: [None; 5],
+            largest: [None; PEAKS.len()],
             ..pieces.clone()
         };
         pieces == anywhere

@@ -27,6 +27,7 @@ fn patches() -> [Scenario; 3] {
         patch_strips: 7,
         depth_nodes: 11,
         strip_half_length: 0.3,
+        austenite_temperature: 300.0,
         ..Parameters::default()
     };
     let speeds = Parameters {
@@ -66,6 +67,7 @@ fn profiles() -> [Scenario; 4] {
         patch_strips: 9,
         depth_nodes: 11,
         strip_half_length: 0.3,
+        austenite_temperature: 300.0,
         ..Parameters::default()
     };
     let loaded = Inputs {
@@ -143,6 +145,7 @@ fn scenarios() -> Vec<Scenario> {
         depth_nodes: 11,
         // So short that what comes in leaves in the scenario.
         strip_half_length: 0.3,
+        austenite_temperature: 315.0,
         // Points between the temperatures that the contact runs through.
         friction_table_points: TABLE_POINTS,
         friction_table_temperature: std::array::from_fn(|point| 300.0 + 10.0 * point as f64),

@@ -3,6 +3,7 @@
 mod at_rest;
 mod bad_input;
 mod by_speeds;
+mod damage;
 mod defaults;
 mod derivatives;
 mod effects;

@@ -5,16 +5,19 @@ use super::mechanics::LineProblem;
 use super::operators::LineOperators;
 use crate::contact::engine::Engine;
 use crate::contact::integrals::Integrals;
-use crate::contact::integrals::{Node, NodeSums};
+use crate::contact::integrals::{Node, NodeSums, PointDamage};
 use crate::contact::on_wheelset::OnWheelset;
 use crate::contact::rim::ContactHeat;
+use crate::damage;
 use crate::friction::coulomb;
+use crate::heat::isotherm;
 
 /// Integrals of the given fields under the problem's conditions.
 pub fn integrals(problem: &LineProblem, fields: &LineFields) -> Integrals {
     let (operators, parameters) = (problem.operators, problem.parameters);
     let transport = problem.upwind();
     let surface = fields.surface_temperature.iter();
+    let peak_rise = surface.fold(f64::NEG_INFINITY, |m: f64, t| t.max(m));
     Integrals {
         sums: NodeSums::of(nodes(problem, fields)),
         node_area: operators.node_area(parameters),
@@ -23,7 +26,7 @@ pub fn integrals(problem: &LineProblem, fields: &LineFields) -> Integrals {
         contact_length: contact_length(operators, fields),
         contact_breadth: 0.0,
         contact_area: 0.0,
-        peak_rise: surface.fold(f64::NEG_INFINITY, |m: f64, t| t.max(m)),
+        peak_rise,
         wear_depth: wear_left_behind(operators, fields, problem.conditions.motion.rolling_speed),
         leaving_rise: operators
             .heat
@@ -35,7 +38,27 @@ pub fn integrals(problem: &LineProblem, fields: &LineFields) -> Integrals {
             LineOperators::heated_nodes(problem, fields, fields),
         ),
         wheel_temperature: fields.wheel_temperature,
+        damage: damage(problem, fields, peak_rise),
         on_wheelset: OnWheelset::default(),
+    }
+}
+
+/// Damage to the points of the rail, whose surface is at most `peak_rise` `K` over the ambient.
+fn damage(problem: &LineProblem, fields: &LineFields, peak_rise: f64) -> PointDamage {
+    let (operators, parameters) = (problem.operators, problem.parameters);
+    let shear = fields.shear.iter().map(|shear| shear.abs());
+    let rise = parameters.austenite_temperature - problem.conditions.inputs.ambient_temperature;
+    let columns = (0..operators.mesh.columns()).map(|column| fields.column(operators, column).iter().copied());
+    PointDamage {
+        surface_fatigue: damage::surface_fatigue_index(
+            fields.pressure.iter().copied().zip(shear),
+            parameters.shear_yield_stress / operators.scales.pressure,
+        ),
+        austenite_depth: if peak_rise > rise {
+            isotherm::depth(&operators.heat.basis, &operators.mesh.depth, rise, columns)
+        } else {
+            0.0
+        },
     }
 }
 

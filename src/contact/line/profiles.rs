@@ -22,9 +22,8 @@ pub fn profiles(operators: &LineOperators, fields: &LineFields, ambient: f64) ->
         .iter()
         .map(|&z| {
             let (upper, weight) = between(&mesh.depth, z);
-            ambient
-                + operators.heat.basis.value(column, upper) * (1.0 - weight)
-                + operators.heat.basis.value(column, upper + 1) * weight
+            let value = |row| operators.heat.basis.value(column.iter().copied(), row);
+            ambient + value(upper) * (1.0 - weight) + value(upper + 1) * weight
         })
         .collect();
     Profiles {

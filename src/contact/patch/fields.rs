@@ -89,7 +89,7 @@ impl Fields for PatchFields {
         row!(Linear, Computed, heat.outer[1]),
         row!(Linear, Computed, wear.outer[0]),
         row!(Linear, Computed, wear.outer[1]),
-        row!(Independent, Computed, heat.window),
+        row!(Deep, Computed, heat.window),
         row!(Independent, Computed, heat.replaced),
         row!(Independent, Computed, wear.window),
         row!(Independent, Computed, wear.replaced),

@@ -6,16 +6,19 @@ use super::operators::PatchOperators;
 use super::problem::PatchProblem;
 use crate::contact::engine::Engine;
 use crate::contact::integrals::Integrals;
-use crate::contact::integrals::{Node, NodeSums};
+use crate::contact::integrals::{Node, NodeSums, PointDamage};
 use crate::contact::on_wheelset::OnWheelset;
 use crate::contact::rim::ContactHeat;
+use crate::damage;
 use crate::friction::coulomb;
+use crate::heat::isotherm;
 
 /// Integrals of the given fields under the problem's conditions.
 pub fn integrals(problem: &PatchProblem, fields: &PatchFields) -> Integrals {
     let operators = problem.operators;
     let extent = extent(operators, &fields.pressure);
     let heat = problem.heat_march();
+    let peak_rise = fields.heat.surface.iter().fold(f64::NEG_INFINITY, |m: f64, t| t.max(m));
     Integrals {
         sums: NodeSums::of(nodes(problem, fields)),
         node_area: operators.grid.cell_area(),
@@ -24,7 +27,7 @@ pub fn integrals(problem: &PatchProblem, fields: &PatchFields) -> Integrals {
         contact_length: extent.length,
         contact_breadth: extent.breadth,
         contact_area: extent.area,
-        peak_rise: fields.heat.surface.iter().fold(f64::NEG_INFINITY, |m: f64, t| t.max(m)),
+        peak_rise,
         wear_depth: (0..operators.grid.strips)
             .map(|strip| wear_left_behind(problem, fields, strip))
             .fold(0.0, f64::max),
@@ -38,7 +41,30 @@ pub fn integrals(problem: &PatchProblem, fields: &PatchFields) -> Integrals {
             PatchOperators::heated_nodes(problem, fields, fields),
         ),
         wheel_temperature: fields.wheel_temperature,
+        damage: damage(problem, fields, peak_rise),
         on_wheelset: OnWheelset::default(),
+    }
+}
+
+/// Damage to the points of the rail, whose surface is at most `peak_rise` `K` over the ambient.
+pub fn damage(problem: &PatchProblem, fields: &PatchFields, peak_rise: f64) -> PointDamage {
+    let (operators, parameters) = (problem.operators, problem.parameters);
+    let [along, across] = &fields.shear;
+    let shear = along.iter().zip(across).map(|(&x, &y)| coulomb::magnitude([x, y]));
+    let rise = parameters.austenite_temperature - problem.conditions.inputs.ambient_temperature;
+    let strips = &operators.strips;
+    let columns = (0..strips.strips)
+        .flat_map(|strip| (0..strips.cells).map(move |cell| fields.heat.amplitudes(strips, strip, cell)));
+    PointDamage {
+        surface_fatigue: damage::surface_fatigue_index(
+            fields.pressure.iter().copied().zip(shear),
+            parameters.shear_yield_stress / operators.scales.pressure,
+        ),
+        austenite_depth: if peak_rise > rise {
+            isotherm::depth(&operators.basis, &operators.depth, rise, columns)
+        } else {
+            0.0
+        },
     }
 }
 

@@ -94,14 +94,15 @@ pub fn profiles(problem: &PatchProblem, fields: &PatchFields, ambient: f64) -> P
         strips,
         depth_temperature: depth
             .iter()
-            .map(|&z| ambient + below(operators, &amplitudes, z))
+            .map(|&z| ambient + below(operators, amplitudes.clone(), z))
             .collect(),
         depth,
     }
 }
 
 /// Temperature rise of a column at a depth `m`, `K`.
-fn below(operators: &PatchOperators, amplitudes: &[f64], depth: f64) -> f64 {
+fn below(operators: &PatchOperators, amplitudes: impl Iterator<Item = f64> + Clone, depth: f64) -> f64 {
     let (upper, weight) = between(&operators.depth, depth);
-    operators.basis.value(amplitudes, upper) * (1.0 - weight) + operators.basis.value(amplitudes, upper + 1) * weight
+    let value = |row| operators.basis.value(amplitudes.clone(), row);
+    value(upper) * (1.0 - weight) + value(upper + 1) * weight
 }

@@ -160,7 +160,7 @@ macro_rules! rows_of_windows {
                 row!(Linear, Computed, windows[$window].heat.outer[1]),
                 row!(Linear, Computed, windows[$window].wear.outer[0]),
                 row!(Linear, Computed, windows[$window].wear.outer[1]),
-                row!(Independent, Computed, windows[$window].heat.window),
+                row!(Deep, Computed, windows[$window].heat.window),
                 row!(Independent, Computed, windows[$window].heat.replaced),
                 row!(Independent, Computed, windows[$window].wear.window),
                 row!(Independent, Computed, windows[$window].wear.replaced),

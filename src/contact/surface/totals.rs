@@ -6,7 +6,7 @@ use super::mechanics::SurfaceProblem;
 use super::operators::SurfaceOperators;
 use super::profile_wear;
 use crate::contact::engine::Engine;
-use crate::contact::integrals::{Integrals, NodeSums};
+use crate::contact::integrals::{Integrals, NodeSums, PointDamage};
 use crate::contact::on_wheelset::{OnWheelset, OneContact};
 use crate::contact::outputs::{LEAST_CREEPAGE_SPEED, damping};
 use crate::contact::patch;
@@ -46,6 +46,7 @@ pub fn integrals(problem: &SurfaceProblem, fields: &SurfaceFields, bodies: &Bodi
             SurfaceOperators::heated_nodes(problem, fields, fields),
         ),
         wheel_temperature: fields.wheel_temperature,
+        damage: PointDamage::default(),
         on_wheelset: on_wheelset(problem, fields, bodies),
     };
     for (window, place) in fields.used() {
@@ -64,6 +65,7 @@ pub fn integrals(problem: &SurfaceProblem, fields: &SurfaceFields, bodies: &Bodi
         all.wear_depth = all.wear_depth.max(own.wear_depth);
         all.leaving_rise = all.leaving_rise.max(own.leaving_rise);
         all.leaving_wear_depth = all.leaving_wear_depth.max(own.leaving_wear_depth);
+        all.damage = all.damage.with(&own.damage);
     }
     if !all.peak_rise.is_finite() {
         all.peak_rise = 0.0;
@@ -166,6 +168,7 @@ fn on_wheelset(problem: &SurfaceProblem, fields: &SurfaceFields, bodies: &Bodies
         contact.area = extent.area;
         contact.peak_pressure = crate::numerics::dense::largest(&own.pressure) * patch.operators.scales.pressure;
         contact.peak_rise = own.heat.surface.iter().fold(f64::NEG_INFINITY, |m: f64, t| t.max(m));
+        contact.damage = patch::integrals::damage(&patch, own, contact.peak_rise);
         contact.friction_power = unit
             * (0..own.pressure.len())
                 .map(|at| {

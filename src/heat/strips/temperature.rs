@@ -41,12 +41,12 @@ impl StripTemperature {
     }
 
     /// Modal amplitudes of a cell.
-    pub fn amplitudes(&self, strips: &Strips, strip: usize, cell: usize) -> Vec<f64> {
+    pub fn amplitudes(&self, strips: &Strips, strip: usize, cell: usize) -> impl Iterator<Item = f64> + Clone {
         let modes = self.window.len() / (strips.columns() * strips.blocks() * LANES);
         // The first column is the one beside the window.
         let column = strip / LANES * strips.columns() + cell + 1;
-        let place = |mode: usize| (column * modes + mode) * LANES + strip % LANES;
-        (0..modes).map(|mode| self.window[place(mode)]).collect()
+        let own = &self.window[column * modes * LANES..][..modes * LANES];
+        own.iter().skip(strip % LANES).step_by(LANES).copied()
     }
 
     /// The vectors, in the order of their declaration.
