@@ -63,17 +63,19 @@ mod tests {
         (depth, basis)
     }
 
-    /// Profiles that bend either way: the error of the parabola is of the third order in cells of a third of the depth.
+    /// Straight lines between the rows would be 1.5 % off in a profile that decays, as under a heated surface. One that is flat at the surface bends twice within a
+    /// few cells.
     #[test]
     fn the_depth_of_known_profiles_is_found() {
         let (depths, basis) = rail();
-        for at in [2e-6, 1e-5, 3e-5, 1.2e-4, 4e-4] {
-            let decay = |z: f64| 1500.0 * (-(1.5_f64).ln() * z / at).exp();
-            let bell = |z: f64| 1500.0 * (-(1.5_f64).ln() * (z / at).powi(2)).exp();
-            for profile in [&decay as &dyn Fn(f64) -> f64, &bell] {
+        for at in [1.5e-5, 3e-5, 1.2e-4, 2.5e-4, 4e-4] {
+            let rate = (1.5_f64).ln();
+            let decaying = |z: f64| 1500.0 * (-rate * z / at).exp();
+            let flat = |z: f64| 1500.0 * (-rate * (z / at).powi(2)).exp();
+            for (profile, tolerance) in [(&decaying as &dyn Fn(f64) -> f64, 0.0025), (&flat, 0.025)] {
                 let column = column(&basis, &depths, profile);
                 let error = depth(&basis, &depths, 1000.0, std::iter::once(column.into_iter())) / at - 1.0;
-                assert!(error.abs() < 0.01, "{at}: {error}");
+                assert!(error.abs() < tolerance, "{at}: {error}");
             }
         }
     }
