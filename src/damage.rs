@@ -33,6 +33,44 @@ pub fn surface_fatigue_index(points: impl Iterator<Item = (f64, f64)>, yield_str
         .fold(f64::NEG_INFINITY, f64::max)
 }
 
+/// Damage to the points of the rail in a contact, where it is largest.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PointDamage {
+    /// Surface fatigue index; −∞ without contact.
+    pub surface_fatigue: f64,
+    /// Depth to which the rail is hotter than that at which its steel becomes austenite, `m`.
+    pub austenite_depth: f64,
+}
+
+impl Default for PointDamage {
+    /// Damage of no contact.
+    fn default() -> PointDamage {
+        PointDamage {
+            surface_fatigue: f64::NEG_INFINITY,
+            austenite_depth: 0.0,
+        }
+    }
+}
+
+impl PointDamage {
+    /// Larger damage of two contacts.
+    pub fn with(&self, other: &PointDamage) -> PointDamage {
+        PointDamage {
+            surface_fatigue: self.surface_fatigue.max(other.surface_fatigue),
+            austenite_depth: self.austenite_depth.max(other.austenite_depth),
+        }
+    }
+
+    /// Surface fatigue index as an output, 0 without contact.
+    pub fn surface_fatigue_index(&self) -> f64 {
+        if self.surface_fatigue.is_finite() {
+            self.surface_fatigue
+        } else {
+            0.0
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -88,7 +88,7 @@
 //!    after it, no sparse system is solved.
 //! 3. `friction`: the laws of μ(θ), and Coulomb's law. `mechanics`: tractions for given temperature and wear.
 //! 4. `transport`, `heat`, `wear`: temperature and wear of the rail for given tractions; `heat::incoming`: the rail that the
-//!    wheel ahead has left.
+//!    wheel ahead has left. `damage`: what fatigue and heat do beside wear.
 //! 5. `contact`: one implicit step. `contact::engine` says what a contact offers to it, `contact::interface` what passes between
 //!    mechanics and heat; `contact::step` iterates on that vector, `contact::newton` where this does not converge, and
 //!    `contact::sensitivity` is the derivative. `contact::line` is the paper's contact; `contact::patch` resolves the contact across

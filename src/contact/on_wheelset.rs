@@ -1,6 +1,6 @@
 //! Forces on a wheelset, and the contacts that make them, one by one.
 
-use super::integrals::PointDamage;
+use crate::damage::PointDamage;
 use crate::geometry::profile::WheelMeasures;
 
 /// Largest number of contacts.

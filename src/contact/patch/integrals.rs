@@ -6,10 +6,10 @@ use super::operators::PatchOperators;
 use super::problem::PatchProblem;
 use crate::contact::engine::Engine;
 use crate::contact::integrals::Integrals;
-use crate::contact::integrals::{Node, NodeSums, PointDamage};
+use crate::contact::integrals::{Node, NodeSums};
 use crate::contact::on_wheelset::OnWheelset;
 use crate::contact::rim::ContactHeat;
-use crate::damage;
+use crate::damage::{self, PointDamage};
 use crate::friction::coulomb;
 use crate::heat::isotherm;
 

@@ -6,13 +6,14 @@ use super::mechanics::SurfaceProblem;
 use super::operators::SurfaceOperators;
 use super::profile_wear;
 use crate::contact::engine::Engine;
-use crate::contact::integrals::{Integrals, NodeSums, PointDamage};
+use crate::contact::integrals::{Integrals, NodeSums};
 use crate::contact::on_wheelset::{OnWheelset, OneContact};
 use crate::contact::outputs::{LEAST_CREEPAGE_SPEED, damping};
 use crate::contact::patch;
 use crate::contact::patch::operators::PatchOperators;
 use crate::contact::profiles::ContactNode;
 use crate::contact::rim::ContactHeat;
+use crate::damage::PointDamage;
 use crate::friction::coulomb;
 use crate::geometry::unrolled::PlacedWheel;
 
