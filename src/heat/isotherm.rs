@@ -68,7 +68,7 @@ mod tests {
     #[test]
     fn the_depth_of_known_profiles_is_found() {
         let (depths, basis) = rail();
-        for at in [1.5e-5, 3e-5, 1.2e-4, 2.5e-4, 4e-4] {
+        for at in [2e-5, 3e-5, 1.2e-4, 2.5e-4, 4e-4] {
             let rate = (1.5_f64).ln();
             let decaying = |z: f64| 1500.0 * (-rate * z / at).exp();
             let flat = |z: f64| 1500.0 * (-rate * (z / at).powi(2)).exp();
