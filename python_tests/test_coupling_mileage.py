@@ -15,6 +15,7 @@ from dask_runs import read_component
 from helpers import FMU3, wheelrail
 from mileage_line import BadInputError, is_its_own_mirror, main_line, mirrored, named, read_line, vehicle_of
 from mileage_march import MIRROR, march, read_state, state_file
+from mileage_tables import classes_of
 from mileage_wheels import NewWheel, smoothed
 
 # The small run in a process of its own, which goes on after each file when it is told to: on workers, or on none.
@@ -62,6 +63,17 @@ def middle(new, depth):
     """Where half of the worn area lies to each side, across the wheel [m]."""
     total = np.cumsum(depth) / depth.sum()
     return np.interp(0.5, total, 0.5 * (new.y[1:] + new.y[:-1]))
+
+
+def test_fatigue_of_the_classes_is_that_of_the_wear_numbers(run):
+    """By the whole life rail model, where a wheel has one contact; it is worst in the curve."""
+    table, _ = classes_of(run[0], 0)
+    single = table["contacts"] == 1.0
+    assert np.count_nonzero(single) >= 4
+    expected = np.interp(table["wear_number"], [15.0, 65.0, 175.0], [0.0, 1e-5, 0.0])
+    low = single & (table["wear_number"] < 175.0)
+    np.testing.assert_allclose(table["rcf_damage"][low], expected[low], rtol=1e-9, atol=1e-18)
+    assert np.max(np.abs(table["rcf_damage"])) > 1e-6
 
 
 def test_wheels_wear_where_they_roll(run, new):

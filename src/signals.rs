@@ -327,7 +327,7 @@ outputs! {
     hollow_depth: "m" shown in "mm", Kept, at least 0.0, nominal 1e-3, only [profiles];
     /// Damage by rolling contact fatigue that the wheel does to the rail with one passage, that of the contact that does most: of the wear number,
     /// 1 being that at which cracks begin; negative where all contacts wear more off than fatigue damages
-    rcf_damage: "1", Instantaneous, nominal 1e-5, only [patch, profiles];
+    rcf_damage: "1", Instantaneous, nominal 2e-5, only [patch, profiles];
     /// Surface fatigue index: the largest value over the contact of the shear traction less shear_yield_stress, over the pressure; positive where the
     /// surface ratchets; 0 without contact
     surface_fatigue_index "FI": "1", Instantaneous, nominal 0.1;
@@ -376,7 +376,7 @@ contact_outputs! {
     wear_number: "N", nominal 100.0;
     /// Damage by rolling contact fatigue that a contact does to the rail with one passage: of its wear number, 1 being that at which cracks begin;
     /// negative where it wears more off than fatigue damages
-    rcf_damage: "1", nominal 1e-5;
+    rcf_damage: "1", nominal 2e-5;
     /// Surface fatigue index of a contact: the largest value of the shear traction less shear_yield_stress, over the pressure
     surface_fatigue_index: "1", nominal 0.1;
     /// Largest depth below its surface to which the rail is hotter than austenite_temperature, in a contact and next to it

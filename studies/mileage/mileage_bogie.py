@@ -46,7 +46,7 @@ OFFSET_MOST = 5e-4  # m: by which rails are moved at once
 DEBUG = False
 ACCELERATION = 1e-3  # of the wear that is measured
 # What each wheel is asked in each state, beside Y and Q.
-ASKED = ("contacts", "wear_number", "peak_temperature", "peak_pressure")
+ASKED = ("contacts", "wear_number", "rcf_damage", "peak_temperature", "peak_pressure")
 
 
 @dataclass(frozen=True)
