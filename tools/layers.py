@@ -12,7 +12,19 @@ from pathlib import Path
 # What may stand in src/ beside the folders.
 FILES = {"lib", "damage", "error", "settings", "signals", "transport", "wear", "wheel_rail", "simulation"}
 PHYSICS = [
-    *("numerics", "geometry", "body", "friction", "mechanics", "heat", "wear", "damage", "transport", "contact", "wheel_rail"),
+    *(
+        "numerics",
+        "geometry",
+        "body",
+        "friction",
+        "mechanics",
+        "heat",
+        "wear",
+        "damage",
+        "transport",
+        "contact",
+        "wheel_rail",
+    ),
     *("simulation", "parameters", "signals", "error", "settings"),
 ]
 # Neither of the two uses the other.

@@ -46,12 +46,13 @@ pub fn integrals(problem: &LineProblem, fields: &LineFields) -> Integrals {
 /// Damage to the points of the rail, whose surface is at most `peak_rise` `K` over the ambient.
 fn damage(problem: &LineProblem, fields: &LineFields, peak_rise: f64) -> PointDamage {
     let (operators, parameters) = (problem.operators, problem.parameters);
-    let shear = fields.shear.iter().map(|shear| shear.abs());
+    let loaded = (0..fields.pressure.len()).filter(|&node| fields.pressure[node] > 0.0);
+    let points = loaded.map(|node| (fields.pressure[node], fields.shear[node].abs()));
     let rise = parameters.austenite_temperature - problem.conditions.inputs.ambient_temperature;
     let columns = (0..operators.mesh.columns()).map(|column| fields.column(operators, column).iter().copied());
     PointDamage {
         surface_fatigue: damage::surface_fatigue_index(
-            fields.pressure.iter().copied().zip(shear),
+            points,
             parameters.shear_yield_stress / operators.scales.pressure,
         ),
         austenite_depth: if peak_rise > rise {

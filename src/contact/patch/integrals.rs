@@ -49,15 +49,18 @@ pub fn integrals(problem: &PatchProblem, fields: &PatchFields) -> Integrals {
 /// Damage to the points of the rail, whose surface is at most `peak_rise` `K` over the ambient.
 pub fn damage(problem: &PatchProblem, fields: &PatchFields, peak_rise: f64) -> PointDamage {
     let (operators, parameters) = (problem.operators, problem.parameters);
-    let [along, across] = &fields.shear;
-    let shear = along.iter().zip(across).map(|(&x, &y)| coulomb::magnitude([x, y]));
+    let loaded = (0..fields.pressure.len()).filter(|&place| fields.pressure[place] > 0.0);
+    let points = loaded.map(|place| {
+        let shear = [fields.shear[0][place], fields.shear[1][place]];
+        (fields.pressure[place], coulomb::magnitude(shear))
+    });
     let rise = parameters.austenite_temperature - problem.conditions.inputs.ambient_temperature;
     let strips = &operators.strips;
     let columns = (0..strips.strips)
         .flat_map(|strip| (0..strips.cells).map(move |cell| fields.heat.amplitudes(strips, strip, cell)));
     PointDamage {
         surface_fatigue: damage::surface_fatigue_index(
-            fields.pressure.iter().copied().zip(shear),
+            points,
             parameters.shear_yield_stress / operators.scales.pressure,
         ),
         austenite_depth: if peak_rise > rise {
