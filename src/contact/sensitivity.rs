@@ -41,15 +41,17 @@ pub fn outputs<E: Engine>(
         .map(|input| {
             let direction = direction(problem, input);
             newton.system.fields_tangent(&mut at, &direction, &mut newton.step)?;
-            let least_step = problem.settings.sensitivity.least_output_step * INPUTS[input].nominal;
+            let difference = Difference {
+                least_step: problem.settings.sensitivity.least_output_step * INPUTS[input].nominal,
+                austenite,
+            };
             let change = &newton.system.change;
             Ok(output_tangent(
                 problem,
                 fields,
                 at.solvers,
                 &direction,
-                least_step,
-                austenite,
+                difference,
                 change,
                 &mut newton.moved,
             ))
@@ -70,25 +72,33 @@ fn direction<E: Engine>(problem: &Problem<E>, input: usize) -> Direction {
     }
 }
 
-/// Derivatives of the outputs along a change of inputs and fields, by a central difference of at least `least_step`: the outputs
-/// are short expressions of the fields, and a step is known that suits all of them. Without austenite its depth stays 0.
+/// Difference of the outputs.
+#[derive(Clone, Copy)]
+struct Difference {
+    /// Least step of it, in the unit of the input.
+    least_step: f64,
+    /// Whether there is austenite; without it its depth stays 0.
+    austenite: bool,
+}
+
+/// Derivatives of the outputs along a change of inputs and fields, by a central difference: the outputs are short expressions of the
+/// fields, and a step is known that suits all of them.
 fn output_tangent<E: Engine>(
     problem: &Problem<E>,
     fields: &E::Fields,
     solvers: &E::Solvers,
     direction: &Direction,
-    least_step: f64,
-    austenite: bool,
+    difference: Difference,
     change: &E::Fields,
     moved: &mut E::Fields,
 ) -> Outputs {
     let conditions = &problem.conditions;
     let step = fields
         .output_step(change, &problem.settings.sensitivity)
-        .max(least_step);
+        .max(difference.least_step);
     moved.copy_from(fields);
     let mut outputs = |step: f64| {
-        moved.move_along(fields, change, step, austenite);
+        moved.move_along(fields, change, step, difference.austenite);
         let problem = problem.under(conditions.inputs.advanced(&direction.inputs, step));
         let (parameters, conditions) = (problem.parameters, &problem.conditions);
         let integrals = E::integrals(&problem, moved, solvers);
@@ -104,7 +114,7 @@ fn output_tangent<E: Engine>(
         let difference = (signal.get)(&ahead) - (signal.get)(&behind);
         (signal.set)(&mut derivative, difference / (2.0 * step));
     }
-    if !austenite {
+    if !difference.austenite {
         derivative.austenite_depth = 0.0;
         derivative
             .contact
