@@ -52,7 +52,7 @@ install = $(PY) -m uv pip install --quiet --python $(PY) -r $(1) \
 COUPLINGS := longitudinal stiff multibody train sweep hunting adhesion maintenance height curve mileage
 WHEELSET := target/Wheelset.fmu
 
-.PHONY: fmu fmu3 platforms wheel demo measurements measurements-docs test test-debug soak derivatives bits docs site bench bench-check clean lint rust-test verify python-test hosts library command couplings packages
+.PHONY: fmu fmu3 platforms wheel demo measurements measurements-docs test test-debug soak derivatives bits docs site bench bench-check clean lint lint-sources lint-compiled rust-test verify python-test hosts library command couplings packages
 .PHONY: pytest couplings-set-up couplings-docs sweep-scaling description $(addprefix coupling-,$(COUPLINGS))
 
 # ---- set-up -------------------------------------------------------------------------------------------------------
@@ -190,25 +190,31 @@ sweep-scaling: couplings-set-up
 
 # ---- checks -------------------------------------------------------------------------------------------------------
 
-# First what the checks need, compiled and downloaded side by side; then the checks, each with its output in one piece.
+# First what the checks need, compiled and downloaded side by side, and what can be checked without it; then the checks that
+# compile or use it, each with its output in one piece. These take what is built for granted (-o): cargo has locked its folder.
 test:
-	+@$(BESIDE) verify fmu fmu3 packages
+	+@$(BESIDE) fmu fmu3 packages lint-sources
 	$(call say,Rust tests - Python tests - lints: each is printed as it ends)
-	+@$(BESIDE) --output-sync=target --keep-going rust-test pytest lint
+	+@$(BESIDE) -o library -o fmu -o fmu3 -o packages --output-sync=target --keep-going rust-test python-test lint-compiled
 	$(call say,All checks passed)
 
 packages: couplings-set-up $(VENV)/site
 
-lint: $(VENV)/ready
-	$(call say,Formatting - lints - documentation)
+lint: lint-sources lint-compiled
+
+lint-sources: $(VENV)/ready
+	$(call say,Formatting - order of the modules - Python)
 	cargo fmt --check
 	$(PY) tools/layers.py
 	$(PY) tools/doc_comments.py
-	$(CARGO) clippy --quiet --all-targets -- -D warnings
-	RUSTDOCFLAGS='-D warnings' $(CARGO) doc --quiet --no-deps
 	$(VENV)/bin/ruff check .
 	$(VENV)/bin/ruff format --check .
 	$(VENV)/bin/mypy
+
+lint-compiled: $(VENV)/build
+	$(call say,Lints - documentation)
+	$(CARGO) clippy --quiet --all-targets -- -D warnings
+	RUSTDOCFLAGS='-D warnings' $(CARGO) doc --quiet --no-deps
 
 # Without the checks of the verification, one test each: `verify` has gone through the same.
 rust-test: $(VENV)/build
@@ -246,7 +252,7 @@ verify: command
 python-test: fmu fmu3 verify packages
 	@$(MAKE) --no-print-directory pytest
 
-# Alone it takes what is built for granted: rust-test, beside it, has locked the build folder.
+# Alone it takes what is built for granted.
 pytest:
 	$(call say,Python tests)
 	$(PY) -m pytest --numprocesses 2 --dist loadfile

@@ -1,11 +1,16 @@
 //! `wheelrail verify`: every check of the library as a table.
 
 use clap::Args;
+use std::collections::BTreeMap;
 use std::fs;
 use std::io::{self, Write};
+use std::num::NonZero;
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::mpsc;
+use std::thread;
 use wheelrail::error::Error as ModelError;
-use wheelrail::verification::{CHECKS, CURVES, Row};
+use wheelrail::verification::{CHECKS, CURVES, Check, Row};
 
 /// Options of `verify`.
 #[derive(Args)]
@@ -82,9 +87,9 @@ impl Verify {
             "quantity", "reference", "computed", "unit", "deviation", "tolerance", "pass"
         )?;
         let (mut total, mut failed) = (0, 0);
-        for check in chosen {
+        compute(&chosen, |check, rows| {
             writeln!(out, "\n{}", check.name)?;
-            match (check.rows)() {
+            match rows {
                 Ok(rows) => {
                     total += rows.len();
                     failed += rows.iter().filter(|row| !row.pass).count();
@@ -98,14 +103,51 @@ impl Verify {
                     failed += 1;
                 }
             }
-            out.flush()?;
-        }
+            out.flush()
+        })?;
         writeln!(out, "\n{} of {total} rows pass", total - failed)?;
         if failed > 0 {
             return Err(Error::Failed { failed, total });
         }
         Ok(())
     }
+}
+
+/// Computes the checks on all cores, and hands on the rows of each in the order of the checks, as soon as they are there.
+fn compute(
+    checks: &[&Check],
+    mut hand_on: impl FnMut(&Check, Result<Vec<Row>, ModelError>) -> io::Result<()>,
+) -> io::Result<()> {
+    let cores = thread::available_parallelism().map_or(1, NonZero::get);
+    let next = AtomicUsize::new(0);
+    let (sender, receiver) = mpsc::channel();
+    thread::scope(|scope| {
+        for _ in 0..cores.min(checks.len()) {
+            let (sender, next) = (sender.clone(), &next);
+            scope.spawn(move || {
+                loop {
+                    let number = next.fetch_add(1, Ordering::Relaxed);
+                    let Some(check) = checks.get(number) else {
+                        break;
+                    };
+                    // Nobody waits any more where the rows before could not be printed.
+                    if sender.send((number, (check.rows)())).is_err() {
+                        break;
+                    }
+                }
+            });
+        }
+        drop(sender);
+        let (mut computed, mut handed_on) = (BTreeMap::new(), 0);
+        for (number, rows) in receiver {
+            computed.insert(number, rows);
+            while let Some(rows) = computed.remove(&handed_on) {
+                hand_on(checks[handed_on], rows)?;
+                handed_on += 1;
+            }
+        }
+        Ok(())
+    })
 }
 
 /// One file for each curve.
