@@ -97,16 +97,18 @@ fn fields_add_up_to_the_contacts() {
             );
             stands_where_the_contact_is(window, contact.position, [contact.length, contact.breadth]);
         }
-        // All windows together.
+        // All windows together, turned by the roll of the rail.
         let vertical = |w: &SurfaceWindow, n: usize| {
-            let inclination = w.strips[n / w.x.len()].inclination;
             let sign = if side == Side::Left { 1.0 } else { -1.0 };
-            // By the roll of the rail too.
-            let angle = inclination + 1e-3;
+            let angle = w.strips[n / w.x.len()].inclination + 1e-3;
             w.nodes[n].pressure * angle.cos() - sign * w.nodes[n].lateral_shear * angle.sin()
         };
-        let load: f64 = windows.iter().map(|window| integral(window, vertical)).sum();
-        assert!((load / 60e3 - 1.0).abs() < 1e-5, "{side:?}: {load}");
+        let force: f64 = windows.iter().map(|window| integral(window, vertical)).sum();
+        assert!(
+            (force / outputs.force_z - 1.0).abs() < 1e-9,
+            "{side:?}: {force} {}",
+            outputs.force_z
+        );
     }
 }
 
@@ -175,6 +177,40 @@ fn profiles_stand_in_the_track() {
                 overlap > 0.0 && overlap < 1.2 * approach,
                 "{side:?}: {overlap} {approach}"
             );
+        }
+    }
+}
+
+/// The roll of the rail turns it about its top, by the angle of the input on either side; its displacements move it.
+#[test]
+fn a_rail_that_has_moved_and_rolled_is_there() {
+    for side in [Side::Left, Side::Right] {
+        let moved = inputs(side);
+        let still = Inputs {
+            rail_lateral_displacement: 0.0,
+            rail_vertical_displacement: 0.0,
+            rail_roll_angle: 0.0,
+            ..moved
+        };
+        let [before, after] = [still, moved].map(|inputs| {
+            let run = Simulation::new(&parameters(side), &inputs).unwrap();
+            run.profile_wear().unwrap().rail
+        });
+        let top = before
+            .iter()
+            .min_by(|a, b| a.position.abs().total_cmp(&b.position.abs()))
+            .unwrap();
+        for (from, to) in before.iter().zip(&after) {
+            let ([y, z], roll) = (from.in_track, moved.rail_roll_angle);
+            let expected = [
+                y - roll * z + moved.rail_lateral_displacement,
+                z + roll * (y - top.in_track[0]) + moved.rail_vertical_displacement,
+            ];
+            for way in 0..2 {
+                // The square of the roll, and a place beside the top.
+                let off = to.in_track[way] - expected[way];
+                assert!(off.abs() < 2e-7, "{side:?} {from:?} {to:?}");
+            }
         }
     }
 }
