@@ -238,7 +238,7 @@ impl Operators {
     pub fn surface_windows(&self, task: &Task, state: &ContactState) -> Result<Vec<SurfaceWindow>> {
         match (self, state) {
             (Operators::Surface(operators), ContactState::Surface(state)) => {
-                Ok(surface::plots::windows(&Problem::new(operators, task), &state.fields))
+                Ok(SurfaceOperators::windows(&Problem::new(operators, task), &state.fields))
             }
             _ => Err(Error::OtherContactModel),
         }
@@ -251,7 +251,7 @@ impl Operators {
     pub fn profile_wear(&self, task: &Task, state: &ContactState) -> Result<ProfileDepths> {
         match (self, state) {
             (Operators::Surface(operators), ContactState::Surface(state)) => {
-                Ok(surface::plots::depths(&Problem::new(operators, task), &state.fields))
+                Ok(SurfaceOperators::depths(&Problem::new(operators, task), &state.fields))
             }
             _ => Err(Error::OtherContactModel),
         }

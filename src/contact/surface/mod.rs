@@ -13,7 +13,7 @@ mod interpolation;
 mod mechanics;
 pub mod operators;
 mod placement;
-pub mod plots;
+mod plots;
 mod profile_wear;
 mod search;
 pub mod solvers;

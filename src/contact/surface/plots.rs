@@ -1,4 +1,4 @@
-//! What is looked at of a contact of profiles: the cells of its windows and both profiles in their places in the track, and profiles along, across and below
+//! Plots of a contact of profiles: the cells of its windows and both profiles in their places in the track, and profiles along, across and below
 //! the window that carries most.
 
 use super::bodies::{RAIL, WHEEL};
@@ -50,8 +50,19 @@ fn worn(operators: &SurfaceOperators, depths: &[Vec<f64>; 2]) -> WornBodies {
     worn
 }
 
-/// The windows with their cells, on the rail as the step saw it: first those that carry, in the order of the contacts, then the others.
-pub fn windows(problem: &SurfaceProblem, fields: &SurfaceFields) -> Vec<SurfaceWindow> {
+impl SurfaceOperators {
+    /// Windows with their cells, on the rail as the step saw it: first those that carry, in the order of the contacts, then the others.
+    pub fn windows(problem: &SurfaceProblem, fields: &SurfaceFields) -> Vec<SurfaceWindow> {
+        windows(problem, fields)
+    }
+
+    /// Places of both profiles with the depth of the spline in the middle of their cells.
+    pub fn depths(problem: &SurfaceProblem, fields: &SurfaceFields) -> ProfileDepths {
+        depths(problem, fields)
+    }
+}
+
+fn windows(problem: &SurfaceProblem, fields: &SurfaceFields) -> Vec<SurfaceWindow> {
     let operators = problem.operators;
     let (worn, track) = (worn(operators, &fields.worn.before), InTrack::new(problem));
     let rail = &worn.of(operators).rail;
@@ -140,8 +151,7 @@ pub fn profiles(problem: &SurfaceProblem, fields: &SurfaceFields) -> Profiles {
     found
 }
 
-/// Places of both profiles with the depth of the spline in the middle of their cells.
-pub fn depths(problem: &SurfaceProblem, fields: &SurfaceFields) -> ProfileDepths {
+fn depths(problem: &SurfaceProblem, fields: &SurfaceFields) -> ProfileDepths {
     let operators = problem.operators;
     let track = InTrack::new(problem);
     let worn = worn(operators, &fields.worn.depth);

@@ -1,4 +1,4 @@
-//! What is looked at, column by column: profiles, the fields of a patch, those of profiles, and their wear.
+//! Columns that are looked at: profiles, the fields of a patch, those of profiles, and their wear.
 
 use crate::wheel_rail::{
     ContactNode, DEPTH_POINTS, PROFILE_POINTS, ProfileDepths, Profiles, STRIP_POINTS, SurfaceStrip, SurfaceWindow,
