@@ -206,9 +206,9 @@ fn a_rail_that_has_moved_and_rolled_is_there() {
                 y - roll * z + moved.rail_lateral_displacement,
                 z + roll * (y - top.in_track[0]) + moved.rail_vertical_displacement,
             ];
-            for way in 0..2 {
+            for (place, expected) in to.in_track.iter().zip(expected) {
                 // The square of the roll, and a place beside the top.
-                let off = to.in_track[way] - expected[way];
+                let off = place - expected;
                 assert!(off.abs() < 2e-7, "{side:?} {from:?} {to:?}");
             }
         }
