@@ -152,7 +152,7 @@ SIMULATE = {
     "field that is none": (TABLE, {"fields": "presure"}, "fields: there is no field presure; did you mean pressure"),
     "no fields": (TABLE, {"fields": []}, "fields = []: none is chosen"),
     "fields of the patch": (TABLE, {"fields": True, "contact_model": "patch"}, "those of the patch are in the FMU of FMI 3.0"),
-    "fields of profiles": (SPEEDS, {"fields": True, "contact_model": "profiles", "slip_source": 2}, "profiles have no fields over time"),
+    "fields of profiles": (SPEEDS, {"fields": True, "contact_model": "profiles", "slip_source": 2}, "those of profiles are in the FMU of FMI 3.0"),
     "fields_every": (TABLE, {"fields": True, "fields_every": 0}, "fields_every = 0: a whole number of at least 1"),
 }  # fmt: skip
 
@@ -259,6 +259,8 @@ PLOTS = {
     "fields of something else": (plots.patch_fields, (RESULT,), "patch_fields needs x, y, pressure"),
     "fields of nothing": (plots.patch_fields, (CELLS | {"pressure": np.zeros((3, 4))},), "no cell is in contact"),
     "fields of a number": (plots.patch_fields, (3,), "patch_fields: a table is needed"),
+    "fields of a patch for profiles": (plots.surface_fields, (CELLS | {"pressure": np.ones((3, 4))},), "surface_fields needs cell_length"),
+    "field of profiles that is none": (plots.surface_fields, (CELLS, "presure"), "there is no field presure; did you mean pressure"),
     "fields of times": (plots.patch_fields, (CELLS | {"pressure": np.ones((2, 3, 4))},), "choose one, fields.isel(time=-1)"),
     "cells that are no patch": (plots.patch_fields, ({name: np.arange(5.0) // 2 for name in [*CELLS, "pressure"]},), "5 cells in 3 strips are no patch"),
     "column that is none": (plots.over_time, (RESULT, "traction_forc"), "over_time needs traction_forc, which the table has not; simulate returns them; did you mean traction_force"),

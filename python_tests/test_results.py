@@ -20,6 +20,10 @@ from wheelrail import plots  # noqa: E402
 from wheelrail.progress import reporter  # noqa: E402
 from wheelrail.stepping import points  # noqa: E402
 
+# A wheelset that moves from the tread to where flange's root and tread carry.
+PROFILES = {"contact_model": "profiles", "slip_source": "vehicle_speed", "patch_nodes": 14, "patch_strips": 9}
+PROFILES |= {"step": 5e-4, "vehicle_speed": 20.0, "wheel_speed": 43.6}
+MOVING = {"time": [0.0, 2e-3], "lateral_displacement [mm]": [3.0, 5.1]}
 PATCH = {"contact_model": "patch", "lateral_creepage": 1e-3, "creepage": 1e-3, "step": 0.02}
 
 
@@ -111,6 +115,53 @@ def test_fields_of_the_patch(fmu3):
         assert np.array_equal(some[name].isel(time=-1), fields[name].isel(time=-1)), name
     assert np.array_equal(fields["x"], own["x"][0])
     assert np.array_equal(fields["y"], own["y"][:, 0])
+
+
+def test_fields_of_profiles(fmu3):
+    """Each field over time, windows, strips and cells; the pressure adds up to the normal forces at each time."""
+    result, fields = wheelrail.simulate(MOVING, fields=True, fmu=fmu3, outputs="contact.normal_force", **PROFILES)
+    assert dict(fields.sizes) == {"time": 5, "window": 4, "strip": 14, "cell": 14, "place": 1500}
+    assert fields["pressure"].dims == ("time", "window", "strip", "cell")
+    assert (fields["arc_length"].attrs["units"], fields["slip_s"].attrs["units"]) == ("m", "m/s")
+    forces = (fields["pressure"].sum(["strip", "cell"]) * fields["cell_length"] * fields["strip_breadth"]).values
+    expected = result[[f"contact.normal_force[{number}]" for number in range(1, 5)]].to_numpy()
+    # Before the first step there is no contact yet.
+    assert forces[1:] == pytest.approx(expected[1:], rel=1e-9, abs=1e-6)
+    assert np.count_nonzero(expected[1]) == 1
+    assert np.count_nonzero(expected[-1]) == 2
+    # Cells under pressure stand between the ends of the rail's profile, where it is.
+    carrying = fields["pressure"].isel(time=-1).values > 0.0
+    window, strip, _ = np.nonzero(carrying)
+    last = fields.isel(time=-1)
+    y, z = (last[axis].values[window, strip] for axis in "yz")
+    order = np.argsort(last["rail_y"].values)
+    on_rail = np.interp(y, last["rail_y"].values[order], last["rail_z"].values[order])
+    assert z == pytest.approx(on_rail, abs=2e-6)
+    start = {name: value for name, value in PROFILES.items() if name != "step"}
+    with wheelrail.Instance(fmu3, lateral_displacement=3e-3, **start).start() as instance:
+        some = wheelrail.simulate(MOVING, fields="temperature", instance=instance, step=5e-4)[1]
+        own = instance.fields()
+    assert list(some.data_vars) == ["temperature"]
+    assert np.array_equal(some["temperature"].isel(time=-1), own["temperature"])
+    for name in ("x", "arc_length", "cell_length"):
+        assert np.array_equal(some[name].isel(time=-1), own[name]), name
+
+
+@pytest.mark.parametrize("field", ["pressure", "shear", "slip", "friction_coefficient", "temperature", "wear_depth"])
+def test_fields_of_profiles_are_drawn(fmu3, field):
+    """A panel for each contact, whose largest value is that of the data set; any field."""
+    _, fields = wheelrail.simulate(MOVING, fields=True, fmu=fmu3, **PROFILES)
+    figure = plots.surface_fields(fields.isel(time=-1), field)
+    panels = [axes for axes in figure.axes if axes.get_title(loc="left").startswith("contact")]
+    assert [axes.get_title(loc="left")[:9] for axes in panels] == ["contact 1", "contact 2"]
+    if field == "pressure":
+        drawn = max(np.nanmax(axes.collections[0].get_array()) for axes in panels)
+        assert drawn == pytest.approx(fields["pressure"].isel(time=-1).max().item() / 1e6)
+        with pytest.raises(ValueError, match="fields of several times"):
+            plots.surface_fields(fields)
+        lifted = fields.isel(time=-1).assign(pressure=0.0 * fields["pressure"].isel(time=-1))
+        with pytest.raises(ValueError, match="no cell is in contact"):
+            plots.surface_fields(lifted)
 
 
 @pytest.mark.parametrize("version", ["fmu", "fmu3"])

@@ -20,7 +20,8 @@ use serde::{Deserialize, Serialize};
 
 pub use crate::contact::problem::Convergence;
 pub use crate::contact::profiles::{
-    ContactNode, DEPTH_POINTS, PROFILE_POINTS, ProfileDepths, Profiles, STRIP_POINTS, StripProfiles, WornPlace,
+    ContactNode, DEPTH_POINTS, PROFILE_POINTS, ProfileDepths, Profiles, STRIP_POINTS, StripProfiles, SurfaceStrip,
+    SurfaceWindow, WornPlace,
 };
 pub use crate::contact::work::Iterations;
 
@@ -366,6 +367,11 @@ impl Model {
         }
     }
 
+    /// Task of the last step.
+    fn task_of(&self, state: &State) -> Task<'_> {
+        self.task(&state.inputs, state.duration, Coupling::Implicit)
+    }
+
     /// Rates of change of the outputs at the communication point, per second: over the last sub-step.
     pub fn output_rates(&self, state: &State) -> Outputs {
         state.output_rates
@@ -385,9 +391,8 @@ impl Model {
         state: &State,
         inputs: impl IntoIterator<Item = usize>,
     ) -> Result<Vec<Outputs>> {
-        let task = self.task(&state.inputs, state.duration, Coupling::Implicit);
         self.operators
-            .sensitivities(&task, &mut workspace.contact, &state.contact, inputs)
+            .sensitivities(&self.task_of(state), &mut workspace.contact, &state.contact, inputs)
     }
 
     /// Convergence of the last step.
@@ -397,7 +402,16 @@ impl Model {
 
     /// The fields at the nodes of the contact window, from the rear to the front for V > 0.
     pub fn contact_nodes(&self, state: &State) -> Vec<ContactNode> {
-        self.operators.contact_nodes(&state.contact)
+        self.operators.contact_nodes(&self.task_of(state), &state.contact)
+    }
+
+    /// Windows of a contact of profiles with the fields at their cells: first those that carry, in the order of the contacts in the outputs, then those
+    /// that do not.
+    ///
+    /// # Errors
+    /// [`Error::OtherContactModel`]: there are none of a line contact or a patch.
+    pub fn surface_windows(&self, state: &State) -> Result<Vec<SurfaceWindow>> {
+        self.operators.surface_windows(&self.task_of(state), &state.contact)
     }
 
     /// Side of the corners of a layer's law that the nodes are on, for tests of the derivatives: whether its strength is less or more than what the
@@ -412,7 +426,7 @@ impl Model {
     /// # Errors
     /// [`Error::OtherContactModel`]: there are none of a line contact or a patch.
     pub fn profile_wear(&self, state: &State) -> Result<ProfileDepths> {
-        self.operators.profile_wear(&state.contact)
+        self.operators.profile_wear(&self.task_of(state), &state.contact)
     }
 
     /// Profiles of wheel and rail as they are worn, the rail's upright. Their origins have moved with the surface, a wheel's to its worn running
@@ -426,10 +440,7 @@ impl Model {
 
     /// Profiles for plotting.
     pub fn profiles(&self, state: &State) -> Profiles {
-        self.operators.profiles(
-            &self.task(&state.inputs, state.duration, Coupling::Implicit),
-            &state.contact,
-        )
+        self.operators.profiles(&self.task_of(state), &state.contact)
     }
 }
 

@@ -15,6 +15,7 @@ from fmpy.model_description import ModelVariable
 from .arguments import names_of, plain
 from .errors import SimulationError, SimulationWarning
 from .native import FMU3Component, Phase
+from .surface import formed, sources
 from .variables import PATCH_GRID, bounds, choices, near, shape, start_values, with_grid
 from .wear import ProfileWear, WornProfiles, new_profile
 
@@ -333,15 +334,20 @@ class Access:
         )
 
     def fields(self) -> dict[str, np.ndarray]:
-        """Fields of the patch as they are now, each as an array of strips by cells: FMI 3.0 alone has them.
+        """Fields of a patch or of profiles as they are now: FMI 3.0 alone has them.
 
-        They are what `plots.patch_fields` draws.
+        Those of a patch are what `plots.patch_fields` draws, those of profiles what `plots.surface_fields` does.
 
         Returns
         -------
         dict of numpy.ndarray
-            Places `x`, `y` [m], `pressure`, `shear_x`, `shear_y` [Pa], `slip_x`, `slip_y` [m/s], `temperature` [K],
-            `wear_depth` [m].
+            Of a patch, as arrays of strips by cells: places `x`, `y` [m], `pressure`, `shear_x`, `shear_y` [Pa],
+            `slip_x`, `slip_y` [m/s], `temperature` [K], `wear_depth` [m]. Of profiles, as arrays of windows by strips
+            by cells, the contacts in their order first: `pressure`, `shear_x`, `shear_s` [Pa], `slip_x`, `slip_s`
+            [m/s], `friction_coefficient` [1], `temperature` [K], `wear_depth` [m]; places `x` of windows by cells,
+            `arc_length`, `y`, `z` [m], `inclination` [rad] of windows by strips; sizes of the cells `cell_length`,
+            `strip_breadth` [m], 0 of a window that there is not; both profiles in the track `wheel_y`, `wheel_z`,
+            `rail_y`, `rail_z` [m].
 
         Raises
         ------
@@ -353,10 +359,17 @@ class Access:
         self.slave.check()
         names = [name for name, variable in self.variables.items() if name.startswith("patch.") and variable.dimensions]
         if not names:
-            raise ValueError(f"{self.fmu} has no fields of the patch: take the FMU of FMI 3.0")
+            raise ValueError(f"{self.fmu} has no fields of patch and profiles: take the FMU of FMI 3.0")
         with self._calls("fields"):
-            if self.get("contact_model") != [choices(self.variables["contact_model"])["patch"]]:
-                raise ValueError("a line contact has no fields: they are those of contact_model = 'patch'")
+            models = choices(self.variables["contact_model"])
+            model = self.get("contact_model")
+            own = sources(self.variables)
+            if own and model == [models["profiles"]]:
+                return {short: formed(self.get(name), over, self.lengths) for short, (name, over) in own.items()}
+            if model != [models["patch"]]:
+                raise ValueError(
+                    "a line contact has no fields: they are those of contact_model = 'patch' or 'profiles'"
+                )
             found = {
                 name.removeprefix("patch."): np.reshape(self.get(name), shape(self.variables[name], self.lengths))
                 for name in names

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from .instance import Instance
+from .surface import PLACES, formed, sizes, sources
 from .variables import near, unit
 
 if TYPE_CHECKING:
@@ -44,8 +45,8 @@ class Fields:
     ----------
     instance
         Instance that is initialised.
-    patch
-        Whether its contact model is the patch.
+    model
+        Its contact model: line, patch or profiles.
     chosen
         True for all fields, or the names of some.
     every
@@ -60,31 +61,39 @@ class Fields:
     """
 
     def __init__(
-        self, instance: Instance, patch: bool, chosen: bool | str | Iterable[str], every: int, count: int
+        self, instance: Instance, model: str, chosen: bool | str | Iterable[str], every: int, count: int
     ) -> None:
         """Find the fields, and make room for them."""
         self.instance = instance
         self.coordinates: dict[str, tuple[str, np.ndarray]] = {}
-        sources: dict[str, tuple[str, tuple[str, ...]]] = {}
-        for prefix, short, places in PATCH if patch else LINE:
+        known: dict[str, tuple[str, tuple[str, ...]]] = {}
+        for prefix, short, places in {"line": LINE, "patch": PATCH}.get(model, ()):
             for place in places:
                 if self.elements(prefix + place):
                     self.coordinates[place] = (prefix + place, np.array(instance.get(*self.elements(prefix + place))))
             names = dict.fromkeys(name.partition("[")[0] for name in instance.variables if name.startswith(prefix))
             fields = [name for name in names if name.removeprefix(prefix) not in places]
-            sources |= {short + name.removeprefix(prefix): (name, places) for name in fields}
-        if not sources:
+            known |= {short + name.removeprefix(prefix): (name, places) for name in fields}
+        self.lengths = instance.lengths if model == "profiles" else None
+        # Windows follow the contacts, and their cells with them.
+        self.places: dict[str, tuple[str, tuple[str, ...]]] = {}
+        if model == "profiles":
+            known = sources(instance.variables)
+            self.places = {name: known.pop(name) for name in PLACES if name in known}
+        if not known:
             raise ValueError(
-                f"{instance.fmu} has no fields of the {'patch' if patch else 'line'};"
-                " those of the patch are in the FMU of FMI 3.0, fmu=wheelrail.fmu_path('3.0')"
+                f"{instance.fmu} has no fields of the {model};"
+                f" those of {'profiles' if model == 'profiles' else 'the patch'} are in the FMU of FMI 3.0,"
+                " fmu=wheelrail.fmu_path('3.0')"
             )
-        self.sources = {name: sources[name] for name in names_of(chosen, sources)}
+        self.sources = {name: known[name] for name in names_of(chosen, known)} | self.places
         used = {place for _, places in self.sources.values() for place in places}
         self.coordinates = {place: found for place, found in self.coordinates.items() if place in used}
+        size_of = {place: values.size for place, (_, values) in self.coordinates.items()}
+        size_of |= sizes(self.lengths) if self.lengths else {}
         self.rows = {number: row for row, number in enumerate(sorted({*range(0, count, every), count - 1}))}
         shapes = {
-            name: (len(self.rows), *(self.coordinates[place][1].size for place in places))
-            for name, (_, places) in self.sources.items()
+            name: (len(self.rows), *(size_of[place] for place in places)) for name, (_, places) in self.sources.items()
         }
         size = 8 * sum(math.prod(lengths) for lengths in shapes.values())
         if size > MOST_BYTES:
@@ -104,9 +113,12 @@ class Fields:
         """Take the fields as they are now, at a communication point."""
         row = self.rows.get(number)
         if row is not None:
-            for name, (source, _) in self.sources.items():
-                values = self.values[name]
-                values[row] = np.reshape(instance.get(*self.elements(source)), values.shape[1:])
+            for name, (source, places) in self.sources.items():
+                values, taken = self.values[name], instance.get(*self.elements(source))
+                if self.lengths:
+                    values[row] = formed(taken, places, self.lengths)
+                else:
+                    values[row] = np.reshape(taken, values.shape[1:])
 
     def dataset(self, times: np.ndarray) -> xarray.Dataset:
         """The fields at the communication points up to now."""
@@ -128,6 +140,11 @@ class Fields:
             name: (("time", *places), self.values[name][: len(taken)], about(source))
             for name, (source, places) in self.sources.items()
         }
+        coordinates |= {name: fields.pop(name) for name in self.places}
+        if self.lengths:
+            numbers = np.arange(1, sizes(self.lengths)["window"] + 1)
+            text = "Window; those that carry come first, in the order of the contacts"
+            coordinates["window"] = ("window", numbers, {"units": "1", "long_name": text})
         return xarray.Dataset(fields, coordinates)
 
 

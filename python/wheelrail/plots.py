@@ -1,4 +1,4 @@
-"""Pictures: results over time, a braking manoeuvre, the fields of a patch in plan view, creep curves, contact geometry.
+"""Pictures: results over time, a braking manoeuvre, fields of a patch and of profiles, creep curves, contact geometry.
 
 Each function returns a matplotlib figure, to show, change or save: `figure.savefig("braking.png")`. A notebook shows it
 where it is the last line of a cell.
@@ -19,12 +19,14 @@ from matplotlib.patches import Ellipse
 from .creep_plots import CreepCurve, creep_curves, creep_panels
 from .drawing import BLACK, BLUE, GREEN, ORANGE, RED, SKY, STYLE, Columns, columns_for, styled
 from .geometry_plots import contact_geometry
+from .surface_plots import surface_fields
 from .units import display_unit, in_shown_units, model, said_units, scale_of, shown
 from .variables import near
 from .variables import unit as unit_of
 
 __all__ = ["BLACK", "BLUE", "GREEN", "ORANGE", "RED", "SKY", "STYLE", "CreepCurve"]
 __all__ += ["braking", "contact_geometry", "creep_curves", "creep_panels", "over_time", "patch_fields"]
+__all__ += ["surface_fields"]
 
 STICK, SLIP = "#dcebf5", "#f6e3d3"
 # What each picture needs, and in what unit.

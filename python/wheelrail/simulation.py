@@ -99,8 +99,8 @@ def simulate(
         Parameters and constant inputs whose names are no Python names, `{"friction_table.temperature": [...]}`.
     fields
         True for the fields of the contact over time as well, or the names of some: pressure, shear, slip, temperature
-        and wear over the cells of a patch, or along a line and into the depth; profiles have none. They need xarray,
-        and come from the FMU of FMI 3.0 unless another is given.
+        and wear over the cells of a patch or of the windows of profiles, or along a line and into the depth. They need
+        xarray, and come from the FMU of FMI 3.0 unless another is given.
     fields_every
         Communication points from one set of fields to the next; the first and the last point are always among them.
     progress
@@ -121,7 +121,8 @@ def simulate(
         of each column.
     xarray.Dataset
         With `fields`, as the second of two: each field over `time` and the places `y`, `x` of the cells, or `x` along a
-        line and `z` below it [m]; units in `attrs["units"]` of each.
+        line and `z` below it [m]; of profiles over `time`, `window`, `strip` and `cell`, with the places of the cells
+        as coordinates that move with the windows; units in `attrs["units"]` of each.
 
     Raises
     ------
@@ -178,15 +179,13 @@ def simulate(
     every = whole("fields_every", fields_every)
     models = choices(known["contact_model"]) if "contact_model" in known else {}
     model = value("contact_model") if models else None
-    patch = model is not None and model == models.get("patch")
-    if fields is not False and model is not None and model == models.get("profiles"):
-        raise ValueError("profiles have no fields over time; the cells at the end: `wheelrail simulate --fields`")
+    named = next((name for name, number in models.items() if number == model), "line")
     first = {
         name: float(np.interp(start, columns["time"], column)) for name, column in columns.items() if name != "time"
     }
 
     def run(contact: Instance) -> pd.DataFrame | tuple[pd.DataFrame, xarray.Dataset]:
-        taken = None if fields is False else Fields(contact, patch, fields, every, times.size)
+        taken = None if fields is False else Fields(contact, named, fields, every, times.size)
         if contact is instance:
             contact.set(**constants)
         result = follow(contact, times, columns, constants, names, report, taken)

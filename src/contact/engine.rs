@@ -289,7 +289,7 @@ pub trait Engine: Sized + 'static {
     fn profiles(problem: &Problem<Self>, fields: &Self::Fields) -> Profiles;
 
     /// Fields at the nodes of the contact window.
-    fn contact_nodes(&self, fields: &Self::Fields) -> Vec<ContactNode>;
+    fn contact_nodes(problem: &Problem<Self>, fields: &Self::Fields) -> Vec<ContactNode>;
 }
 
 /// Contact model whose nodes are all in one window.

@@ -44,7 +44,7 @@ use line::operators::LineOperators;
 use patch::fields::PatchFields;
 use patch::operators::PatchOperators;
 use problem::{Convergence, Coupling, Problem, Task};
-use profiles::{ContactNode, ProfileDepths, Profiles};
+use profiles::{ContactNode, ProfileDepths, Profiles, SurfaceWindow};
 use serde::{Deserialize, Serialize};
 #[cfg(feature = "verification")]
 use std::cmp::Ordering;
@@ -224,18 +224,34 @@ impl Operators {
     }
 
     /// Fields at the nodes of the contact window; none for a state of another contact model.
-    pub fn contact_nodes(&self, state: &ContactState) -> Vec<ContactNode> {
-        with_model!(self, state, |operators, state| operators.contact_nodes(&state.fields)).unwrap_or_default()
+    pub fn contact_nodes(&self, task: &Task, state: &ContactState) -> Vec<ContactNode> {
+        let nodes: Result<_> = with_model!(self, state, |operators, state| {
+            Engine::contact_nodes(&Problem::new(operators, task), &state.fields)
+        });
+        nodes.unwrap_or_default()
+    }
+
+    /// Windows of a contact of profiles with the fields at their cells: first those that carry, in the order of the contacts.
+    ///
+    /// # Errors
+    /// [`Error::OtherContactModel`]: there are none of a line contact or a patch.
+    pub fn surface_windows(&self, task: &Task, state: &ContactState) -> Result<Vec<SurfaceWindow>> {
+        match (self, state) {
+            (Operators::Surface(operators), ContactState::Surface(state)) => {
+                Ok(SurfaceOperators::windows(&Problem::new(operators, task), &state.fields))
+            }
+            _ => Err(Error::OtherContactModel),
+        }
     }
 
     /// Depths by which the profiles of wheel and rail are worn.
     ///
     /// # Errors
     /// [`Error::OtherContactModel`]: there are none of a line contact or a patch.
-    pub fn profile_wear(&self, state: &ContactState) -> Result<ProfileDepths> {
+    pub fn profile_wear(&self, task: &Task, state: &ContactState) -> Result<ProfileDepths> {
         match (self, state) {
             (Operators::Surface(operators), ContactState::Surface(state)) => {
-                Ok(surface::worn_bodies::depths(operators, &state.fields.worn))
+                Ok(SurfaceOperators::depths(&Problem::new(operators, task), &state.fields))
             }
             _ => Err(Error::OtherContactModel),
         }

@@ -10,7 +10,8 @@ pub const STRIP_POINTS: usize = 21;
 const LARGEST_DEPTH: f64 = 10e-3;
 
 /// Profiles along the contact window, [`PROFILE_POINTS`] points each, the temperature in depth, and, of a patch, profiles
-/// across the window, [`STRIP_POINTS`] points each. Along the rail those of a patch are of its middle strip.
+/// across the window, [`STRIP_POINTS`] points each. Along the rail those of a patch are of its middle strip; of profiles all are of the window
+/// that carries most, and of its strip that does.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Profiles {
     /// Position, `m`.
@@ -88,6 +89,8 @@ pub struct WornPlace {
     pub arc_length: f64,
     /// Depth along the normal, `m`.
     pub depth: f64,
+    /// Place of the worn surface in the track, to the left of its middle and above the height of the rail's top, `m`; of the wheel below its axle.
+    pub in_track: [f64; 2],
 }
 
 /// Wear of both profiles, from the gauge or flange side to the field side; of profiles that stay new with a depth of 0.
@@ -139,6 +142,8 @@ pub struct ContactNode {
     pub lateral_slip: f64,
     /// Traction utilisation −τ/(μ p), with the sign of the slip; of a patch its magnitude |τ|/(μ p).
     pub utilisation: f64,
+    /// Friction coefficient; where a layer flows, its bound over the pressure.
+    pub friction_coefficient: f64,
     /// Temperature rise over the ambient, `K`.
     pub temperature: f64,
     /// Wear depth, `m`.
@@ -156,7 +161,41 @@ impl ContactNode {
         slip: 0.0,
         lateral_slip: 0.0,
         utilisation: 0.0,
+        friction_coefficient: 0.0,
         temperature: 0.0,
         wear_depth: 0.0,
     };
+}
+
+/// Window of a contact of profiles on the unrolled surface of the rail, with its cells.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SurfaceWindow {
+    /// Length of a cell along the rail, `m`.
+    pub cell_length: f64,
+    /// Breadth of a strip along the arc of the rail's profile, `m`.
+    pub strip_breadth: f64,
+    /// Positions of the cells of a strip ahead of the axle, `m`.
+    pub x: Vec<f64>,
+    /// Strips, from the gauge side to the field side.
+    pub strips: Vec<SurfaceStrip>,
+    /// Fields at the cells, strip by strip. Lateral parts are along the arc of the profile, positive to the left.
+    pub nodes: Vec<ContactNode>,
+}
+
+/// Place of a strip of a window.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SurfaceStrip {
+    /// Arc length of the rail's new profile from its gauge side, `m`.
+    pub arc_length: f64,
+    /// Place in the track, to the left of its middle and above the height of the rail's top, `m`.
+    pub in_track: [f64; 2],
+    /// Inclination of the rail's surface to the plane of the track, rad; positive where it rises to the field side.
+    pub inclination: f64,
+}
+
+impl SurfaceWindow {
+    /// Force of the pressure, `N`.
+    pub fn normal_force(&self) -> f64 {
+        self.cell_length * self.strip_breadth * self.nodes.iter().map(|node| node.pressure).sum::<f64>()
+    }
 }

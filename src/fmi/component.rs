@@ -13,7 +13,7 @@ use crate::error;
 use crate::parameters::{Parameters, TEXT_PARAMETERS};
 use crate::settings::Settings;
 use crate::signals::Inputs;
-use crate::wheel_rail::{ContactNode, Model, ProfileDepths, Profiles, State, Workspace};
+use crate::wheel_rail::{ContactNode, Model, ProfileDepths, Profiles, State, SurfaceWindow, Workspace};
 use std::ffi::CString;
 
 /// Model that follows from the parameters, and the scratch that goes with it.
@@ -37,6 +37,8 @@ pub(super) struct Plots {
     profiles: Option<Profiles>,
     /// The cells of a patch.
     nodes: Option<Vec<ContactNode>>,
+    /// The windows of profiles; none of another contact model.
+    windows: Option<Vec<SurfaceWindow>>,
     /// Wear of the profiles; without places where there are no profiles.
     wear: Option<ProfileDepths>,
 }
@@ -261,6 +263,16 @@ impl Component {
             self.plots.wear = Some(wear);
         }
         self.plots.wear.as_ref().ok_or(Failure::NothingComputed)
+    }
+
+    /// The windows of profiles with their fields at the communication point; none of another contact model.
+    pub(super) fn windows(&mut self) -> Result<&[SurfaceWindow], Failure> {
+        if self.plots.windows.is_none() {
+            let (built, state) = self.solved()?;
+            let windows = built.model.surface_windows(state).unwrap_or_default();
+            self.plots.windows = Some(windows);
+        }
+        self.plots.windows.as_deref().ok_or(Failure::NothingComputed)
     }
 
     /// The fields at the nodes of the contact at the communication point.

@@ -3,7 +3,9 @@
 use super::component::Component;
 use super::failures::Failure;
 use super::modes::Mode;
-use super::variables::{FIELDS, Integer, IntegerVariable, Lengths, PROFILE_WEAR, PROFILES, Real, RealVariable, Text};
+use super::variables::{
+    FIELDS, Integer, IntegerVariable, Lengths, PROFILE_WEAR, PROFILES, Real, RealVariable, SURFACE, Text,
+};
 use crate::error::{Error, LONGEST_TEXT, TextProblem};
 use crate::parameters::{ContactModel, INTEGER_PARAMETERS, REAL_PARAMETERS, TEXT_PARAMETERS, TextParameter};
 use crate::signals::{INPUTS, InputSignal, OUTPUTS};
@@ -30,6 +32,11 @@ impl Component {
                 *values.get(variable.element).ok_or(Failure::NothingComputed)?
             }
             RealVariable::Field(row) => self.field(row, variable.element)?,
+            RealVariable::Surface(row) => {
+                let (window, place) = self.lengths().surface_cell(row, variable.element);
+                let ambient = self.inputs.ambient_temperature;
+                SURFACE[row].at(self.windows()?.get(window), place, ambient)
+            }
             RealVariable::ProfileWear(row) => {
                 let column = &PROFILE_WEAR[row];
                 let place = (column.places)(self.profile_wear()?).get(variable.element);

@@ -1,143 +1,23 @@
 //! Table of the variables, the only one: inputs, outputs, parameters and locals, in the order of a model description. An array is one
 //! variable; FMI 2.0, which has no arrays, lists its elements ([`crate::fmi2::variables`]).
 
+mod columns;
 mod list;
 
 use crate::parameters::{INTEGER_PARAMETERS, IntegerKind, Parameters, REAL_PARAMETERS, TEXT_PARAMETERS};
 use crate::signals::{CONTACTS, INPUTS, OUTPUTS};
-use crate::wheel_rail::{ContactNode, DEPTH_POINTS, PROFILE_POINTS, ProfileDepths, Profiles, STRIP_POINTS, WornPlace};
 use std::ops::Range;
 
+pub use columns::{FIELDS, PROFILE_WEAR, PROFILES, SURFACE};
 pub use list::{fields, time, variables};
 
 /// Number of a variable, or of an element of an array, in the calls of an importer. Each version of FMI gives its own.
 pub type ValueReference = u32;
 
-/// One plotted profile.
-pub struct ProfileColumn {
-    /// Name.
-    pub name: &'static str,
-    /// Unit.
-    pub unit: &'static str,
-    /// Unit in which a person would read the values.
-    pub display_unit: Option<&'static str>,
-    /// Typical magnitude.
-    pub nominal: f64,
-    /// One sentence.
-    pub description: &'static str,
-    /// Number of points.
-    pub points: usize,
-    /// Reads the points.
-    pub values: fn(&Profiles) -> &[f64],
-}
+/// Rows of a window's strips in the arrays over `patch_strips`: a window has more of them than a patch.
+pub const SURFACE_ROWS: usize = 2;
 
-/// The profiles.
-#[rustfmt::skip]
-pub const PROFILES: [ProfileColumn; 13] = [
-    ProfileColumn { name: "profile.x", unit: "m", display_unit: Some("mm"), nominal: 1e-2, points: PROFILE_POINTS,
-        description: "Position along the rail ahead of the axle", values: |p| &p.x },
-    ProfileColumn { name: "profile.pressure", unit: "Pa", display_unit: Some("MPa"), nominal: 1e9, points: PROFILE_POINTS,
-        description: "Contact pressure", values: |p| &p.pressure },
-    ProfileColumn { name: "profile.shear", unit: "Pa", display_unit: Some("MPa"), nominal: 1e8, points: PROFILE_POINTS,
-        description: "Shear traction on the rail", values: |p| &p.shear },
-    ProfileColumn { name: "profile.slip", unit: "m/s", display_unit: None, nominal: 1e-1, points: PROFILE_POINTS,
-        description: "Slip velocity of the rail relative to the wheel", values: |p| &p.slip },
-    ProfileColumn { name: "profile.temperature", unit: "K", display_unit: Some("degC"), nominal: 300.0, points: PROFILE_POINTS,
-        description: "Absolute temperature of the rail surface", values: |p| &p.temperature },
-    ProfileColumn { name: "profile.wear_depth", unit: "m", display_unit: Some("µm"), nominal: 1e-7, points: PROFILE_POINTS,
-        description: "Depth of wear of the rail surface", values: |p| &p.wear_depth },
-    ProfileColumn { name: "depth.z", unit: "m", display_unit: Some("mm"), nominal: 1e-3, points: DEPTH_POINTS,
-        description: "Depth below the hottest contact point", values: |p| &p.depth },
-    ProfileColumn { name: "depth.temperature", unit: "K", display_unit: Some("degC"), nominal: 300.0, points: DEPTH_POINTS,
-        description: "Absolute temperature below the hottest contact point", values: |p| &p.depth_temperature },
-    ProfileColumn { name: "strip.position", unit: "m", display_unit: Some("mm"), nominal: 1e-2, points: STRIP_POINTS,
-        description: "Position across the rail to the left", values: |p| &p.strips.position },
-    ProfileColumn { name: "strip.pressure", unit: "Pa", display_unit: Some("MPa"), nominal: 1e9, points: STRIP_POINTS,
-        description: "Largest contact pressure along the strip", values: |p| &p.strips.pressure },
-    ProfileColumn { name: "strip.temperature", unit: "K", display_unit: Some("degC"), nominal: 300.0, points: STRIP_POINTS,
-        description: "Largest absolute temperature of the rail surface along the strip", values: |p| &p.strips.temperature },
-    ProfileColumn { name: "strip.wear_depth", unit: "m", display_unit: Some("µm"), nominal: 1e-7, points: STRIP_POINTS,
-        description: "Depth of wear of the strip behind the contact", values: |p| &p.strips.wear_depth },
-    ProfileColumn { name: "strip.friction_power", unit: "W/m", display_unit: Some("kW/m"), nominal: 1e6, points: STRIP_POINTS,
-        description: "Power dissipated by friction in the strip per width", values: |p| &p.strips.friction_power },
-];
-
-/// A field over the cells of a patch, or the places of the cells. Only where arrays have the lengths that parameters give
-/// them: FMI 2.0 would need a variable for each cell.
-pub struct FieldColumn {
-    /// Name.
-    pub name: &'static str,
-    /// Unit.
-    pub unit: &'static str,
-    /// Unit in which a person would read the values.
-    pub display_unit: Option<&'static str>,
-    /// Typical magnitude.
-    pub nominal: f64,
-    /// One sentence.
-    pub description: &'static str,
-    /// Whether it has an element for each strip, and for each cell along a strip.
-    pub over: [bool; 2],
-    /// Reads the value of a cell; the ambient temperature is in `K`.
-    pub value: fn(&ContactNode, f64) -> f64,
-}
-
-/// The fields of a patch.
-#[rustfmt::skip]
-pub const FIELDS: [FieldColumn; 9] = [
-    FieldColumn { name: "patch.x", unit: "m", display_unit: Some("mm"), nominal: 1e-2, over: [false, true],
-        description: "Position of the cells of a strip along the rail, ahead of the axle", value: |node, _| node.position },
-    FieldColumn { name: "patch.y", unit: "m", display_unit: Some("mm"), nominal: 1e-2, over: [true, false],
-        description: "Position of the strips across the rail, to the left", value: |node, _| node.lateral_position },
-    FieldColumn { name: "patch.pressure", unit: "Pa", display_unit: Some("MPa"), nominal: 1e9, over: [true, true],
-        description: "Contact pressure in the cells of the patch", value: |node, _| node.pressure },
-    FieldColumn { name: "patch.shear_x", unit: "Pa", display_unit: Some("MPa"), nominal: 1e8, over: [true, true],
-        description: "Shear traction on the rail in the cells of the patch, along the rail", value: |node, _| node.shear },
-    FieldColumn { name: "patch.shear_y", unit: "Pa", display_unit: Some("MPa"), nominal: 1e8, over: [true, true],
-        description: "Shear traction on the rail in the cells of the patch, to the left", value: |node, _| node.lateral_shear },
-    FieldColumn { name: "patch.slip_x", unit: "m/s", display_unit: None, nominal: 1e-1, over: [true, true],
-        description: "Slip velocity of the rail relative to the wheel in the cells of the patch, along the rail", value: |node, _| node.slip },
-    FieldColumn { name: "patch.slip_y", unit: "m/s", display_unit: None, nominal: 1e-1, over: [true, true],
-        description: "Slip velocity of the rail relative to the wheel in the cells of the patch, to the left", value: |node, _| node.lateral_slip },
-    FieldColumn { name: "patch.temperature", unit: "K", display_unit: Some("degC"), nominal: 300.0, over: [true, true],
-        description: "Absolute temperature of the rail surface in the cells of the patch", value: |node, ambient| ambient + node.temperature },
-    FieldColumn { name: "patch.wear_depth", unit: "m", display_unit: Some("µm"), nominal: 1e-7, over: [true, true],
-        description: "Depth of wear of the rail surface in the cells of the patch", value: |node, _| node.wear_depth },
-];
-
-/// A number of each place of a profile that wears. As the fields, only where arrays have the lengths that parameters give them.
-pub struct WearColumn {
-    /// Name.
-    pub name: &'static str,
-    /// Typical magnitude.
-    pub nominal: f64,
-    /// Unit in which a person would read the values.
-    pub display_unit: &'static str,
-    /// One sentence.
-    pub description: &'static str,
-    /// Reads the places of a profile.
-    pub places: fn(&ProfileDepths) -> &[WornPlace],
-    /// Reads the value of a place.
-    pub value: fn(&WornPlace) -> f64,
-}
-
-/// The wear of the profiles, in `m`.
-#[rustfmt::skip]
-pub const PROFILE_WEAR: [WearColumn; 6] = [
-    WearColumn { name: "wheel_profile.position", nominal: 1e-2, display_unit: "mm",
-        description: "Lateral positions of the places on the new profile of the wheel, outwards from the running circle; 0 unless contact_model is profiles", places: |p| &p.wheel, value: |place| place.position },
-    WearColumn { name: "wheel_profile.arc_length", nominal: 1e-2, display_unit: "mm",
-        description: "Arc lengths of the places on the new profile of the wheel from its flange side; 0 unless contact_model is profiles", places: |p| &p.wheel, value: |place| place.arc_length },
-    WearColumn { name: "wheel_profile.wear_depth", nominal: 1e-5, display_unit: "µm",
-        description: "Depths along the normal that the wheel's profile has lost; 0 unless wheel_profile_wear is on", places: |p| &p.wheel, value: |place| place.depth },
-    WearColumn { name: "rail_profile.position", nominal: 1e-2, display_unit: "mm",
-        description: "Lateral positions of the places on the new upright profile of the rail, outwards from its highest point; 0 unless contact_model is profiles", places: |p| &p.rail, value: |place| place.position },
-    WearColumn { name: "rail_profile.arc_length", nominal: 1e-2, display_unit: "mm",
-        description: "Arc lengths of the places on the new profile of the rail from its gauge side; 0 unless contact_model is profiles", places: |p| &p.rail, value: |place| place.arc_length },
-    WearColumn { name: "rail_profile.wear_depth", nominal: 1e-5, display_unit: "µm",
-        description: "Depths along the normal that the rail's profile has lost; 0 unless rail_profile_wear is on", places: |p| &p.rail, value: |place| place.depth },
-];
-
-/// Lengths of arrays. Those of a patch's fields and of the profiles' wear follow from parameters.
+/// Lengths of arrays. Those of the fields of patch and profiles and of the profiles' wear follow from parameters.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Lengths {
     strips: usize,
@@ -165,9 +45,28 @@ impl Lengths {
                 let [strips, cells] = FIELDS[row].over;
                 (if strips { self.strips } else { 1 }) * (if cells { self.cells } else { 1 })
             }
+            RealVariable::Surface(row) => {
+                let [strips, cells] = self.in_window(SURFACE[row].over);
+                CONTACTS * strips * cells
+            }
             RealVariable::ProfileWear(_) => self.wear_points,
             _ => 1,
         }
+    }
+
+    /// Elements of a window over its strips and over the cells along them.
+    fn in_window(self, over: [bool; 2]) -> [usize; 2] {
+        let [strips, cells] = over;
+        [
+            if strips { SURFACE_ROWS * self.strips } else { 1 },
+            if cells { self.cells } else { 1 },
+        ]
+    }
+
+    /// Window, strip and cell whose value an element of a row of [`SURFACE`] is.
+    pub fn surface_cell(self, row: usize, element: usize) -> (usize, [usize; 2]) {
+        let [strips, cells] = self.in_window(SURFACE[row].over);
+        (element / (strips * cells), [element / cells % strips, element % cells])
     }
 
     /// The cell whose value an element of a row of [`FIELDS`] is, counted strip by strip.
@@ -241,6 +140,8 @@ pub enum Shape {
     Array(usize),
     /// Array of a row of [`FIELDS`]: over strips, cells along a strip, or both, as many of them as parameters say.
     Field([bool; 2]),
+    /// Array of a row of [`SURFACE`]: over windows, and over strips, cells along a strip, or both.
+    Surface([bool; 2]),
     /// Array of a row of [`PROFILE_WEAR`]: over the places of a profile, as many of them as a parameter says.
     ProfileWear,
 }
@@ -331,6 +232,8 @@ pub enum RealVariable {
     Profile(usize),
     /// Row of [`FIELDS`].
     Field(usize),
+    /// Row of [`SURFACE`].
+    Surface(usize),
     /// Row of [`PROFILE_WEAR`].
     ProfileWear(usize),
     /// `solver.residual`.
@@ -398,6 +301,7 @@ impl Real {
             RealVariable::Parameter(row) => REAL_PARAMETERS[row].elements[self.element].to_owned(),
             RealVariable::Profile(row) => format!("{}[{}]", PROFILES[row].name, self.element + 1),
             RealVariable::Field(row) => FIELDS[row].name.to_owned(),
+            RealVariable::Surface(row) => SURFACE[row].name.to_owned(),
             RealVariable::ProfileWear(row) => PROFILE_WEAR[row].name.to_owned(),
             RealVariable::Residual => RESIDUAL.to_owned(),
             RealVariable::Time => TIME.to_owned(),

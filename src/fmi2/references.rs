@@ -76,7 +76,9 @@ pub fn of_real(variable: RealVariable, element: usize) -> ValueReference {
         }
         RealVariable::Profile(row) => profile_block(row) * BLOCK + element as u32,
         RealVariable::Residual => RESIDUAL,
-        RealVariable::Field(_) | RealVariable::ProfileWear(_) | RealVariable::Time => UNLISTED,
+        RealVariable::Field(_) | RealVariable::Surface(_) | RealVariable::ProfileWear(_) | RealVariable::Time => {
+            UNLISTED
+        }
     }
 }
 

@@ -10,9 +10,9 @@ use super::schema::{
 };
 use crate::fmi::schema::{self, document, number};
 use crate::fmi::token::hashed;
-use crate::fmi::variables::{self as shared, Causality, IntegerVariable, Kind, Shape, ValueReference};
+use crate::fmi::variables::{self as shared, Causality, IntegerVariable, Kind, SURFACE_ROWS, Shape, ValueReference};
 use crate::parameters::{INTEGER_PARAMETERS, IntegerKind};
-use crate::signals::{OUTPUTS, OutputKind};
+use crate::signals::{CONTACTS, OUTPUTS, OutputKind};
 use quick_xml::se::SeError;
 
 /// The complete text of `modelDescription.xml`.
@@ -189,6 +189,15 @@ fn dimensions(shape: Shape) -> Vec<Dimension> {
             let lengths = ["patch_strips", "patch_nodes"].into_iter().zip(over);
             let given = lengths.filter(|(_, is_index)| *is_index);
             given.map(|(name, _)| length(name)).collect()
+        }
+        // Windows, two halves of their strips, strips of a half, cells along a strip: lengths are numbers or parameters, no multiples of them.
+        Shape::Surface([strips, cells]) => {
+            let halves = strips.then(|| [number(SURFACE_ROWS), length("patch_strips")]);
+            let along = cells.then(|| length("patch_nodes"));
+            std::iter::once(number(CONTACTS))
+                .chain(halves.into_iter().flatten())
+                .chain(along)
+                .collect()
         }
         Shape::ProfileWear => vec![length("profile_wear_points")],
     }

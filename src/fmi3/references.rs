@@ -3,7 +3,8 @@
 
 use crate::fmi::failures::Failure;
 use crate::fmi::variables::{
-    FIELDS, Integer, IntegerVariable, Kind, PROFILE_WEAR, PROFILES, RealVariable, Text, ValueReference, Variable,
+    FIELDS, Integer, IntegerVariable, Kind, PROFILE_WEAR, PROFILES, RealVariable, SURFACE, Text, ValueReference,
+    Variable,
 };
 use crate::fmi::variables::{fields, time, variables};
 use crate::parameters::{INTEGER_PARAMETERS, IntegerKind, REAL_PARAMETERS, TEXT_PARAMETERS};
@@ -21,6 +22,7 @@ const FIELD_BLOCK: u32 = 6;
 const SOLVER_BLOCK: u32 = 7;
 const TEXT_PARAMETER_BLOCK: u32 = 8;
 const PROFILE_WEAR_BLOCK: u32 = 9;
+const SURFACE_BLOCK: u32 = 10;
 const RESIDUAL: ValueReference = SOLVER_BLOCK * BLOCK;
 const ITERATIONS: ValueReference = SOLVER_BLOCK * BLOCK + 1;
 
@@ -89,6 +91,7 @@ fn of_real(variable: RealVariable) -> ValueReference {
         RealVariable::Profile(row) => PROFILE_BLOCK * BLOCK + row as u32,
         RealVariable::Field(row) => FIELD_BLOCK * BLOCK + row as u32,
         RealVariable::ProfileWear(row) => PROFILE_WEAR_BLOCK * BLOCK + row as u32,
+        RealVariable::Surface(row) => SURFACE_BLOCK * BLOCK + row as u32,
         RealVariable::Residual => RESIDUAL,
     }
 }
@@ -119,6 +122,7 @@ pub fn real(reference: ValueReference) -> Result<RealVariable, Failure> {
         PROFILE_BLOCK => in_block(PROFILES.len(), RealVariable::Profile(row)),
         FIELD_BLOCK => in_block(FIELDS.len(), RealVariable::Field(row)),
         PROFILE_WEAR_BLOCK => in_block(PROFILE_WEAR.len(), RealVariable::ProfileWear(row)),
+        SURFACE_BLOCK => in_block(SURFACE.len(), RealVariable::Surface(row)),
         SOLVER_BLOCK => (reference == RESIDUAL).then_some(RealVariable::Residual),
         _ => (reference == TIME).then_some(RealVariable::Time),
     };

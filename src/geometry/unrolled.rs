@@ -114,6 +114,12 @@ impl<'a> PlacedWheel<'a> {
         }
     }
 
+    /// Place across the track of a point of the wheel's profile, given from its running circle, where it stands below the axle.
+    pub fn below_axle(&self, [position, height]: [f64; 2]) -> [f64; 2] {
+        let [_, y, z] = self.to_track([0.0, self.wheel.offset + position, height - self.wheel.radius]);
+        [self.centre[1] + y, self.centre[2] + z]
+    }
+
     /// Distance from a rail's point at `x` `m` along its normal, from a guess of it, `m`.
     pub fn distance(&self, x: f64, point: &RailPoint, guess: f64) -> Distance {
         let normal = [0.0, point.normal[0], point.normal[1]];

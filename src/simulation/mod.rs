@@ -32,7 +32,7 @@ use crate::error as model;
 use crate::geometry::profile::Profile;
 use crate::parameters::Parameters;
 use crate::signals::{Inputs, Outputs};
-use crate::wheel_rail::{ContactNode, Model, ProfileDepths, Profiles, State, Workspace};
+use crate::wheel_rail::{ContactNode, Model, ProfileDepths, Profiles, State, SurfaceWindow, Workspace};
 use std::sync::Arc;
 
 pub use error::{Error, Result};
@@ -159,6 +159,14 @@ impl Simulation {
     /// The fields at the nodes of the contact window, from the rear to the front for V > 0.
     pub fn contact_nodes(&self) -> Vec<ContactNode> {
         self.model.contact_nodes(&self.state)
+    }
+
+    /// Windows of a contact of profiles with the fields at their cells.
+    ///
+    /// # Errors
+    /// Those of [`Model::surface_windows`].
+    pub fn surface_windows(&self) -> model::Result<Vec<SurfaceWindow>> {
+        self.model.surface_windows(&self.state)
     }
 }
 

@@ -6,6 +6,7 @@
 //!
 //! A run follows from a seed and its number: `wheelrail torture --seed S --run R` replays it.
 
+mod bodies;
 mod draw;
 mod drive;
 #[doc(hidden)]
@@ -41,8 +42,10 @@ pub enum Engines {
     Line,
     /// The patch.
     Patch,
-    /// Profiles.
+    /// Profiles, perturbed and worn ones among them, which may wear on.
     Profiles,
+    /// Built-in profiles that stay new.
+    NewProfiles,
     /// Line and patch in turn.
     #[default]
     Both,
@@ -150,12 +153,15 @@ impl Torture {
         let contact_model = match self.engines {
             Engines::Line => ContactModel::Line,
             Engines::Patch => ContactModel::Patch,
-            Engines::Profiles => ContactModel::Profiles,
+            Engines::Profiles | Engines::NewProfiles => ContactModel::Profiles,
             Engines::Both if model.is_multiple_of(2) => ContactModel::Line,
             Engines::Both => ContactModel::Patch,
         };
         let mut parameters = draw::parameters(&mut Random::new(self.seed, 2 * model), contact_model);
         draw::tune(&mut self.random(run), &mut parameters);
+        if self.engines == Engines::Profiles {
+            bodies::draw(self.seed, model, &mut parameters);
+        }
         parameters
     }
 
@@ -178,6 +184,20 @@ impl Torture {
 
     /// Takes runs that share a model, or one of them.
     pub fn runs(&self, numbers: Range<u64>) -> Vec<Run> {
+        let first = numbers.start;
+        let runs = self.take_runs(numbers);
+        self.remove_files(first);
+        runs
+    }
+
+    /// Removes the files that the parameters of a run name.
+    fn remove_files(&self, run: u64) {
+        if self.engines == Engines::Profiles {
+            bodies::remove(self.seed, run / RUNS_PER_MODEL);
+        }
+    }
+
+    fn take_runs(&self, numbers: Range<u64>) -> Vec<Run> {
         let fixed = draw::with_window(&self.parameters(numbers.start), self.window);
         let mut built = Model::new(fixed);
         numbers

@@ -61,6 +61,12 @@ const REPEATS: usize = 5;
 /// # Errors
 /// Whatever the run's model or the steps before return.
 pub fn explain(torture: &Torture, taken: StepTime) -> Result<Slow> {
+    let explained = explained(torture, taken);
+    torture.remove_files(taken.run);
+    explained
+}
+
+fn explained(torture: &Torture, taken: StepTime) -> Result<Slow> {
     let drawn = torture.parameters(taken.run);
     let parameters = draw::with_window(&drawn, torture.window);
     let model = Model::new(parameters.clone())?;

@@ -19,7 +19,7 @@ from matplotlib.patches import Rectangle
 WHEELRAIL = REPOSITORY / "target" / "release" / "wheelrail"
 SPEED, LOAD = 20.0, 30e3  # m/s, N
 INCLINATION, HALF_GAUGE, GAUGE_DEPTH = 1 / 40, 0.7175, 0.014  # of the default parameters; m
-# Twice the default cells each way, for the picture; a window of profiles has half as many strips again.
+# Twice the default cells each way, for the picture.
 NODES, STRIPS = 68, 42
 PLACES = {"tread": 1e-3, "two places": 5e-3, "flange": 6.6e-3}
 
@@ -48,16 +48,10 @@ def simulate(lateral, roll):
 
 def windows(cells, rail):
     """The windows: x, arc length from the rail's top, and pressure of their cells, strip by strip."""
-    # The running face is at half the gauge; y of the profile is outwards, as y of the track is on the left.
-    top = HALF_GAUGE - running_face(rail)
-    arc = np.interp(cells["y"] - top, rail["y"], rail["arc_length"])
-    arc -= np.interp(0.0, rail["y"], rail["arc_length"])
-    strips = (3 * STRIPS + 1) // 2
-    size = strips * NODES
-    for start in range(0, len(cells), size):
-        shape = (strips, NODES)
-        part = slice(start, start + size)
-        yield tuple(np.reshape(values[part], shape) for values in (cells["x"].array, arc, cells["pressure"].array))
+    top = np.interp(0.0, rail["y"], rail["arc_length"])
+    for _, own in cells.groupby("window"):
+        shape = (own["arc_length"].nunique(), -1)
+        yield tuple(np.reshape(values.array, shape) for values in (own["x"], own["arc_length"] - top, own["pressure"]))
 
 
 def running_face(rail):

@@ -144,6 +144,17 @@ fn fields(place: &Place, options: &[&str]) -> (Vec<String>, Vec<Vec<f64>>) {
     (headings, rows.collect())
 }
 
+/// The last value of an output of a run.
+fn output(place: &Place, name: &str) -> f64 {
+    let table = read_to_string(&place.output).unwrap();
+    let mut lines = table.lines();
+    let mut headings = lines.next().unwrap().split(',');
+    let column = headings
+        .position(|heading| heading.split(' ').next() == Some(name))
+        .unwrap();
+    lines.last().unwrap().split(',').nth(column).unwrap().parse().unwrap()
+}
+
 /// A line has a row for each node; its pressure along the rail carries the load on a contact of the given width.
 #[test]
 fn the_fields_of_a_line_are_those_of_its_nodes() {
@@ -171,28 +182,41 @@ fn the_fields_of_a_patch_sum_up_to_its_outputs() {
     assert_eq!(rows.len(), 14 * 9);
     let area = (rows[1][0] - rows[0][0]) * (rows[14][1] - rows[0][1]);
     let sum = |value: fn(&[f64]) -> f64| area * rows.iter().map(|row| value(row)).sum::<f64>();
-    let table = read_to_string(&place.output).unwrap();
-    let mut lines = table.lines();
-    let headings: Vec<&str> = lines.next().unwrap().split(',').collect();
-    let last: Vec<f64> = lines
-        .last()
-        .unwrap()
-        .split(',')
-        .map(|cell| cell.parse().unwrap())
-        .collect();
-    let is = |heading: &str, name: &str| heading.split(' ').next() == Some(name);
-    let output = |name: &str| last[headings.iter().position(|heading| is(heading, name)).unwrap()];
     for (name, value) in [
         ("normal_load", sum(|row| row[2])),
         ("traction_force", -sum(|row| row[3])),
         ("lateral_force", -sum(|row| row[4])),
         ("spin_moment", -sum(|row| row[0] * row[4] - row[1] * row[3])),
     ] {
-        assert!((value / output(name) - 1.0).abs() < 1e-6, "{name}: {value}");
+        assert!((value / output(&place, name) - 1.0).abs() < 1e-6, "{name}: {value}");
     }
     // Within Coulomb's bound, and sliding cells on it.
     assert!(rows.iter().all(|row| (0.0..1.0 + 1e-6).contains(&row[7])));
     assert!(rows.iter().any(|row| row[7] > 0.999) && rows.iter().any(|row| row[2] > 0.0 && row[7] < 0.9));
+}
+
+/// Profiles have a row for each cell of each window, with its size: the pressure adds up to the normal forces of the contacts.
+#[test]
+fn the_fields_of_profiles_are_those_of_their_windows() {
+    let scenario = "time,normal_load,vehicle_speed,wheel_speed,lateral_displacement\n0,60e3,20,43.6,5e-3\n0.001,60e3,20,43.6,5e-3\n";
+    let options =
+        ["contact_model=3", "slip_source=2", "patch_nodes=14", "patch_strips=9"].map(|option| ["--set", option]);
+    let place = Place::new("fields_profiles", scenario);
+    let (headings, rows) = fields(&place, &options.concat());
+    let expected = "window [1],arc_length [m],z [m],inclination [rad],cell_length [m],strip_breadth [m],x [m],y [m],pressure [Pa],\
+                    shear_x [Pa],shear_s [Pa],slip_x [m/s],slip_s [m/s],saturation [1],temperature [K],wear_depth [m],friction_coefficient [1]";
+    assert_eq!(headings.join(","), expected);
+    let windows = rows.last().unwrap()[0] as usize;
+    assert_eq!(rows.len(), windows * 14 * 14);
+    let force = |window: usize| -> f64 {
+        let own = rows.iter().filter(|row| row[0] == window as f64);
+        own.map(|row| row[4] * row[5] * row[8]).sum()
+    };
+    for window in 1..=windows {
+        let expected = output(&place, &format!("contact.normal_force[{window}]"));
+        assert!((force(window) - expected).abs() <= 1e-9 * expected, "{window}");
+    }
+    assert!(force(1) > 0.0 && force(2) > 0.0);
 }
 
 #[test]

@@ -3,6 +3,7 @@
 use super::importer::{Api, Client, Fmi2, Fmi3, Line, OK, Patch, sideways, with_each_contact_model};
 use wheelrail::fmi::variables::{FIELDS, PROFILES};
 use wheelrail::parameters::Parameters;
+use wheelrail::signals::CONTACTS;
 use wheelrail::wheel_rail::Model;
 
 /// An array of so many elements.
@@ -94,6 +95,56 @@ fn fields_of_a_patch_are_those_of_the_model() {
         assert!(field("patch.temperature").iter().all(|value| *value >= 293.15 - 1e-9));
         let force: f64 = shear_x.iter().sum::<f64>() * area;
         assert!((force / client.get("traction_force")).abs() - 1.0 < 1e-6, "{force}");
+    }
+}
+
+/// Windows first, then two halves of their strips, strips of a half, cells: the last index runs fastest. The windows that carry are the contacts.
+#[test]
+fn fields_of_profiles_are_those_of_the_contacts() {
+    let api = &Api::load(Fmi3);
+    for [strips, cells] in [[7, 14], [8, 12]] {
+        let client = Client::new(api);
+        configure(&client, [strips, cells]);
+        client.expect(OK, client.set_integers(&[("contact_model", 3), ("slip_source", 2)]));
+        client.expect(
+            OK,
+            client.set(&[
+                ("vehicle_speed", 20.0),
+                ("wheel_speed", 43.6),
+                ("lateral_displacement", 5e-3),
+            ]),
+        );
+        client.start();
+        client.expect(OK, client.step(0.0, 1e-3));
+        let (rows, cells) = (2 * strips as usize, cells as usize);
+        let [length, breadth] =
+            ["surface.cell_length", "surface.strip_breadth"].map(|name| array(&client, name, CONTACTS));
+        let forces = array(&client, "contact.normal_force", CONTACTS);
+        let inclinations = array(&client, "contact.inclination", CONTACTS);
+        assert!(client.get("contacts") >= 2.0);
+        let pressure = array(&client, "surface.pressure", CONTACTS * rows * cells);
+        let x = array(&client, "surface.x", CONTACTS * cells);
+        let inclination = array(&client, "surface.inclination", CONTACTS * rows);
+        for window in 0..CONTACTS {
+            let own = &pressure[window * rows * cells..(window + 1) * rows * cells];
+            let force = length[window] * breadth[window] * own.iter().sum::<f64>();
+            assert!(
+                (force - forces[window]).abs() <= 1e-9 * forces[window],
+                "{window}: {force}"
+            );
+            if forces[window] == 0.0 {
+                continue;
+            }
+            let at = (0..own.len()).max_by(|&a, &b| own[a].total_cmp(&own[b])).unwrap();
+            let off = inclination[window * rows + at / cells] - inclinations[window];
+            assert!(off.abs() < 0.2, "{window}: {off}");
+            assert!(x[window * cells + at % cells].abs() < 0.01);
+            // Half as many strips again as a patch has; nothing beyond.
+            let used = (3 * strips as usize).div_ceil(2);
+            assert!(own[used * cells..].iter().all(|pressure| *pressure == 0.0));
+        }
+        let temperature = array(&client, "surface.temperature", CONTACTS * rows * cells);
+        assert!(temperature.iter().all(|value| *value >= 293.15 - 1e-9));
     }
 }
 

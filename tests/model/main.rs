@@ -11,6 +11,7 @@ mod falling_friction;
 mod given_geometry;
 mod lift_off;
 mod paper_mesh;
+mod profile_fields;
 mod profiles;
 mod random_sensitivity;
 mod robustness;

@@ -1,6 +1,7 @@
 //! Contact of profiles: mirror images, a given height, a wheel that is lifted. Forces are in `wheelrail::verification`.
 
 use crate::derivatives;
+use wheelrail::Error;
 use wheelrail::parameters::{ContactModel, Control, FrictionLaw, Parameters, Side, SlipSource};
 use wheelrail::signals::Inputs;
 use wheelrail::wheel_rail::{Model, State};
@@ -110,6 +111,41 @@ fn a_given_height_carries_the_load_that_belongs_to_it() {
         [lifted.force_x, lifted.force_y, lifted.force_z, lifted.contacts],
         [0.0; 4]
     );
+}
+
+/// A wheelset that is moved over its flange and off the rail: each place is solved or refused as off the rail. Where the flange stands beside the head, the height
+/// at which they touch was not found, and the wheel pressed into the rail by millimetres.
+#[test]
+fn a_flange_beside_the_head_is_off_the_rail() {
+    let parameters = Parameters {
+        rail_profile: "49E1".to_owned(),
+        wheel_radius: 0.4173,
+        gauge: 1.434,
+        flange_back_distance: 1.363,
+        patch_nodes: 15,
+        patch_strips: 10,
+        ..bodies(Side::Left)
+    };
+    let model = Model::new(parameters).unwrap();
+    let mut workspace = model.workspace();
+    let mut stands = |lateral: f64| {
+        let inputs = Inputs {
+            normal_load: 48.9e3,
+            vehicle_speed: 30.0,
+            wheel_speed: 72.0,
+            lateral_displacement: lateral,
+            ..Inputs::default()
+        };
+        match model.initial_state(&mut workspace, &inputs) {
+            Ok(_) => true,
+            Err(Error::WheelOffRail { .. }) => false,
+            Err(error) => panic!("{lateral} m: {error}"),
+        }
+    };
+    let found: Vec<bool> = (0..=60).map(|step| stands(2e-4 * f64::from(step) + 1.2e-2)).collect();
+    // From some place on it is off the rail.
+    let last = found.iter().rposition(|stands| *stands).unwrap();
+    assert!(found[..last].iter().all(|stands| *stands) && last < 60, "{found:?}");
 }
 
 /// Heat, wear and thermal bulge, on small windows.

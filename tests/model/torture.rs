@@ -53,21 +53,23 @@ fn friction_with_a_memory_has_corners() {
 }
 
 /// Runs of wheelsets on profiles that once failed, and steps until the failure.
-const WHEELSETS: [(Engines, u64, u64, usize); 8] = [
+const WHEELSETS: [(Engines, u64, u64, usize); 9] = [
     // First states in which the law of friction, with a memory and on a layer, has no solution that is found.
-    (Engines::Profiles, 3, 89, 2),
-    (Engines::Profiles, 11, 167, 2),
+    (Engines::NewProfiles, 3, 89, 2),
+    (Engines::NewProfiles, 11, 167, 2),
     // Friction on a flange that pulls the wheel down by more than the pressure lifts it.
-    (Engines::Profiles, 5, 324, 8),
+    (Engines::NewProfiles, 5, 324, 8),
     // The same pulls it up: the wheel was said to be pressed out of its window.
-    (Engines::Profiles, 11, 17, 17),
+    (Engines::NewProfiles, 11, 17, 17),
     // A light load at which the height of the first touch counts.
-    (Engines::Profiles, 11, 65, 2),
+    (Engines::NewProfiles, 11, 65, 2),
     // Walls that press on the wheel the more, the higher it is lifted.
-    (Engines::Profiles, 11, 141, 2),
+    (Engines::NewProfiles, 11, 141, 2),
     // Contacts that a jump has ended, in whose windows the new one was sought.
-    (Engines::Profiles, 11, 48, 3),
-    (Engines::Profiles, 21, 45, 2),
+    (Engines::NewProfiles, 11, 48, 3),
+    (Engines::NewProfiles, 21, 45, 2),
+    // A flange beside the head: the height at which they touch was sought to and fro.
+    (Engines::NewProfiles, 33, 43, 50),
 ];
 
 #[test]

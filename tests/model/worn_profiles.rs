@@ -166,9 +166,14 @@ fn a_mirrored_way_wears_mirrored_wheels() {
         for step in 0..12 {
             run.step(&inputs(5e-3 + 2e-4 * f64::from(step)), 1e-3).unwrap();
         }
-        (run.profile_wear().unwrap(), run.outputs().flange_thickness)
+        let mut depths = run.profile_wear().unwrap();
+        for place in depths.wheel.iter_mut().chain(&mut depths.rail) {
+            place.in_track[0] *= sign;
+        }
+        (depths, run.outputs().flange_thickness)
     };
-    assert_eq!(of(Side::Left, 1.0), of(Side::Right, -1.0));
+    // As a truth value: the places of a difference would fill pages.
+    assert!(of(Side::Left, 1.0) == of(Side::Right, -1.0));
 }
 
 /// Directory of a test's own files.

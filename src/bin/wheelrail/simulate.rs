@@ -25,7 +25,7 @@ pub struct Simulate {
     /// CSV file for time, inputs and outputs: all that the contact model may have
     #[arg(short, long, value_name = "OUT.csv")]
     output: PathBuf,
-    /// CSV file for the fields at the end: a row for each node of a line contact or cell of a patch
+    /// CSV file for the fields at the end: a row for each node of a line contact, or cell of a patch or of the windows of profiles
     #[arg(long, value_name = "FIELDS.csv")]
     fields: Option<PathBuf>,
     /// CSV file for the wear of both profiles at the end: places and depths, where contact_model is profiles
@@ -149,8 +149,9 @@ impl Simulate {
         let start = schedule.start();
         let mut simulation = Simulation::of(model, &start.inputs).map_err(Error::Start)?;
         // Only now that nothing can be refused any more, so that a refusal leaves no file behind.
-        let columns = Columns::of(simulation.model.parameters().contact_model);
-        let (mut table, mut fields) = self.tables(&columns)?;
+        let contact_model = simulation.model.parameters().contact_model;
+        let columns = Columns::of(contact_model);
+        let (mut table, mut fields) = self.tables(&columns, contact_model)?;
         columns.write(&mut table, &start, simulation.outputs())?;
 
         let count = steps.len();
@@ -222,9 +223,10 @@ impl Simulate {
     }
 
     /// The tables of results, or neither of them.
-    fn tables(&self, columns: &Columns) -> Result<(Table, Option<Table>), Error> {
+    fn tables(&self, columns: &Columns, contact_model: ContactModel) -> Result<(Table, Option<Table>), Error> {
         let table = Table::create(&self.output, columns.headings())?;
-        match self.fields.as_deref().map(fields::create).transpose() {
+        let create = |path| fields::create(path, contact_model);
+        match self.fields.as_deref().map(create).transpose() {
             Ok(fields) => Ok((table, fields)),
             Err(error) => {
                 // What cannot be removed either is left; the refusal is what matters.

@@ -43,8 +43,10 @@ enum ContactModels {
     Line,
     /// The patch
     Patch,
-    /// Profiles
+    /// Profiles: perturbed, worn, wearing
     Profiles,
+    /// Built-in profiles that stay new
+    NewProfiles,
     /// Line and patch in turn
     Both,
 }
@@ -103,6 +105,7 @@ impl Options {
                 ContactModels::Line => Engines::Line,
                 ContactModels::Patch => Engines::Patch,
                 ContactModels::Profiles => Engines::Profiles,
+                ContactModels::NewProfiles => Engines::NewProfiles,
                 ContactModels::Both => Engines::Both,
             },
         };

@@ -288,8 +288,8 @@ impl Engine for LineOperators {
         profiles::profiles(problem.operators, fields, ambient)
     }
 
-    fn contact_nodes(&self, fields: &LineFields) -> Vec<ContactNode> {
-        profiles::contact_nodes(self, fields)
+    fn contact_nodes(problem: &LineProblem, fields: &LineFields) -> Vec<ContactNode> {
+        profiles::contact_nodes(problem.operators, fields)
     }
 }
 

@@ -53,6 +53,7 @@ pub fn contact_nodes(operators: &LineOperators, fields: &LineFields) -> Vec<Cont
             shear: fields.shear[i] * scale,
             slip: fields.slip[i],
             utilisation: fields.utilisation[i],
+            friction_coefficient: fields.friction[i],
             temperature: fields.surface_temperature[mesh.contact_column(i)],
         })
         .collect()

@@ -322,11 +322,13 @@ impl Engine for PatchOperators {
 
     fn profiles(problem: &PatchProblem, fields: &PatchFields) -> Profiles {
         let ambient = problem.conditions.inputs.ambient_temperature;
-        profiles::profiles(problem, fields, ambient)
+        // The mean of two strips where none lies in the middle.
+        let strips = problem.operators.grid.strips;
+        profiles::profiles(problem, fields, ambient, [(strips - 1) / 2, strips / 2])
     }
 
-    fn contact_nodes(&self, fields: &PatchFields) -> Vec<ContactNode> {
-        profiles::contact_nodes(self, fields)
+    fn contact_nodes(problem: &PatchProblem, fields: &PatchFields) -> Vec<ContactNode> {
+        profiles::contact_nodes(problem.operators, fields)
     }
 }
 

@@ -30,6 +30,7 @@ pub fn contact_nodes(operators: &PatchOperators, fields: &PatchFields) -> Vec<Co
                 } else {
                     0.0
                 },
+                friction_coefficient: fields.friction[place],
                 temperature: fields.heat.surface[index],
                 wear_depth: fields.wear.depth[index],
             }
@@ -37,11 +38,10 @@ pub fn contact_nodes(operators: &PatchOperators, fields: &PatchFields) -> Vec<Co
         .collect()
 }
 
-/// Samples the fields, linear between the centres of the cells; between the two strips in the middle their mean.
-pub fn profiles(problem: &PatchProblem, fields: &PatchFields, ambient: f64) -> Profiles {
+/// Samples the fields, linear between the centres of the cells; along the rail the mean of two strips, which may be the same.
+pub fn profiles(problem: &PatchProblem, fields: &PatchFields, ambient: f64, middle: [usize; 2]) -> Profiles {
     let operators = problem.operators;
     let grid = &operators.grid;
-    let middle = [(grid.strips - 1) / 2, grid.strips / 2];
     let along = |value: &dyn Fn(usize, usize) -> f64| -> Vec<f64> {
         let values: Vec<f64> = (0..grid.cells)
             .map(|cell| 0.5 * (value(middle[0], cell) + value(middle[1], cell)))

@@ -4,6 +4,7 @@ use super::fields::SurfaceFields;
 use super::mechanics::{self, SurfaceProblem};
 use super::operators::SurfaceOperators;
 use super::placement;
+use super::plots;
 use super::profile_wear;
 use super::solvers::SurfaceSolvers;
 use super::tangent::{self, SurfaceTangent};
@@ -428,11 +429,11 @@ impl Engine for SurfaceOperators {
         solvers.profile_change
     }
 
-    fn profiles(problem: &SurfaceProblem, _fields: &SurfaceFields) -> Profiles {
-        Profiles::untouched(problem.conditions.inputs.ambient_temperature)
+    fn profiles(problem: &SurfaceProblem, fields: &SurfaceFields) -> Profiles {
+        plots::profiles(problem, fields)
     }
 
-    fn contact_nodes(&self, fields: &SurfaceFields) -> Vec<ContactNode> {
-        totals::contact_nodes(self, fields)
+    fn contact_nodes(problem: &SurfaceProblem, fields: &SurfaceFields) -> Vec<ContactNode> {
+        plots::contact_nodes(problem, fields)
     }
 }

@@ -13,6 +13,7 @@ mod interpolation;
 mod mechanics;
 pub mod operators;
 mod placement;
+mod plots;
 mod profile_wear;
 mod search;
 pub mod solvers;

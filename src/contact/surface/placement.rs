@@ -115,7 +115,8 @@ pub fn place(
 fn check_on_rail(problem: &SurfaceProblem, solvers: &SurfaceSolvers, position: &WheelsetPosition) -> Result<()> {
     let (operators, inputs) = (problem.operators, &problem.conditions.inputs);
     let bodies = solvers.worn.of(operators);
-    let stands = solvers.search.first().is_some_and(|(number, along)| {
+    let first = solvers.search.first().filter(|_| solvers.search.touches());
+    let stands = first.is_some_and(|(number, along)| {
         let last = bodies.scan.len() - 1;
         let at = PlacedWheel::new(&bodies.wheel, position);
         let place = at.profile_position(&at.distance(along, &bodies.scan[number].1, 0.0));

@@ -11,8 +11,8 @@ use crate::geometry::unrolled::{PlacedWheel, RailPoint, WheelsetPosition};
 
 /// Regions that a search may find.
 pub const REGIONS: usize = 8;
-/// Heights that are tried for that at which the bodies touch.
-const TOUCH_STEPS: usize = 12;
+/// Limit of the heights that are tried for that at which the bodies touch: a bisection of centimetres, where nothing better helps.
+const TOUCH_STEPS: usize = 30;
 /// Way over which the distance is linear in the height of the wheel to a thousandth of a micrometre, `m`.
 const LINEAR: f64 = 1e-5;
 /// Least change of the distance with the height that counts: walls of 84° and more carry nothing of a load. The steepest flanges have 75°.
@@ -64,6 +64,8 @@ pub struct Deepest {
 pub struct Search {
     points: Vec<Closest>,
     overlaps: Vec<Overlap>,
+    /// Whether the last search for the height at which the bodies touch has found one.
+    touches: bool,
 }
 
 impl Search {
@@ -72,25 +74,38 @@ impl Search {
         Search {
             points: vec![Closest::default(); bodies.scan.len()],
             overlaps: Vec::with_capacity(REGIONS),
+            touches: false,
         }
     }
 
     /// Finds the height of the axle's middle at which the bodies touch first, `m`, from a guess of it. The points are those at that height
-    /// after it.
+    /// after it. Where a flange stands beside the head, the bodies overlap below a height and not above it, and do not touch at any.
     pub fn touch(&mut self, bodies: &Bodies, position: &WheelsetPosition, guess: f64) -> f64 {
         let mut height = guess;
+        self.touches = false;
+        // Heights that are known to be too low and too high, and the room at the height before.
+        let (mut bracket, mut last) = ([f64::NEG_INFINITY, f64::INFINITY], f64::INFINITY);
         for _ in 0..TOUCH_STEPS {
             self.scan(bodies, &WheelsetPosition { height, ..*position });
             let room = self.room();
             if !room.is_finite() {
                 break;
             }
+            bracket[usize::from(room > 0.0)] = height;
             height -= room;
             if room.abs() <= LINEAR {
+                self.touches = true;
                 self.lower(room);
                 height -= self.sharpen(bodies, &WheelsetPosition { height, ..*position });
                 break;
             }
+            // The way along the rail's normals is to another part of the wheel than touches: beside a flange it goes to and fro.
+            let [low, high] = bracket;
+            let lost = !(low < height && height < high) || room.abs() > 0.5 * last;
+            if lost && low.is_finite() && high.is_finite() {
+                height = 0.5 * (low + high);
+            }
+            last = room.abs();
         }
         height
     }
@@ -121,6 +136,11 @@ impl Search {
         }
         self.lower(room);
         room
+    }
+
+    /// Whether the last search for the height at which the bodies touch has found one.
+    pub fn touches(&self) -> bool {
+        self.touches
     }
 
     /// Number of the point of the scan at which the bodies touch first, and its place along the rail, `m`; none where they do not.
@@ -197,7 +217,7 @@ impl Search {
 
     /// Finds the regions of overlap of a wheel that is lower by `approach` `m` than the height at which the points are.
     pub fn overlaps(&mut self, approach: f64) -> &[Overlap] {
-        let Search { points, overlaps } = self;
+        let Search { points, overlaps, .. } = self;
         overlaps.clear();
         let depth = |point: usize| approach * points[point].rise - points[point].distance;
         let last = points.len() - 1;

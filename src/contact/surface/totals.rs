@@ -11,7 +11,6 @@ use crate::contact::on_wheelset::{OnWheelset, OneContact};
 use crate::contact::outputs::{LEAST_CREEPAGE_SPEED, damping};
 use crate::contact::patch;
 use crate::contact::patch::operators::PatchOperators;
-use crate::contact::profiles::ContactNode;
 use crate::contact::rim::ContactHeat;
 use crate::damage::PointDamage;
 use crate::friction::coulomb;
@@ -198,23 +197,4 @@ fn on_wheelset(problem: &SurfaceProblem, fields: &SurfaceFields, bodies: &Bodies
         contact.creepages[2] *= operators.side;
     }
     all
-}
-
-/// The fields at the cells of all windows, window by window; the lateral position is that in the track.
-pub fn contact_nodes(operators: &SurfaceOperators, fields: &SurfaceFields) -> Vec<ContactNode> {
-    let of_window = |(window, place): (usize, super::windows::Place)| {
-        let patch = operators.of(&place);
-        let grid = patch.grid;
-        let middle = place.middle_along(&grid);
-        let nodes = patch::profiles::contact_nodes(patch, &fields.windows[window]);
-        nodes.into_iter().enumerate().map(move |(node, at)| {
-            let point = operators.bodies.rail.at(place.arc(&grid, node / grid.cells));
-            ContactNode {
-                position: at.position + middle,
-                lateral_position: operators.side * point.place[0],
-                ..at
-            }
-        })
-    };
-    fields.used().flat_map(of_window).collect()
 }

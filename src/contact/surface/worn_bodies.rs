@@ -7,7 +7,6 @@
 
 use super::bodies::{Bodies, RAIL, WHEEL, measures};
 use super::operators::SurfaceOperators;
-use crate::contact::profiles::{ProfileDepths, WornPlace};
 use crate::error::{Error, Result};
 use crate::geometry::profile::Profile;
 use serde::{Deserialize, Serialize};
@@ -128,23 +127,6 @@ impl WornBodies {
         }
         Ok(())
     }
-}
-
-/// Places of both profiles with the depth of the spline in the middle of their cells.
-pub fn depths(operators: &SurfaceOperators, worn: &ProfileWear) -> ProfileDepths {
-    let [wheel, rail] = [WHEEL, RAIL].map(|body| {
-        let grid = &operators.grids[body];
-        let place = |cell: usize| {
-            let arc_length = grid.middle(cell);
-            WornPlace {
-                position: operators.profiles[body].at(arc_length).place[0],
-                arc_length,
-                depth: grid.at(&worn.depth[body], arc_length)[0],
-            }
-        };
-        (0..grid.cells).map(place).collect()
-    });
-    ProfileDepths { wheel, rail }
 }
 
 /// Profiles of wheel and rail as they are worn; the rail's is upright. Their origins have moved with the surface ([`Profile::worn_by`]).

@@ -2,7 +2,7 @@
 
 use super::{
     Causality, FIELDS, ITERATIONS, IntegerVariable, Kind, PROFILE_WEAR, PROFILES, RESIDUAL, RealKind, RealVariable,
-    Shape, TIME, Variability, Variable,
+    SURFACE, Shape, TIME, Variability, Variable,
 };
 use crate::parameters::{INTEGER_PARAMETERS, IntegerKind, REAL_PARAMETERS, TEXT_PARAMETERS};
 use crate::signals::{CONTACTS, INPUTS, OUTPUTS};
@@ -170,9 +170,26 @@ fn profiles() -> impl Iterator<Item = Variable> {
     })
 }
 
-/// The fields of a patch and the wear of profiles, for versions of FMI that have arrays with lengths of their own.
+/// The fields of patch and profiles and the wear of profiles, for versions of FMI that have arrays with lengths of their own.
 pub fn fields() -> impl Iterator<Item = Variable> {
-    patch_fields().chain(profile_wear())
+    patch_fields().chain(profile_wear()).chain(surface_fields())
+}
+
+/// The fields of profiles.
+fn surface_fields() -> impl Iterator<Item = Variable> {
+    SURFACE.iter().enumerate().map(|(row, column)| {
+        continuous(
+            column.name,
+            column.description,
+            Causality::Local,
+            RealKind {
+                shape: Shape::Surface(column.over),
+                display_unit: column.display_unit,
+                nominal: Some(column.nominal),
+                ..number(RealVariable::Surface(row), column.unit)
+            },
+        )
+    })
 }
 
 /// The wear of profiles.

@@ -1,0 +1,280 @@
+//! Fields of a contact of profiles: they add up to the outputs, and stand where the outputs say.
+
+use wheelrail::parameters::{ContactModel, Parameters, ProfileWear, Side, SlipSource};
+use wheelrail::signals::Inputs;
+use wheelrail::wheel_rail::{Model, ProfileDepths, SurfaceWindow, WornPlace};
+use wheelrail::{Error, Simulation};
+
+fn parameters(side: Side) -> Parameters {
+    Parameters {
+        contact_model: ContactModel::Profiles,
+        slip_source: SlipSource::VehicleSpeed,
+        side,
+        patch_nodes: 20,
+        patch_strips: 13,
+        ..Parameters::default()
+    }
+}
+
+/// Rolling with yaw where tread and flange's root carry, on a rail that has moved and rolled.
+fn inputs(side: Side) -> Inputs {
+    let sign = if side == Side::Left { 1.0 } else { -1.0 };
+    Inputs {
+        normal_load: 60e3,
+        vehicle_speed: 20.0,
+        wheel_speed: 43.6,
+        lateral_displacement: sign * 5.1e-3,
+        yaw_angle: sign * 2e-3,
+        rail_lateral_displacement: sign * 2e-4,
+        rail_vertical_displacement: 3e-4,
+        rail_roll_angle: sign * 1e-3,
+        ..Inputs::default()
+    }
+}
+
+/// A wheel that has rolled some steps.
+fn rolled(parameters: Parameters) -> Simulation {
+    let inputs = inputs(parameters.side);
+    let mut run = Simulation::new(&parameters, &inputs).unwrap();
+    run.hold(&inputs, 1e-3, 3).unwrap();
+    run
+}
+
+/// Sum over the cells of a window of their areas times a value.
+fn integral(window: &SurfaceWindow, value: impl Fn(&SurfaceWindow, usize) -> f64) -> f64 {
+    let area = window.cell_length * window.strip_breadth;
+    (0..window.nodes.len()).map(|node| area * value(window, node)).sum()
+}
+
+/// Each carrying window is a contact: pressure and shear add up to its forces, its cells lie within its extents.
+#[test]
+fn fields_add_up_to_the_contacts() {
+    for side in [Side::Left, Side::Right] {
+        let run = rolled(parameters(side));
+        let (outputs, windows) = (run.outputs(), run.surface_windows().unwrap());
+        let count = outputs.contacts as usize;
+        assert_eq!(count, 2, "{side:?}");
+        for (number, window) in windows.iter().enumerate() {
+            let contact = &outputs.contact[number];
+            let near = |value: f64, expected: f64, scale: f64, what: &str| {
+                assert!(
+                    (value - expected).abs() <= 1e-9 * scale,
+                    "{side:?} {number} {what}: {value} {expected}"
+                );
+            };
+            let force = contact.normal_force;
+            near(window.normal_force(), force, force, "normal force");
+            if number >= count {
+                continue;
+            }
+            near(
+                -integral(window, |w, n| w.nodes[n].shear),
+                contact.longitudinal_force,
+                force,
+                "along",
+            );
+            near(
+                -integral(window, |w, n| w.nodes[n].lateral_shear),
+                contact.lateral_force,
+                force,
+                "across",
+            );
+            let power = |w: &SurfaceWindow, n: usize| {
+                let node = &w.nodes[n];
+                -(node.shear * node.slip + node.lateral_shear * node.lateral_slip)
+            };
+            // Where the surfaces stick, what is left of a slip counts as none.
+            let work = integral(window, power);
+            let error = work / contact.friction_power - 1.0;
+            assert!(error.abs() < 1e-6, "{side:?} {number}: {work} W");
+            let largest = window.nodes.iter().map(|node| node.pressure).fold(0.0, f64::max);
+            near(largest, contact.peak_pressure, largest, "peak pressure");
+            assert!(
+                window
+                    .nodes
+                    .iter()
+                    .all(|node| (node.pressure > 0.0) == (node.friction_coefficient > 0.0))
+            );
+            stands_where_the_contact_is(window, contact.position, [contact.length, contact.breadth]);
+        }
+        // All windows together, turned by the roll of the rail.
+        let vertical = |w: &SurfaceWindow, n: usize| {
+            let sign = if side == Side::Left { 1.0 } else { -1.0 };
+            let angle = w.strips[n / w.x.len()].inclination + 1e-3;
+            w.nodes[n].pressure * angle.cos() - sign * w.nodes[n].lateral_shear * angle.sin()
+        };
+        let force: f64 = windows.iter().map(|window| integral(window, vertical)).sum();
+        assert!(
+            (force / outputs.force_z - 1.0).abs() < 1e-9,
+            "{side:?}: {force} {}",
+            outputs.force_z
+        );
+    }
+}
+
+/// The cells under pressure lie within the contact's extents, with a cell to spare, about its resultant.
+fn stands_where_the_contact_is(window: &SurfaceWindow, position: f64, extents: [f64; 2]) {
+    let cells = window.x.len();
+    let carrying = (0..window.nodes.len()).filter(|node| window.nodes[*node].pressure > 0.0);
+    let places = carrying.map(|node| [window.nodes[node].position, window.strips[node / cells].arc_length]);
+    let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
+    for place in places {
+        for way in 0..2 {
+            low[way] = low[way].min(place[way]);
+            high[way] = high[way].max(place[way]);
+        }
+    }
+    let sizes = [window.cell_length, window.strip_breadth];
+    for way in 0..2 {
+        let extent = high[way] - low[way];
+        assert!(
+            (extent - extents[way]).abs() <= 1.5 * sizes[way],
+            "{way}: {extent} {extents:?} {sizes:?}"
+        );
+    }
+    assert!(low[0] <= position && position <= high[0], "{low:?} {position} {high:?}");
+}
+
+/// Both profiles stand in the track as the contact has them: the rail's strips on the rail's profile, and wheel and rail as far apart as they are pressed
+/// together where they touch.
+#[test]
+fn profiles_stand_in_the_track() {
+    for side in [Side::Left, Side::Right] {
+        let wearing = Parameters {
+            wheel_profile_wear: ProfileWear::On,
+            rail_profile_wear: ProfileWear::On,
+            wear_acceleration: 1e3,
+            // Without a lead of the contact, so that what is below the axle touches.
+            ..parameters(side)
+        };
+        let mut run = rolled(wearing);
+        let still = Inputs {
+            yaw_angle: 0.0,
+            ..inputs(side)
+        };
+        run.hold(&still, 1e-3, 2).unwrap();
+        let ProfileDepths { wheel, rail } = run.profile_wear().unwrap();
+        let windows = run.surface_windows().unwrap();
+        let gap = |strip: &[f64; 2]| height_at(&wheel, strip[0]) - strip[1];
+        for window in windows.iter().filter(|window| window.normal_force() > 0.0) {
+            for strip in &window.strips {
+                let [y, z] = strip.in_track;
+                let off = height_at(&rail, y) - z;
+                assert!(
+                    off.abs() < 2e-6,
+                    "{side:?}: the rail is {off} m off its strips at {y} m"
+                );
+            }
+            let inclination = window.strips[window.strips.len() / 2].inclination;
+            let deepest = window
+                .strips
+                .iter()
+                .map(|strip| gap(&strip.in_track))
+                .fold(f64::INFINITY, f64::min);
+            let overlap = -deepest * inclination.cos();
+            let approach = run.outputs().penetration;
+            assert!(
+                overlap > 0.0 && overlap < 1.2 * approach,
+                "{side:?}: {overlap} {approach}"
+            );
+        }
+    }
+}
+
+/// The roll of the rail turns it about its top, by the angle of the input on either side; its displacements move it.
+#[test]
+fn a_rail_that_has_moved_and_rolled_is_there() {
+    for side in [Side::Left, Side::Right] {
+        let moved = inputs(side);
+        let still = Inputs {
+            rail_lateral_displacement: 0.0,
+            rail_vertical_displacement: 0.0,
+            rail_roll_angle: 0.0,
+            ..moved
+        };
+        let [before, after] = [still, moved].map(|inputs| {
+            let run = Simulation::new(&parameters(side), &inputs).unwrap();
+            run.profile_wear().unwrap().rail
+        });
+        let top = before
+            .iter()
+            .min_by(|a, b| a.position.abs().total_cmp(&b.position.abs()))
+            .unwrap();
+        for (from, to) in before.iter().zip(&after) {
+            let ([y, z], roll) = (from.in_track, moved.rail_roll_angle);
+            let expected = [
+                y - roll * z + moved.rail_lateral_displacement,
+                z + roll * (y - top.in_track[0]) + moved.rail_vertical_displacement,
+            ];
+            for (place, expected) in to.in_track.iter().zip(expected) {
+                // The square of the roll, and a place beside the top.
+                let off = place - expected;
+                assert!(off.abs() < 2e-7, "{side:?} {from:?} {to:?}");
+            }
+        }
+    }
+}
+
+/// Height of a profile in the track over a lateral position, linear between its places.
+fn height_at(places: &[WornPlace], y: f64) -> f64 {
+    let pair = places
+        .windows(2)
+        .find(|pair| (pair[0].in_track[0] - y) * (pair[1].in_track[0] - y) <= 0.0);
+    let [from, to] = pair.map(|pair| [pair[0].in_track, pair[1].in_track]).unwrap();
+    from[1] + (to[1] - from[1]) * (y - from[0]) / (to[0] - from[0])
+}
+
+/// The profiles along, across and below are those of the window that carries most.
+#[test]
+fn profiles_for_plotting_are_those_of_the_window_that_carries_most() {
+    let run = rolled(parameters(Side::Left));
+    let (outputs, plots) = (run.outputs(), run.profiles());
+    let heaviest = (0..2).max_by(|&a, &b| {
+        outputs.contact[a]
+            .normal_force
+            .total_cmp(&outputs.contact[b].normal_force)
+    });
+    let contact = &outputs.contact[heaviest.unwrap()];
+    let largest = |values: &[f64]| values.iter().fold(0.0, |largest: f64, value| largest.max(*value));
+    // Sampled between the cells.
+    assert!((largest(&plots.pressure) / contact.peak_pressure - 1.0).abs() < 0.1);
+    assert!((largest(&plots.strips.pressure) / contact.peak_pressure - 1.0).abs() < 0.1);
+    assert!((largest(&plots.temperature) - contact.peak_temperature).abs() < 5.0);
+    assert_eq!(
+        plots.depth_temperature[0],
+        largest(&plots.strips.temperature).max(plots.depth_temperature[0])
+    );
+    let windows = run.surface_windows().unwrap();
+    let strips = &windows[heaviest.unwrap()].strips;
+    let ends = [strips[0].in_track[0], strips[strips.len() - 1].in_track[0]];
+    assert_eq!([plots.strips.position[0], plots.strips.position[20]], ends);
+    let friction: f64 = plots
+        .strips
+        .friction_power
+        .windows(2)
+        .map(|pair| 0.5 * (pair[0] + pair[1]))
+        .sum();
+    let breadth = strips[strips.len() - 1].arc_length - strips[0].arc_length;
+    assert!((friction * breadth / 20.0 / contact.friction_power - 1.0).abs() < 0.1);
+    // A lifted wheel has none of them.
+    let lifted = Inputs {
+        normal_load: 0.0,
+        ..inputs(Side::Left)
+    };
+    let lifted = Simulation::new(&parameters(Side::Left), &lifted).unwrap();
+    assert_eq!(largest(&lifted.profiles().pressure), 0.0);
+    assert!(
+        lifted
+            .surface_windows()
+            .unwrap()
+            .iter()
+            .all(|window| window.normal_force() == 0.0)
+    );
+}
+
+#[test]
+fn other_contact_models_have_no_windows() {
+    let model = Model::new(Parameters::default()).unwrap();
+    let state = model.initial_state(&mut model.workspace(), &Inputs::default()).unwrap();
+    assert!(matches!(model.surface_windows(&state), Err(Error::OtherContactModel)));
+}
