@@ -198,7 +198,7 @@ fn a_rail_that_has_moved_and_rolled_is_there() {
         });
         let top = before
             .iter()
-            .min_by(|a, b| a.position.abs().total_cmp(&b.position.abs()))
+            .max_by(|a, b| a.in_track[1].total_cmp(&b.in_track[1]))
             .unwrap();
         for (from, to) in before.iter().zip(&after) {
             let ([y, z], roll) = (from.in_track, moved.rail_roll_angle);
