@@ -36,6 +36,24 @@ fn start(model: &Model, inputs: &Inputs) -> State {
     model.initial_state(&mut model.workspace(), inputs).unwrap()
 }
 
+/// The load is vertical in the track on a rail that has rolled as well, where a flange pushes across.
+#[test]
+fn a_rolled_rail_carries_the_load_along_the_tracks_vertical() {
+    let model = Model::new(bodies(Side::Right)).unwrap();
+    let flange = inputs([6.5, -0.004_376, 0.0156, -42.75]);
+    for rail_roll_angle in [-0.002, 0.0, 0.002] {
+        let inputs = Inputs {
+            rail_roll_angle,
+            ..flange
+        };
+        let outputs = start(&model, &inputs).outputs;
+        assert!(outputs.force_y.abs() > 0.1 * inputs.normal_load);
+        // The tolerance of a step, in which pressure and friction are solved.
+        let error = outputs.force_z / inputs.normal_load - 1.0;
+        assert!(error.abs() < 1e-6, "{rail_roll_angle}: {error:e}");
+    }
+}
+
 /// The right wheel is the left one in a mirror, to the last bit.
 #[test]
 fn the_other_side_is_the_mirror_image() {

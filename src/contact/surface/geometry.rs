@@ -59,6 +59,18 @@ impl Pose {
         }
     }
 
+    /// Direction of the track's vertical in the rail's axes, lateral and upward.
+    pub fn vertical(&self) -> [f64; 2] {
+        let (sine, cosine) = self.rail_roll.sin_cos();
+        [sine, cosine]
+    }
+
+    /// Change of [`Pose::vertical`] with the roll of the rail.
+    pub fn vertical_change(&self, rail_roll: f64) -> [f64; 2] {
+        let [sine, cosine] = self.vertical();
+        [cosine * rail_roll, -sine * rail_roll]
+    }
+
     /// Change of the pose of the given inputs with a change of them.
     pub fn change(
         &self,

@@ -3,7 +3,7 @@
 //! The wheel is lower by the approach a than where the undeformed bodies touch first. At a height, the normal problem of each window
 //! stands by itself; the vertical forces of all windows, of the pressure and of the friction, add up to the load Q:
 //!
-//! Σ ∫ (p cos δ − τ_s sin δ) dA = Q.
+//! Σ ∫ (p cos δ − τ_s sin δ) dA = Q, with the inclination δ to the track's plane, the roll of the rail included.
 //!
 //! The friction is that of the iteration before, in proportion to the pressure: where all slides, that is exact at once. The approach
 //! is found by the secant method.
@@ -108,9 +108,10 @@ impl<'a> SurfaceProblem<'a> {
     }
 }
 
-/// Vertical forces of a window on the wheel, or their changes: of the pressure and of the friction, `N`.
+/// Forces of a window on the wheel along the track's vertical, given in the rail's axes, or their changes: of the pressure and of the friction, `N`.
 pub fn vertical_forces(
     operators: &SurfaceOperators,
+    vertical: [f64; 2],
     rail: &PlacedRail,
     place: &Place,
     fields: &PatchFields,
@@ -125,8 +126,9 @@ pub fn vertical_forces(
             continue;
         }
         let point = rail.at(place.arc(grid, strip));
-        forces[0] += point.normal[1] * pressure;
-        forces[1] -= point.tangent()[1] * shear;
+        let upward = |direction: [f64; 2]| vertical[0] * direction[0] + vertical[1] * direction[1];
+        forces[0] += upward(point.normal) * pressure;
+        forces[1] -= upward(point.tangent()) * shear;
     }
     forces.map(|force| window.unit_force() * force)
 }
@@ -141,7 +143,13 @@ pub fn solve(
 ) -> Result<TractionChange> {
     for (window, place) in fields.used() {
         let rail = &solvers.worn.of(problem.operators).rail;
-        let [normal, friction] = vertical_forces(problem.operators, rail, &place, &fields.windows[window]);
+        let [normal, friction] = vertical_forces(
+            problem.operators,
+            problem.pose().vertical(),
+            rail,
+            &place,
+            &fields.windows[window],
+        );
         let own = &mut solvers.windows[window];
         own.interface.take_window(interface, window);
         own.contact_before.copy_from(&own.patch.contact);
@@ -241,7 +249,13 @@ fn carried(problem: &SurfaceProblem, fields: &SurfaceFields, solvers: &SurfaceSo
     fields
         .used()
         .map(|(window, place)| {
-            let [normal, friction] = vertical_forces(problem.operators, rail, &place, &fields.windows[window]);
+            let [normal, friction] = vertical_forces(
+                problem.operators,
+                problem.pose().vertical(),
+                rail,
+                &place,
+                &fields.windows[window],
+            );
             normal + friction
         })
         .sum()
@@ -458,7 +472,13 @@ fn press_at(
     }
     let rail = &solvers.worn.of(operators).rail;
     let forces = fields.used().map(|(window, place)| {
-        let [normal, _] = vertical_forces(operators, rail, &place, &fields.windows[window]);
+        let [normal, _] = vertical_forces(
+            operators,
+            problem.pose().vertical(),
+            rail,
+            &place,
+            &fields.windows[window],
+        );
         normal * (1.0 + solvers.windows[window].friction_share)
     });
     Ok(forces.sum())

@@ -161,7 +161,7 @@ impl SurfaceTangent {
             interface: &self.nothing,
         };
         parts.at_height(&along, &mut self.unit)?;
-        self.stiffness = vertical_force(problem.operators, &self.worn, &self.unit);
+        self.stiffness = vertical_force(problem.operators, pose.vertical(), &self.worn, &self.unit);
         Ok(())
     }
 
@@ -211,12 +211,12 @@ fn touches(fields: &PatchFields) -> bool {
     fields.pressure.iter().any(|&pressure| pressure > 0.0)
 }
 
-/// Vertical force of all windows, or its change, `N`.
-fn vertical_force(operators: &SurfaceOperators, worn: &WornBodies, fields: &SurfaceFields) -> f64 {
+/// Force of all windows along the track's vertical, given in the rail's axes, or its change, `N`.
+fn vertical_force(operators: &SurfaceOperators, vertical: [f64; 2], worn: &WornBodies, fields: &SurfaceFields) -> f64 {
     let rail = &worn.of(operators).rail;
     let forces = fields
         .used()
-        .map(|(window, place)| vertical_forces(operators, rail, &place, &fields.windows[window]));
+        .map(|(window, place)| vertical_forces(operators, vertical, rail, &place, &fields.windows[window]));
     forces.map(|[normal, friction]| normal + friction).sum()
 }
 
@@ -299,7 +299,10 @@ pub fn tractions(at: &mut Linearised<SurfaceOperators>, along: &Along, change: &
         tolerance: at.tolerance,
     };
     parts.at_height(along, change)?;
-    let force = vertical_force(problem.operators, worn, change);
+    let (pose, operators) = (problem.pose(), problem.operators);
+    let turned = pose.vertical_change(operators.side * along.direction.inputs.rail_roll_angle);
+    let force =
+        vertical_force(operators, pose.vertical(), worn, change) + vertical_force(operators, turned, worn, at.fields);
     if problem.is_height_given() {
         change.load = force;
         change.approach[0] = *approach;
