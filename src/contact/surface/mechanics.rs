@@ -106,6 +106,19 @@ impl<'a> SurfaceProblem<'a> {
         let load = self.conditions.inputs.normal_load;
         self.settings.mechanics.carried_load(load, self.parameters.largest_load)
     }
+
+    /// Forces of a window on the wheel along the track's vertical: of the pressure and of the friction, `N`.
+    fn vertical_forces(
+        &self,
+        fields: &SurfaceFields,
+        solvers: &SurfaceSolvers,
+        window: usize,
+        place: &Place,
+    ) -> [f64; 2] {
+        let rail = &solvers.worn.of(self.operators).rail;
+        let vertical = self.pose().vertical();
+        vertical_forces(self.operators, vertical, rail, place, &fields.windows[window])
+    }
 }
 
 /// Forces of a window on the wheel along the track's vertical, given in the rail's axes, or their changes: of the pressure and of the friction, `N`.
@@ -142,14 +155,7 @@ pub fn solve(
     tolerance: f64,
 ) -> Result<TractionChange> {
     for (window, place) in fields.used() {
-        let rail = &solvers.worn.of(problem.operators).rail;
-        let [normal, friction] = vertical_forces(
-            problem.operators,
-            problem.pose().vertical(),
-            rail,
-            &place,
-            &fields.windows[window],
-        );
+        let [normal, friction] = problem.vertical_forces(fields, solvers, window, &place);
         let own = &mut solvers.windows[window];
         own.interface.take_window(interface, window);
         own.contact_before.copy_from(&own.patch.contact);
@@ -245,17 +251,10 @@ fn least_load_error(problem: &SurfaceProblem, load: f64) -> f64 {
 
 /// Vertical force of all windows, `N`.
 fn carried(problem: &SurfaceProblem, fields: &SurfaceFields, solvers: &SurfaceSolvers) -> f64 {
-    let rail = &solvers.worn.of(problem.operators).rail;
     fields
         .used()
         .map(|(window, place)| {
-            let [normal, friction] = vertical_forces(
-                problem.operators,
-                problem.pose().vertical(),
-                rail,
-                &place,
-                &fields.windows[window],
-            );
+            let [normal, friction] = problem.vertical_forces(fields, solvers, window, &place);
             normal + friction
         })
         .sum()
@@ -470,15 +469,8 @@ fn press_at(
             break;
         }
     }
-    let rail = &solvers.worn.of(operators).rail;
     let forces = fields.used().map(|(window, place)| {
-        let [normal, _] = vertical_forces(
-            operators,
-            problem.pose().vertical(),
-            rail,
-            &place,
-            &fields.windows[window],
-        );
+        let [normal, _] = problem.vertical_forces(fields, solvers, window, &place);
         normal * (1.0 + solvers.windows[window].friction_share)
     });
     Ok(forces.sum())
