@@ -32,6 +32,9 @@ export CARGO_TARGET_DIR := $(CURDIR)/target
 export OMP_NUM_THREADS := 1
 export OPENBLAS_NUM_THREADS := 1
 export MPLBACKEND := Agg
+# Python keeps what it has compiled of a package, also where the environment forbids it, as images of containers do: else
+# each of the tests' many processes would compile pandas and Matplotlib anew, five seconds of a processor.
+unexport PYTHONDONTWRITEBYTECODE
 
 FMU := target/WheelRailContact.fmu
 FMU3 := target/WheelRailContact-fmi3.fmu
