@@ -19,6 +19,34 @@ import folders  # noqa: E402
 
 sys.path[:0] = folders.folders()
 
+# Files that take longest, the longest first. `make pytest` hands files to its workers in this order: begun late, one of
+# these would run on alone at the end.
+LONGEST = [
+    "stranger",
+    "coupling_hunting",
+    "coupling_adhesion",
+    "coupling_stiff",
+    "documents",
+    "coupling_mileage",
+    "wheel",
+    "hosts",
+    "headers",
+    "instance",
+    "coupling_maintenance",
+    "results",
+    "coupling_curve",
+    "random_calls",
+    "measurements",
+    "coupling_longitudinal",
+    "site",
+]
+
+
+def pytest_collection_modifyitems(items):
+    """Put the files that take longest first; the tests of a file stay together, in their order."""
+    rank = {f"test_{name}": number for number, name in enumerate(LONGEST)}
+    items.sort(key=lambda item: rank.get(item.path.stem, len(rank)))
+
 
 def built(path):
     """Return a file that `make fmu fmu3` makes."""
