@@ -255,10 +255,10 @@ verify: command
 python-test: fmu fmu3 verify packages
 	@$(MAKE) --no-print-directory pytest
 
-# Alone it takes what is built for granted.
+# Alone it takes what is built for granted. A file at a time to each worker, in the order of python_tests/conftest.py.
 pytest:
 	$(call say,Python tests)
-	$(PY) -m pytest --numprocesses 2 --dist loadfile
+	$(PY) -m pytest --numprocesses 2 --dist loadfile --no-loadscope-reorder
 
 # README's and the documentation page's generated tables, README's pictures and those of the verification; commit what
 # changes.
