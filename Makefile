@@ -219,10 +219,12 @@ lint-compiled: $(VENV)/build
 	$(CARGO) clippy --quiet --all-targets -- -D warnings
 	RUSTDOCFLAGS='-D warnings' $(CARGO) doc --quiet --no-deps
 
-# Without the checks of the verification, one test each: `verify` has gone through the same.
+# Without the checks of the verification, one test each: `verify` has gone through the same. Examples are not linked as programs:
+# tests/examples.rs has three of them in it, and clippy compiles all. The tests of the documentation cargo runs apart from others.
 rust-test: $(VENV)/build
 	$(call say,Rust tests)
-	$(CARGO) test --no-fail-fast -- --skip 'verify: '
+	$(CARGO) test --no-fail-fast --tests -- --skip 'verify: '
+	$(CARGO) test --doc
 
 # What a release build leaves out: overflow of integers, debug assertions.
 test-debug:
