@@ -62,6 +62,8 @@ pub struct StepSettings {
     pub staggered_retries: usize,
     /// Budget of a step in multiplications and additions, about: counted, not timed.
     pub work: u64,
+    /// Work of the mechanics in a staggered sub-step after which they are not solved any closer.
+    pub staggered_work: u64,
 }
 
 /// Convergence of the operator split.
@@ -247,7 +249,8 @@ impl Default for StepSettings {
             substeps_at_limit: 4,
             staggered_substeps: 4,
             staggered_retries: 6,
-            work: 100_000_000,
+            work: 80_000_000,
+            staggered_work: 8_000_000,
         }
     }
 }

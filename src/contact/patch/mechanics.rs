@@ -239,11 +239,11 @@ fn solve_friction(
                 Coupling::Implicit => 0.0,
                 Coupling::Staggered => peak * problem.settings.patch.staggered_residual,
             },
-            // A first state, in which no time passes, has no budget.
-            work: if problem.conditions.duration.is_finite() {
-                problem.settings.step.work
-            } else {
-                u64::MAX
+            work: match problem.conditions.coupling {
+                // A first state, in which no time passes, has no budget.
+                _ if !problem.conditions.duration.is_finite() => u64::MAX,
+                Coupling::Implicit => problem.settings.step.work,
+                Coupling::Staggered => problem.settings.step.staggered_work,
             },
         };
         solvers.friction.solve(&friction_problem, &mut fields.shear)?;

@@ -63,6 +63,10 @@ const FARTHEST: f64 = 50.0;
 const LEAST_FRICTION_SHARE: f64 = -0.5;
 /// Limit of the rounds over windows that displace each other.
 const ROUNDS: usize = 60;
+/// The same in a staggered step, whose work is bounded.
+const STAGGERED_ROUNDS: usize = 6;
+/// Budgets of a step that a staggered sub-step may take to find the height of the wheel: without one the step is refused.
+const STAGGERED_SEARCH: u64 = 4;
 /// Error of the pressure, relative, at which the cells under pressure are found.
 const FINE_TOLERANCE: f64 = 1e-7;
 /// Error of the load, relative, for the approach that windows are placed for.
@@ -303,6 +307,16 @@ fn press_with_friction(
     let farthest = FARTHEST * problem.operators.shapes[0].scales.displacement;
     // The pressure need not be better than the approach is.
     let mut own_tolerance = tolerance.max(FIRST_TOLERANCE);
+    let step = &problem.settings.step;
+    // Work after which a height is taken that will do, and after which none is sought. A first state, in which no time passes, has no budget.
+    let (enough, limit, accepted) = match problem.conditions.coupling {
+        _ if !problem.conditions.duration.is_finite() => (u64::MAX, u64::MAX, 0.0),
+        Coupling::Implicit => (step.work, step.work, 0.0),
+        Coupling::Staggered => {
+            let accepted = problem.settings.patch.staggered_residual;
+            (step.staggered_work, STAGGERED_SEARCH * step.work, accepted)
+        }
+    };
     for approaches in 0..APPROACHES {
         let force = press_at(problem, search.approach, fields, solvers, own_tolerance)?;
         let excess = search.load.map_or(0.0, |load| (force - load) / load);
@@ -312,20 +326,25 @@ fn press_with_friction(
         // The errors of the cells may add up to more of the load.
         let finest = if approaches < USUAL_APPROACHES { 1.0 } else { 0.1 } * tolerance;
         own_tolerance = (TOLERANCE_SHARE * left).clamp(finest, own_tolerance.max(finest));
-        if left <= tolerance_of_load && !solved_well {
+        let work = SurfaceOperators::mechanics_work(solvers);
+        let will_do = work > enough && left <= accepted;
+        if left <= tolerance_of_load && !solved_well && !will_do {
             own_tolerance = tolerance;
             continue;
         }
-        if left <= tolerance_of_load {
+        if left <= tolerance_of_load || will_do {
             search.end(fields);
             return check_room(problem, fields, solvers);
+        }
+        if work > limit {
+            return Err(Error::TooMuchWork { work, limit });
         }
         search.next(excess, error);
         if search.approach.abs() > farthest {
             break;
         }
     }
-    if left <= ACCEPTED {
+    if left <= accepted.max(ACCEPTED) {
         search.end(fields);
         return check_room(problem, fields, solvers);
     }
@@ -455,7 +474,11 @@ fn press_at(
     tolerance: f64,
 ) -> Result<f64> {
     let operators = problem.operators;
-    for round in 0..ROUNDS {
+    let rounds = match problem.conditions.coupling {
+        Coupling::Implicit => ROUNDS,
+        Coupling::Staggered => STAGGERED_ROUNDS,
+    };
+    for round in 0..rounds {
         let mut change = 0.0;
         for (window, place) in fields.used() {
             let scale = operators.of(&place).scales.displacement;

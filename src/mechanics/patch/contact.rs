@@ -117,9 +117,10 @@ impl Contact {
     }
 }
 
-/// Multiplications and additions of a product with tables, about: along x term by term, across by a Fourier transform.
-pub fn work_of_product(transform: &Transform, window: &Window) -> u64 {
-    (8 * transform.strips() * window.loaded.len() * window.read.len()) as u64
+/// Multiplications and additions of a product of `components` with the tables from each to each, about: along x term by term, of complex
+/// numbers and half of the harmonics, across by Fourier transforms, which take as much again.
+pub fn work_of_product(transform: &Transform, window: &Window, components: usize) -> u64 {
+    (4 * components * components * transform.strips() * window.loaded.len() * window.read.len()) as u64
 }
 
 #[cfg(test)]

@@ -279,7 +279,7 @@ impl Friction {
         for changes in [&mut self.correction, &mut self.correction_response] {
             changes.iter_mut().for_each(|component| component.fill(0.0));
         }
-        let product = work_of_product(problem.transform, &window);
+        let product = work_of_product(problem.transform, &window, 2);
         if self.answered != *shear {
             self.work += product;
             let [x, y] = &mut self.response;
@@ -539,7 +539,7 @@ impl Friction {
             }
         };
         let solved = gmres.solve(&mut step[..2 * n], tolerance, multiply, |values| blocks.solve(values));
-        let product = work_of_product(problem.transform, window) + work_of_blocks(problem.contact, 2);
+        let product = work_of_product(problem.transform, window, 2) + work_of_blocks(problem.contact, 2);
         let orthogonalisation = (2 * n * solved.iterations) as u64;
         self.work += solved.iterations as u64 * (product + orthogonalisation);
         for component in 0..2 {

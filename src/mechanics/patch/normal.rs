@@ -305,7 +305,7 @@ impl Normal {
         }
         self.displaced_by.copy_from_slice(pressure);
         self.displaced = window.clone();
-        self.work_done += work_of_product(transform, &window);
+        self.work_done += work_of_product(transform, &window, 1);
         transform.apply(
             tables,
             &window,
@@ -354,7 +354,7 @@ impl Normal {
         let (grid, n) = (problem.grid, contact.cells());
         let (transform, tables, window) = self.frame(problem, contact);
         let preconditioner: usize = contact.runs().iter().map(|run| run.cells * run.cells).sum();
-        let work = work_of_product(transform, &window) + preconditioner as u64;
+        let work = work_of_product(transform, &window, 1) + preconditioner as u64;
         self.displace(problem, contact, pressure);
         self.displaced = window.clone();
         contact.gather(grid, pressure, &mut self.pressure);
