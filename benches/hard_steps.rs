@@ -18,8 +18,8 @@ use wheelrail::{Inputs, Model, Parameters, Settings, Simulation};
 const PERIOD: usize = 60;
 const HELD: usize = 20;
 
-/// Budgets of work of a step, multiplications and additions, the default one first.
-const BUDGETS: [u64; 4] = [100_000_000, 3_000_000, 1_000_000, 300_000];
+/// Budgets of work of a step, multiplications and additions, the default one first; that of a staggered sub-step is a tenth of it.
+const BUDGETS: [u64; 4] = [80_000_000, 3_000_000, 1_000_000, 300_000];
 
 /// A change of the inputs by its name.
 type Event = (&'static str, fn(&Inputs) -> Inputs);
@@ -137,6 +137,8 @@ fn budgets(parameters: &Parameters, track: &[Inputs]) {
     for budget in BUDGETS {
         let mut limited = Settings::default();
         limited.step.work = budget;
+        // A staggered sub-step, of which there are four, in proportion.
+        limited.step.staggered_work = budget / 10;
         let model = Arc::new(Model::with_settings(parameters.clone(), limited).expect("a model"));
         let (mut times, mut late) = (Vec::new(), 0);
         for (_, event) in EVENTS {

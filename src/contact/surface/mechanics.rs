@@ -63,7 +63,7 @@ const FARTHEST: f64 = 50.0;
 const LEAST_FRICTION_SHARE: f64 = -0.5;
 /// Limit of the rounds over windows that displace each other.
 const ROUNDS: usize = 60;
-/// The same in a staggered step, whose work is bounded.
+/// Limit of these rounds in a staggered step, whose work is bounded.
 const STAGGERED_ROUNDS: usize = 6;
 /// Budgets of a step that a staggered sub-step may take to find the height of the wheel: without one the step is refused.
 const STAGGERED_SEARCH: u64 = 4;
