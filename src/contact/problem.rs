@@ -83,6 +83,15 @@ impl<E> Clone for Problem<'_, E> {
 impl<E> Copy for Problem<'_, E> {}
 
 impl<'a, E> Problem<'a, E> {
+    /// Work of the mechanics after which they are not solved any closer. A first state, in which no time passes, has no such limit.
+    pub fn mechanics_budget(&self) -> u64 {
+        match self.conditions.coupling {
+            _ if !self.conditions.duration.is_finite() => u64::MAX,
+            Coupling::Implicit => self.settings.step.work,
+            Coupling::Staggered => self.settings.step.staggered_work,
+        }
+    }
+
     /// Problem of a task for the given operators.
     pub fn new(operators: &'a E, task: &Task<'a>) -> Problem<'a, E> {
         Problem {

@@ -236,7 +236,7 @@ fn solve_staggered_in_room<E: Engine>(
         // As closely as in the first sweep of a step: the temperature is a guess here as well.
         tractions = E::solve_mechanics(problem, iterate, now, solvers, settings.first_mechanics_tolerance)?;
         let rests = !tractions.set_changed && tractions.shear_change <= settings.first_mechanics_tolerance;
-        if rests || E::mechanics_work(solvers) > problem.settings.step.staggered_work {
+        if rests || E::mechanics_work(solvers) > problem.mechanics_budget() {
             break;
         }
     }

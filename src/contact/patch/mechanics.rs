@@ -239,12 +239,7 @@ fn solve_friction(
                 Coupling::Implicit => 0.0,
                 Coupling::Staggered => peak * problem.settings.patch.staggered_residual,
             },
-            work: match problem.conditions.coupling {
-                // A first state, in which no time passes, has no budget.
-                _ if !problem.conditions.duration.is_finite() => u64::MAX,
-                Coupling::Implicit => problem.settings.step.work,
-                Coupling::Staggered => problem.settings.step.staggered_work,
-            },
+            work: problem.mechanics_budget(),
         };
         solvers.friction.solve(&friction_problem, &mut fields.shear)?;
         if path.is_some() {

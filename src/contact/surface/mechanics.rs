@@ -65,7 +65,8 @@ const LEAST_FRICTION_SHARE: f64 = -0.5;
 const ROUNDS: usize = 60;
 /// Limit of these rounds in a staggered step, whose work is bounded.
 const STAGGERED_ROUNDS: usize = 6;
-/// Budgets of a step that a staggered sub-step may take to find the height of the wheel: without one the step is refused.
+/// Work of the search for the height of the wheel in a staggered sub-step, in budgets of a step, after which it is given up. It is above a sub-step's own
+/// budget, because a step without a height is refused.
 const STAGGERED_SEARCH: u64 = 4;
 /// Error of the pressure, relative, at which the cells under pressure are found.
 const FINE_TOLERANCE: f64 = 1e-7;
@@ -307,15 +308,15 @@ fn press_with_friction(
     let farthest = FARTHEST * problem.operators.shapes[0].scales.displacement;
     // The pressure need not be better than the approach is.
     let mut own_tolerance = tolerance.max(FIRST_TOLERANCE);
-    let step = &problem.settings.step;
-    // Work after which a height is taken that will do, and after which none is sought. A first state, in which no time passes, has no budget.
-    let (enough, limit, accepted) = match problem.conditions.coupling {
-        _ if !problem.conditions.duration.is_finite() => (u64::MAX, u64::MAX, 0.0),
-        Coupling::Implicit => (step.work, step.work, 0.0),
-        Coupling::Staggered => {
-            let accepted = problem.settings.patch.staggered_residual;
-            (step.staggered_work, STAGGERED_SEARCH * step.work, accepted)
-        }
+    let budget = problem.mechanics_budget();
+    // Error of the load that is accepted; the work after which a search ends with it, and the work after which it is given up.
+    let (accepted, enough, limit) = match problem.conditions.coupling {
+        Coupling::Staggered if budget < u64::MAX => (
+            problem.settings.patch.staggered_residual,
+            budget,
+            STAGGERED_SEARCH * problem.settings.step.work,
+        ),
+        _ => (ACCEPTED, u64::MAX, budget),
     };
     for approaches in 0..APPROACHES {
         let force = press_at(problem, search.approach, fields, solvers, own_tolerance)?;
@@ -344,7 +345,7 @@ fn press_with_friction(
             break;
         }
     }
-    if left <= accepted.max(ACCEPTED) {
+    if left <= accepted {
         search.end(fields);
         return check_room(problem, fields, solvers);
     }
