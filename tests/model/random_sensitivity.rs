@@ -241,10 +241,11 @@ fn draw(contact_model: ContactModel, law: Law) {
         }
     }
     println!(
-        "{contact_model:?} {law:?}: {} steps, {} do not rest, {} derivatives compared, {} at corners, {} at others, {} steps fail",
+        "{contact_model:?} {law:?}: {} steps, {} do not rest, {} derivatives compared, {} of them finer, {} at corners, {} at others, {} steps fail",
         tally.steps,
         tally.refused,
         tally.compared,
+        tally.finer,
         tally.corners,
         tally.unnamed,
         failures.len()
