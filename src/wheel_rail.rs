@@ -269,9 +269,12 @@ impl Model {
             };
             let solved = match self.advance(workspace, state, &at_end, length, coupling) {
                 Ok(solved) => solved,
-                // What the window cannot hold no step can.
+                // What the window cannot hold no step can, nor what starts from a surface that is worn away.
                 Err(
-                    error @ (Error::ContactLeavesWindow { .. } | Error::WheelOffRail { .. } | Error::OtherContactModel),
+                    error @ (Error::ContactLeavesWindow { .. }
+                    | Error::WheelOffRail { .. }
+                    | Error::WornAway { .. }
+                    | Error::OtherContactModel),
                 ) => {
                     return Err(interrupted(committed, error));
                 }

@@ -298,10 +298,12 @@ fn is_too_hot(model: &Model, before: &State, step: &DriveStep) -> bool {
 }
 
 /// Whether the step was one to be refused: the bulge of a hot rail makes a given penetration take more than the largest load, or a wheelset is
-/// pressed into the rails as deep; or the wheel has climbed over the rail or fallen off it.
+/// pressed into the rails as deep, or until their profiles are worn away; or the wheel has climbed over the rail or fallen off it.
 fn is_refused(model: &Model, error: &Error) -> bool {
     match error {
-        Error::ContactLeavesWindow { .. } | Error::ContactOutgrowsWindow => model.parameters().control != Control::Load,
+        Error::ContactLeavesWindow { .. } | Error::ContactOutgrowsWindow | Error::WornAway { .. } => {
+            model.parameters().control != Control::Load
+        }
         Error::WheelOffRail { .. } => true,
         _ => false,
     }

@@ -14,6 +14,8 @@ use crate::mechanics::patch::normal::is_free;
 
 /// Approach that windows are placed for, over the expected one.
 const AHEAD: f64 = 1.03;
+/// Approach after a contact has outgrown its window, over the one of the step before, above which windows are placed for the overlap of the bodies.
+const FAR_DEEPER: f64 = 3.0;
 /// Distance of two regions, over their mean breadth, below which they share a window that resolves both.
 const NEAR: f64 = 0.5;
 /// Distance, over the mean breadth, below which they share one in any case: regions are larger than their contacts, and those of contacts that
@@ -162,7 +164,12 @@ fn want(problem: &SurfaceProblem, source: Option<&SurfaceFields>, approach: f64,
         return;
     }
     let room = problem.conditions.room;
-    if let Some(source) = source.filter(|source| source.approach[0] > 0.0) {
+    // Of a wheelset that has come to lie far deeper than in the step before, the contacts then say nothing of what carries now.
+    let tells = |source: &&SurfaceFields| {
+        let before = source.approach[0];
+        before > 0.0 && (room == 1.0 || approach <= FAR_DEEPER * before)
+    };
+    if let Some(source) = source.filter(tells) {
         let load_ratio = (approach / source.approach[0]).powf(1.5);
         let expected = Expected {
             growth: room * load_ratio.cbrt().max(1.0),
