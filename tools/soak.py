@@ -20,7 +20,8 @@ REPOSITORY = Path(__file__).resolve().parent.parent
 # Runs of the torture in a round, of each contact model: half a minute or so.
 RUNS = {"line": 40, "patch": 8}
 SEQUENCES = 200
-# Cases of each contact and law of friction: of a few, the share that lies at corners scatters by more than the test allows.
+# Cases of each contact and law of friction: the share of a few that lies at corners scatters by more than the test
+# allows.
 DERIVATIVE_CASES = "100"
 
 
