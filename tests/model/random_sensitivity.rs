@@ -201,14 +201,14 @@ fn compare_where_it_rests(case: &Case, mismatches: &mut Vec<Mismatch>) -> Tally 
                 let model = Model::new(parameters.clone()).unwrap();
                 let settled = settle(&model, &mut model.workspace(), inputs, *step);
                 let staggered = settled.as_ref().map(|state| state.convergence.staggered);
-                assert_eq!(staggered, Ok(false), "{error}, at {inputs:?}");
+                assert_eq!(staggered, Ok(false), "{error}, at {case:?}");
             }
             Tally {
                 refused: 1,
                 ..Tally::default()
             }
         }
-        Err(error) => panic!("{error}, at {inputs:?}"),
+        Err(error) => panic!("{error}, at {case:?}"),
     }
 }
 
