@@ -68,6 +68,8 @@ pub struct Tally {
     pub steps: usize,
     /// Steps that do not rest at the settings of the comparison.
     pub refused: usize,
+    /// Steps of those that are staggered at the default settings.
+    pub staggered: usize,
     /// Derivatives that were compared.
     pub compared: usize,
     /// Derivatives of those that agree with finer differences only.
@@ -83,6 +85,7 @@ impl Tally {
     pub fn add(&mut self, other: Tally) {
         self.steps += other.steps;
         self.refused += other.refused;
+        self.staggered += other.staggered;
         self.compared += other.compared;
         self.finer += other.finer;
         self.corners += other.corners;

@@ -19,6 +19,9 @@ const LEAST_COMPARED: f64 = 0.7;
 /// Share of them that may be at corners which the state does not name.
 const LARGEST_UNNAMED: f64 = 0.02;
 
+/// Share of the cases of a rigid wheel on friction that falls and remembers whose step may be staggered; of few cases one may.
+const LARGEST_STAGGERED: f64 = 0.02;
+
 /// A step to differentiate.
 #[derive(Debug, Clone)]
 struct Case {
@@ -186,7 +189,8 @@ fn cases(contact_model: ContactModel, law: Law) -> impl Strategy<Value = Case> {
 }
 
 /// Compares the derivatives of a case where it rests at the settings of the comparison; at those that everybody has it has to. Not of a line on a
-/// layer, whose step may be staggered: docs/limits.md says where.
+/// layer, nor of a rigid wheel on friction that falls and remembers, whose step may be staggered: docs/limits.md says where. The latter are
+/// counted.
 fn compare_where_it_rests(case: &Case, mismatches: &mut Vec<Mismatch>) -> Tally {
     let Case {
         parameters,
@@ -197,14 +201,18 @@ fn compare_where_it_rests(case: &Case, mismatches: &mut Vec<Mismatch>) -> Tally 
         Ok(tally) => tally,
         Err(error) if does_not_rest(&error) => {
             let on_a_layer = parameters.layer_compliance > 0.0 || parameters.layer_yield_stress > 0.0;
+            let mut staggered = false;
             if parameters.contact_model == ContactModel::Patch || !on_a_layer {
                 let model = Model::new(parameters.clone()).unwrap();
                 let settled = settle(&model, &mut model.workspace(), inputs, *step);
-                let staggered = settled.as_ref().map(|state| state.convergence.staggered);
-                assert_eq!(staggered, Ok(false), "{error}, at {case:?}");
+                let settled = settled.unwrap_or_else(|error| panic!("{error}, at {case:?}"));
+                staggered = settled.convergence.staggered;
+                let may_be = parameters.wheel == Wheel::Rigid && parameters.friction_memory_distance > 0.0;
+                assert!(may_be || !staggered, "{error}, at {case:?}");
             }
             Tally {
                 refused: 1,
+                staggered: usize::from(staggered),
                 ..Tally::default()
             }
         }
@@ -241,9 +249,10 @@ fn draw(contact_model: ContactModel, law: Law) {
         }
     }
     println!(
-        "{contact_model:?} {law:?}: {} steps, {} do not rest, {} derivatives compared, {} of them finer, {} at corners, {} at others, {} steps fail",
+        "{contact_model:?} {law:?}: {} steps, {} do not rest ({} of them staggered), {} derivatives compared, {} of them finer, {} at corners, {} at others, {} steps fail",
         tally.steps,
         tally.refused,
+        tally.staggered,
         tally.compared,
         tally.finer,
         tally.corners,
@@ -251,6 +260,8 @@ fn draw(contact_model: ContactModel, law: Law) {
         failures.len()
     );
     assert!(failures.is_empty(), "{}", failures.join("\n"));
+    let most = (LARGEST_STAGGERED * count as f64).max(1.0);
+    assert!(tally.staggered as f64 <= most, "{tally:?}");
     let all = (tally.compared + tally.corners + tally.unnamed) as f64;
     assert!(tally.compared as f64 >= LEAST_COMPARED * all, "{tally:?}");
     assert!(tally.unnamed as f64 <= LARGEST_UNNAMED * all, "{tally:?}");
