@@ -8,6 +8,7 @@ mod defaults;
 mod derivatives;
 mod effects;
 mod falling_friction;
+mod found;
 mod given_geometry;
 mod lift_off;
 mod paper_mesh;
