@@ -1,9 +1,13 @@
 //! Inputs and parameters at the edge of what the iterations can bear, with either wheel: each of these once failed.
 
 use crate::by_speeds::{inputs, wheels};
-use wheelrail::parameters::Parameters;
-use wheelrail::signals::Inputs;
+use crate::setups::{line, patch, rolling, rolling_straight, settle, step_from};
+use wheelrail::Error;
+use wheelrail::parameters::{Parameters, SlipSource, Wheel};
+use wheelrail::settings::Settings;
+use wheelrail::signals::{Inputs, OUTPUTS};
 use wheelrail::simulation::Simulation as Run;
+use wheelrail::wheel_rail::Model;
 
 /// Wear in the gap by fixed-point iteration would diverge where k|s|Δt, or k|s|Δx/V when rolling, exceeds the
 /// smallest eigenvalue of the compliance, some 1.5e-15 m/Pa on the default mesh: there the normal problem takes it in.
@@ -139,5 +143,49 @@ fn a_front_of_worn_and_hot_rail_passes_the_contact() {
                 }
             }
         }
+    }
+}
+
+/// A step whose budget of work is spent ends: staggered, in a few sub-steps, near what the coupled equations say; or with an error that says
+/// how much it was, where no step may be staggered.
+#[test]
+fn a_step_ends_where_its_budget_of_work_is_spent() {
+    for (parameters, inputs) in [
+        (line(SlipSource::Creepage, Wheel::Elastic), rolling_straight(15.0, 4e-3)),
+        (
+            patch(SlipSource::Creepage, Wheel::Elastic),
+            rolling(15.0, [4e-3, 1e-3, 0.3]),
+        ),
+    ] {
+        let solved = Model::new(parameters.clone()).unwrap();
+        let mut workspace = solved.workspace();
+        let before = settle(&solved, &mut workspace, &inputs, 1e-3).unwrap();
+        let harder = Inputs {
+            normal_load: 1.2 * inputs.normal_load,
+            ..inputs
+        };
+        let implicit = step_from(&solved, &mut workspace, &before, &harder, 1e-3).unwrap();
+        assert!(!implicit.convergence.staggered);
+
+        let mut settings = Settings::default();
+        settings.step.work = 1;
+        let bounded = Model::with_settings(parameters.clone(), settings).unwrap();
+        let mut workspace = bounded.workspace();
+        let staggered = step_from(&bounded, &mut workspace, &before, &harder, 1e-3).unwrap();
+        assert!(staggered.convergence.staggered);
+        // One sweep tells that the budget is spent, and each of the sub-steps takes one.
+        assert!(staggered.convergence.iterations <= settings.step.staggered_substeps);
+        for name in ["traction_force", "peak_temperature"] {
+            let output = OUTPUTS.iter().find(|output| output.name == name).unwrap();
+            let [close, exact] = [&staggered, &implicit].map(|state| (output.get)(&state.outputs));
+            // Staggered coupling is of first order in the sub-step: a fourth of a step that changes the temperature by a few per cent.
+            assert!((close / exact - 1.0).abs() < 0.02, "{name}: {close} {exact}");
+        }
+
+        settings.step.staggered_substeps = 0;
+        let refusing = Model::with_settings(parameters, settings).unwrap();
+        let mut workspace = refusing.workspace();
+        let refused = step_from(&refusing, &mut workspace, &before, &harder, 1e-3).unwrap_err();
+        assert!(matches!(refused, Error::TooMuchWork { limit: 1, .. }), "{refused}");
     }
 }
