@@ -53,7 +53,7 @@ fn friction_with_a_memory_has_corners() {
 }
 
 /// Runs of wheelsets on profiles that once failed, and steps until the failure.
-const WHEELSETS: [(Engines, u64, u64, usize); 9] = [
+const WHEELSETS: [(Engines, u64, u64, usize); 10] = [
     // First states in which the law of friction, with a memory and on a layer, has no solution that is found.
     (Engines::NewProfiles, 3, 89, 2),
     (Engines::NewProfiles, 11, 167, 2),
@@ -70,6 +70,8 @@ const WHEELSETS: [(Engines, u64, u64, usize); 9] = [
     (Engines::NewProfiles, 21, 45, 2),
     // A flange beside the head: the height at which they touch was sought to and fro.
     (Engines::NewProfiles, 33, 43, 50),
+    // Contacts a third of a millimetre apart that pushed each other away by turns.
+    (Engines::Profiles, 44, 50, 15),
 ];
 
 #[test]

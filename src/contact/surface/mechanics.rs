@@ -65,6 +65,10 @@ const LEAST_FRICTION_SHARE: f64 = -0.5;
 const ROUNDS: usize = 60;
 /// Limit of these rounds in a staggered step, whose work is bounded.
 const STAGGERED_ROUNDS: usize = 6;
+/// Rounds after which windows that displace each other as much as in the round before do not settle.
+const SETTLING_ROUNDS: usize = 4;
+/// Least change of a displacement in such a round over the approach, and over the change in the round before.
+const UNSETTLED: [f64; 2] = [0.1, 0.9];
 /// Work of the search for the height of the wheel in a staggered sub-step, in budgets of a step, after which it is given up. It is above a sub-step's own
 /// budget, because a step without a height is refused.
 const STAGGERED_SEARCH: u64 = 4;
@@ -467,6 +471,9 @@ fn clamped(stiffness: f64, approach: f64) -> f64 {
 }
 
 /// Solves the pressure of all windows at an approach. Returns the vertical force with the friction in proportion, `N`.
+///
+/// # Errors
+/// [`Error::ContactOutgrowsWindow`] where contacts that all but touch push each other away by turns: with more room they share a window.
 fn press_at(
     problem: &SurfaceProblem,
     approach: f64,
@@ -479,6 +486,7 @@ fn press_at(
         Coupling::Implicit => ROUNDS,
         Coupling::Staggered => STAGGERED_ROUNDS,
     };
+    let mut last_change = f64::INFINITY;
     for round in 0..rounds {
         let mut change = 0.0;
         for (window, place) in fields.used() {
@@ -492,6 +500,12 @@ fn press_at(
         if change <= tolerance && (round > 0 || !solvers.apart.is_coupled()) {
             break;
         }
+        let [least, ratio] = UNSETTLED;
+        let unsettled = round >= SETTLING_ROUNDS && change > least.max(ratio * last_change);
+        if unsettled && problem.conditions.room < LARGEST_ROOM {
+            return Err(Error::ContactOutgrowsWindow);
+        }
+        last_change = change;
     }
     let forces = fields.used().map(|(window, place)| {
         let [normal, _] = problem.vertical_forces(fields, solvers, window, &place);
