@@ -269,7 +269,7 @@ impl Model {
             };
             let solved = match self.advance(workspace, state, &at_end, length, coupling) {
                 Ok(solved) => solved,
-                // What the window cannot hold no step can, nor what starts from a surface that is worn away.
+                // What the window cannot hold no step can; a surface that a step wears away is worn away by shorter ones as well.
                 Err(
                     error @ (Error::ContactLeavesWindow { .. }
                     | Error::WheelOffRail { .. }

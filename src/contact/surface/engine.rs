@@ -153,7 +153,11 @@ impl Engine for SurfaceOperators {
         now: &mut SurfaceFields,
         solvers: &mut SurfaceSolvers,
     ) -> Result<()> {
-        solvers.worn.set(problem.operators, &now.worn.depth)?;
+        if solvers.worn_after.has(&now.worn.depth) {
+            std::mem::swap(&mut solvers.worn, &mut solvers.worn_after);
+        } else {
+            solvers.worn.set(problem.operators, &now.worn.depth)?;
+        }
         now.worn.begin();
         placement::place(problem, before, None, now, solvers)?;
         begin_windows(problem, before, now, solvers)?;
@@ -326,7 +330,8 @@ impl Engine for SurfaceOperators {
             )?;
         }
         solvers.profile_change = profile_wear::wear(problem, solvers.worn.of(problem.operators), now);
-        Ok(())
+        // A surface that folds is found by the step that folds it: the state before can still be stepped.
+        solvers.worn_after.set(problem.operators, &now.worn.depth)
     }
 
     fn is_cut_off(problem: &SurfaceProblem, now: &SurfaceFields, solvers: &SurfaceSolvers) -> bool {

@@ -22,6 +22,8 @@ pub struct SurfaceSolvers {
     pub windows: Vec<WindowSolvers>,
     /// Bodies as they are at the beginning of the step.
     pub worn: WornBodies,
+    /// Wheel and rail as the step leaves them, with which the next one begins.
+    pub worn_after: WornBodies,
     /// Largest depth that the step has worn off a profile, `m`.
     pub profile_change: f64,
     /// Search of contacts.
@@ -75,6 +77,7 @@ impl SurfaceSolvers {
         SurfaceSolvers {
             windows: (0..WINDOWS).map(|_| WindowSolvers::new(operators, settings)).collect(),
             worn: WornBodies::new(operators),
+            worn_after: WornBodies::new(operators),
             profile_change: 0.0,
             search: Search::new(&operators.bodies),
             transfer: Transfer::new(operators),

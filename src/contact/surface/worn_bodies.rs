@@ -82,6 +82,11 @@ impl WornBodies {
         self.bodies.as_ref().unwrap_or(&operators.bodies)
     }
 
+    /// Whether the bodies are worn by these depths.
+    pub fn has(&self, depths: &[Vec<f64>; 2]) -> bool {
+        self.depths == *depths
+    }
+
     /// Wears the bodies by the given depths.
     ///
     /// # Errors
