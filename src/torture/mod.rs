@@ -309,7 +309,9 @@ fn is_worn_too_fast(model: &Model, before: &State, step: &DriveStep, error: &Err
         wear_acceleration: 1.0,
         ..model.parameters().clone()
     };
-    let Ok(model) = Model::new(true_to_time) else { return false };
+    let Ok(model) = Model::new(true_to_time) else {
+        return false;
+    };
     take(&model, &mut model.workspace(), &mut before.clone(), step).is_ok()
 }
 
