@@ -83,11 +83,6 @@ impl<const D: usize> CubicSpline<D> {
         })
     }
 
-    /// Knots, ascending.
-    pub fn knots(&self) -> &[f64] {
-        &self.knots
-    }
-
     /// Values, first and second derivatives; beyond the ends by the cubics of the first and last interval.
     pub fn at(&self, x: f64) -> Jet<D> {
         let (cell, share) = interpolation::between(&self.knots, x);

@@ -6,6 +6,15 @@ use crate::geometry::hertz::{self, HertzEllipse};
 
 /// Curvature of the crown of common rails, of 300 mm radius, `1/m`.
 const CROWN_CURVATURE: f64 = 1.0 / 0.3;
+/// Radius of a wheel of 920 mm, `m`, in the row of those by which windows of profiles are measured, and the ratio of each to the one before.
+const RADII: (f64, f64) = (0.46, 1.05);
+
+/// Radius of the row that is nearest to a radius, `m`.
+fn radius_of_row(radius: f64) -> f64 {
+    let (first, ratio) = RADII;
+    let number = ((radius / first).ln() / ratio.ln()).round();
+    first * ratio.powi(number as i32)
+}
 
 /// Poisson's ratio ν = λ/(2(λ + γ)).
 fn poisson_ratio(lambda: f64, shear: f64) -> f64 {
@@ -73,15 +82,17 @@ impl Parameters {
     }
 
     /// Curvatures A and B of the gap A x² + B y² along and across the rail, `1/m`: 1/(2 r₀), half the sum across. Profiles have
-    /// other ones at every place; these measure their contacts, as a cone's on a rail's crown.
+    /// other ones at every place; these measure their contacts, as a cone's on a rail's crown, with a radius out of a row: a wheel that has become smaller
+    /// by wear has windows of the same cells.
     pub fn gap_curvatures(&self) -> (f64, f64) {
-        let across = match self.contact_model {
-            ContactModel::Line | ContactModel::Patch => {
-                self.rail_transverse_curvature + self.wheel_transverse_curvature
-            }
-            ContactModel::Profiles => CROWN_CURVATURE,
+        let (radius, across) = match self.contact_model {
+            ContactModel::Line | ContactModel::Patch => (
+                self.wheel_radius,
+                self.rail_transverse_curvature + self.wheel_transverse_curvature,
+            ),
+            ContactModel::Profiles => (radius_of_row(self.wheel_radius), CROWN_CURVATURE),
         };
-        (0.5 / self.wheel_radius, 0.5 * across)
+        (0.5 / radius, 0.5 * across)
     }
 
     /// Contact ellipse under a `load` `N`, of the transverse curvatures.

@@ -183,7 +183,7 @@ fn folder(name: &str) -> PathBuf {
     folder
 }
 
-/// A worn wheel as a file makes the forces of the component that has worn it; written once more, it is the same.
+/// A worn wheel as a file of any format makes the forces of the component that has worn it; read and written once more, it is the same.
 #[test]
 fn a_worn_wheel_in_a_file_makes_the_same_forces() {
     let parameters = Parameters {
@@ -192,8 +192,7 @@ fn a_worn_wheel_in_a_file_makes_the_same_forces() {
         wear_acceleration: 2e3,
         ..bodies()
     };
-    // Points in a file lie 0.05 mm apart, and strips of half a millimetre on the tread leave corners of the slope between them.
-    for (name, lateral, tolerance) in [("tread", 1e-3, 5e-6), ("flange", 6.6e-3, 1e-6)] {
+    for (name, lateral) in [("tread", 1e-3), ("flange", 6.6e-3)] {
         let inputs = sliding(lateral, 0.01);
         let run = worn(&parameters, &inputs, 30);
         let depth = largest(&run.profile_wear().unwrap().wheel);
@@ -217,10 +216,6 @@ fn a_worn_wheel_in_a_file_makes_the_same_forces() {
         going_on.state = run.state.clone();
         let expected = *going_on.hold(&inputs, 0.1, 6).unwrap();
         let folder = folder(&format!("worn-{name}"));
-        let [once, twice] = ["once.prw", "twice.prw"].map(|file| folder.join(file));
-        wheel.write(&once).unwrap();
-        let options = wheelrail::profile_files::ReadOptions::default();
-        Profile::read(&once, &options).unwrap().write(&twice).unwrap();
         let of_file = |path: &PathBuf| {
             let parameters = Parameters {
                 wheel_profile: path.to_str().unwrap().to_owned(),
@@ -228,23 +223,34 @@ fn a_worn_wheel_in_a_file_makes_the_same_forces() {
                 wheel_profile_wear: ProfileWear::Off,
                 ..parameters.clone()
             };
-            *Simulation::new(&parameters, &inputs)
-                .unwrap()
-                .hold(&inputs, 0.1, 6)
-                .unwrap()
+            let mut run = Simulation::new(&parameters, &inputs).unwrap();
+            *run.hold(&inputs, 0.1, 6).unwrap()
         };
-        let (first, second) = (of_file(&once), of_file(&twice));
-        fs::remove_dir_all(&folder).unwrap();
-        for get in [
-            |o: &Outputs| o.force_x,
-            |o: &Outputs| o.force_y,
-            |o: &Outputs| o.moment_z,
-        ] {
-            let [own, file, again] = [&expected, &first, &second].map(get);
-            let bound = 0.3 * inputs.normal_load;
-            assert!((file - own).abs() < tolerance * bound, "{name}: {file} {own}");
-            assert!((again - file).abs() < 3.0 * tolerance * bound, "{name}: {again} {file}");
+        let check = |file: &str, expected: &Outputs, tolerance: f64| {
+            let found = of_file(&folder.join(file));
+            for get in [
+                |o: &Outputs| o.force_x,
+                |o: &Outputs| o.force_y,
+                |o: &Outputs| o.moment_z,
+            ] {
+                let [own, other] = [expected, &found].map(get);
+                let bound = 0.3 * inputs.normal_load;
+                assert!((other - own).abs() < tolerance * bound, "{file}: {other} {own}");
+            }
+            found
+        };
+        // Points lie at the knots of the depth: to what a spline through points makes of a curvature that jumps, in the root of the flange.
+        let tolerance = if name == "tread" { 1e-7 } else { 1e-6 };
+        for file in ["worn.prw", "worn.whl", "worn.mpt", "worn.whe", "worn.csv"] {
+            wheel.write(&folder.join(file)).unwrap();
+            check(file, &expected, tolerance);
         }
+        let once = check("worn.prw", &expected, tolerance);
+        let options = wheelrail::profile_files::ReadOptions::default();
+        let again = Profile::read(&folder.join("worn.prw"), &options).unwrap();
+        again.write(&folder.join("again.prw")).unwrap();
+        check("again.prw", &once, 1e-7);
+        fs::remove_dir_all(&folder).unwrap();
     }
 }
 
@@ -309,7 +315,8 @@ fn a_profile_that_is_worn_away_is_refused_with_its_place() {
     };
     let inputs = sliding(6.6e-3, 0.01);
     let mut run = Simulation::new(&parameters, &inputs).unwrap();
-    run.step(&inputs, 1e-6).unwrap();
+    // The first contact slides into its place: a tenth of a millimetre in any step as short.
+    run.step(&inputs, 1e-8).unwrap();
     let change = run.state.convergence.profile_change;
     // That of a cell's mean, which the spline smooths.
     let depth = largest(&run.profile_wear().unwrap().wheel);

@@ -111,9 +111,9 @@ impl SurfaceOperators {
                 (arc, rail.at(arc))
             })
             .collect();
-        let worn_height = WornHeight::new(&profiles[WHEEL]).map_err(Error::Profile)?;
-        let grids =
-            [worn_height.range(), rail.range()].map(|range| DepthGrid::new(range, parameters.profile_wear_points));
+        let cells = parameters.profile_wear_points;
+        let worn_height = WornHeight::new(&profiles[WHEEL], cells).map_err(Error::Profile)?;
+        let grids = [worn_height.grid(), DepthGrid::new(rail.range(), cells)];
         let radius = |cell: usize| {
             let [_, z] = profiles[WHEEL].at(grids[WHEEL].middle(cell)).place;
             wheel.radius - z

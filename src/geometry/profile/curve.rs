@@ -121,9 +121,21 @@ impl Curve {
         self.cells.knots()
     }
 
+    /// Number of the cell that holds an arc length.
+    pub fn cell_of(&self, arc: f64) -> usize {
+        self.cells.cell_of(arc)
+    }
+
     /// Curve in a cell at an arc length, at the cell's ends as it is within the cell.
     pub fn within(&self, cell: usize, arc: f64) -> CurvePoint {
         point(self.cells.within(cell, arc))
+    }
+
+    /// Slope of the curvature over the arc length, as it is within a cell, `1/m²`.
+    pub fn curvature_slope(&self, cell: usize, arc: f64) -> f64 {
+        let step = 1e-3 * (self.arcs()[cell + 1] - self.arcs()[cell]);
+        let [before, after] = [-step, step].map(|step| self.within(cell, arc + step).curvature);
+        (after - before) / (2.0 * step)
     }
 
     /// Curve turned about the origin by an angle, from y towards z, and then shifted.

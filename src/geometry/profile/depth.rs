@@ -32,6 +32,11 @@ impl DepthGrid {
         self.first + (cell as f64 + 0.5) * self.spacing
     }
 
+    /// Knots of the spline: arc lengths between which it is one polynomial each, `m`.
+    pub fn knots(&self) -> Vec<f64> {
+        (0..self.cells).map(|cell| self.middle(cell)).collect()
+    }
+
     /// Depth d, `m`, with its first and second derivative at an arc length, `m`; beyond the cells there is none.
     pub fn at(&self, means: &[f64], arc: f64) -> [f64; 3] {
         let place = (arc - self.first) / self.spacing - 0.5;

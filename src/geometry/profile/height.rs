@@ -1,8 +1,10 @@
 //! Height of a profile as a function of the lateral position.
 
 use super::CurvePoint;
-use super::curve::Curve;
+use super::curve::{CELL, Curve};
+use super::divided::Part;
 use crate::geometry::quintics::{Quintics, Span};
+use std::ops::Range;
 
 /// Slope up to which the height counts as a function of the lateral position: 84.3° from the horizontal. Flanges are up to 75° steep
 /// where they carry.
@@ -12,6 +14,8 @@ const STEEPEST: f64 = 10.0;
 /// with the power of the slope. So the height is right to 1e-10 m up to 80°.
 const STEEP_PARTS: f64 = 0.5;
 const MOST_PARTS: f64 = 12.0;
+/// Length of a cell, `m`, below which it has fewer parts, in proportion.
+const SHORT: f64 = 0.5 * CELL;
 
 /// Height z(y) of a profile over the lateral position, in cells that are found in constant time; nothing is allocated to evaluate it.
 ///
@@ -40,42 +44,66 @@ fn span([from, to]: [CurvePoint; 2]) -> Span<1> {
     }
 }
 
-/// Part of a curve's cell: the cell's number and the arc lengths at which the part begins and ends.
-pub(super) type Part = (usize, [f64; 2]);
-
-/// Cuts that part of a curve which holds an arc length, and where y rises with the arc length, no steeper than 84°, into parts for a height
-/// function, none longer than `longest` `m`. `None` where nothing holds the arc length.
-pub(super) fn parts(curve: &Curve, within: f64, longest: f64) -> Option<Vec<Part>> {
+/// Cells of that part of a curve which holds an arc length, and where y rises with the arc length, no steeper than 84°. `None` where nothing holds the arc
+/// length.
+pub(super) fn flat_cells(curve: &Curve, within: f64) -> Option<Range<usize>> {
     let flat = |point: &CurvePoint| point.tangent[0] > 0.0 && slope(point).abs() <= STEEPEST;
-    let mut found: Vec<Part> = Vec::new();
+    let mut first = 0;
     let mut holds = false;
     for (cell, arcs) in curve.arcs().windows(2).enumerate() {
-        let ends = [arcs[0], arcs[1]].map(|arc| curve.within(cell, arc));
-        if ends.iter().all(flat) {
+        if arcs.iter().all(|&arc| flat(&curve.within(cell, arc))) {
             holds |= arcs[0] <= within && within <= arcs[1];
-            let steepest = ends.iter().map(|point| slope(point).abs()).fold(0.0, f64::max);
-            let parts = (steepest.powi(2) * STEEP_PARTS).ceil().clamp(1.0, MOST_PARTS);
-            let parts = parts.max(((arcs[1] - arcs[0]) / longest).ceil());
-            let place = |part: f64| arcs[0] + (arcs[1] - arcs[0]) * part / parts;
-            found.extend((0..parts as usize).map(|part| (cell, [part, part + 1].map(|part| place(part as f64)))));
         } else if holds {
-            break;
+            return Some(first..cell);
         } else {
-            found.clear();
+            first = cell + 1;
         }
     }
-    holds.then_some(found)
+    holds.then(|| first..curve.arcs().len() - 1)
+}
+
+/// Divides parts of a curve for a height function where it is steep.
+pub(super) fn steep_parts(curve: &Curve, parts: impl Iterator<Item = Part>) -> Vec<Part> {
+    let mut found: Vec<Part> = Vec::new();
+    for Part { cells, ends } in parts {
+        let length = ends[1] - ends[0];
+        let steepest = (0..2)
+            .map(|end| slope(&curve.within(cells[end], ends[end])).abs())
+            .fold(0.0, f64::max);
+        let share = if length < SHORT { length / CELL } else { 1.0 };
+        let number = share * (steepest.powi(2) * STEEP_PARTS).min(MOST_PARTS);
+        let number = number.ceil().max(1.0) as usize;
+        let mut begin = (cells[0], ends[0]);
+        for part in 1..=number {
+            let end = if part == number {
+                (cells[1], ends[1])
+            } else {
+                let arc = ends[0] + length * part as f64 / number as f64;
+                (curve.cell_of(arc).clamp(cells[0], cells[1]), arc)
+            };
+            found.push(Part {
+                cells: [begin.0, end.0],
+                ends: [begin.1, end.1],
+            });
+            begin = end;
+        }
+    }
+    found
 }
 
 impl HeightFunction {
     /// Function of that part of a curve which holds an arc length and where y rises with the arc length, no steeper than 84°.
     pub(super) fn of_curve(curve: &Curve, within: f64) -> Option<HeightFunction> {
-        HeightFunction::of_parts(curve, &parts(curve, within, f64::INFINITY)?)
+        let cells = flat_cells(curve, within)?.map(|cell| Part {
+            cells: [cell; 2],
+            ends: [curve.arcs()[cell], curve.arcs()[cell + 1]],
+        });
+        HeightFunction::of_parts(curve, &steep_parts(curve, cells))
     }
 
     /// Function of parts of a curve that follow each other.
     pub(super) fn of_parts(curve: &Curve, parts: &[Part]) -> Option<HeightFunction> {
-        let of_part = |(cell, arcs): &Part| span(arcs.map(|arc| curve.within(*cell, arc)));
+        let of_part = |part: &Part| span([0, 1].map(|end| curve.within(part.cells[end], part.ends[end])));
         let spans: Vec<_> = parts.iter().map(of_part).collect();
         Some(HeightFunction {
             cells: Quintics::new(&spans)?,

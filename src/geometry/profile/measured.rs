@@ -26,8 +26,11 @@ const ALONE: f64 = 2e-3;
 const GAP: (f64, f64) = (15e-3, 10.0);
 /// Weight of a kink against that of other points: both sides of it meet there.
 const KINK_WEIGHT: f64 = 1e6;
-/// Shortest cell of the curve, `m`, however close the points are: 10,000 of them for the longest profile.
-const SHORTEST_CELL: f64 = 0.05e-3;
+/// Shortest cell of the curve, `m`: where half of the points are this far from each other or more, and, however close they are, 10,000 cells for the longest
+/// profile.
+const SHORTEST_CELL: [f64; 2] = [5e-6, 0.05e-3];
+/// Median of the distances of points, `m`, from which on all of them end cells.
+const WIDE: f64 = 0.04e-3;
 
 /// A point with its weight in the smoothing.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -142,12 +145,12 @@ pub fn curve(name: &str, points: &[Weighted], smoothing: f64) -> Result<Curve, P
             to[1]
         )));
     }
-    let cell = median.clamp(SHORTEST_CELL, CELL);
+    let shortest = SHORTEST_CELL[usize::from(median < WIDE)];
     let mut pieces = Vec::new();
     let ends = piece_ends(&points, &chords);
     for pair in ends.windows(2) {
         let inner = [pair[0] > 0, pair[1] + 1 < points.len()];
-        let piece = piece(&points[pair[0]..=pair[1]], inner, smoothing, cell);
+        let piece = piece(&points[pair[0]..=pair[1]], inner, smoothing, shortest);
         pieces.push(piece.ok_or_else(|| refused("its points make no spline".to_owned()))?);
     }
     // A kink below the bound is smooth only by rounding: the ends of pieces are kinks by construction.
@@ -184,8 +187,9 @@ fn point([[y, dy, ddy], [z, dz, ddz]]: Jet<2>) -> (CurvePoint, f64) {
     (point, speed)
 }
 
-/// Nodes of a smoothing spline through points, `cell` apart or a little less. `inner` says which of the two ends are kinks.
-fn piece(points: &[Weighted], inner: [bool; 2], smoothing: f64, cell: f64) -> Option<Piece> {
+/// Nodes of a smoothing spline through points: at its knots where these are `shortest` or more apart, so that no cell has a jump of the third derivative in it,
+/// and between them where they are far apart. `inner` says which of the two ends are kinks.
+fn piece(points: &[Weighted], inner: [bool; 2], smoothing: f64, shortest: f64) -> Option<Piece> {
     let mut knots = vec![0.0];
     for pair in points.windows(2) {
         knots.push(knots[knots.len() - 1] + distance(&pair[0], &pair[1]));
@@ -202,21 +206,25 @@ fn piece(points: &[Weighted], inner: [bool; 2], smoothing: f64, cell: f64) -> Op
     let spline = CubicSpline::new(&knots, &places, &weights, penalty(smoothing))?;
 
     let end = knots[last];
-    let count = (end / cell).ceil().max(1.0);
     let mut nodes = vec![(0.0, point(spline.at(0.0)).0)];
-    let mut next = spline.knots().partition_point(|&knot| knot <= 0.0);
-    let mut from = 0.0;
-    for node in 1..=count as usize {
-        let to = end * node as f64 / count;
-        let mut length = 0.0;
-        while from < to {
-            // The cubics change at the knots: the rule is for one at a time.
-            let stop = knots.get(next).map_or(to, |&knot| knot.min(to));
-            length += Curve::arc_length(from, stop, |t| point(spline.at(t)).1);
-            from = stop;
-            next += usize::from(knots.get(next).is_some_and(|&knot| knot <= stop));
+    let (mut node, mut from, mut length) = (0.0, 0.0, 0.0);
+    for &knot in &knots[1..] {
+        let far = knot == end || (knot - node >= shortest && end - knot >= shortest);
+        let parts = if far { ((knot - from) / CELL).ceil() } else { 1.0 };
+        let begin = from;
+        for part in 1..=parts as usize {
+            let to = if part as f64 == parts {
+                knot
+            } else {
+                begin + (knot - begin) * part as f64 / parts
+            };
+            length += Curve::arc_length(from, to, |t| point(spline.at(t)).1);
+            from = to;
+            if far {
+                nodes.push((length, point(spline.at(to)).0));
+                (node, length) = (to, 0.0);
+            }
         }
-        nodes.push((length, point(spline.at(to)).0));
     }
     let regular = |(_, point): &(f64, CurvePoint)| point.tangent[0].is_finite() && point.curvature.is_finite();
     nodes.iter().all(regular).then_some(Piece { nodes })

@@ -13,6 +13,7 @@
 pub mod built_in;
 mod curve;
 mod depth;
+mod divided;
 pub mod files;
 mod height;
 mod measured;

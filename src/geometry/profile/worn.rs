@@ -5,20 +5,17 @@
 //!
 //! P′ = (1 − κ d) t + d′ n, P″ = −(κ′ d + 2 κ d′) t + ((1 − κ d) κ + d″) n
 //!
-//! Each cell keeps its curvature at either end, so that what jumps there still jumps at one place. Where the curvature jumps by Δκ and the depth has a slope, the
-//! worn curve has a kink of d d′ Δκ; the cells on either side of it take the mean direction. The area between the two curves is
-//! ∫ (d − κ d²/2) ds.
+//! Each part between two knots of the depth (`divided`) keeps its curvature at either end, so that what jumps there still jumps at one place. Where the
+//! curvature jumps by Δκ and the depth has a slope, the worn curve has a kink of d d′ Δκ; the cells on either side of it take the mean direction. The area
+//! between the two curves is ∫ (d − κ d²/2) ds.
 
 use super::curve::{Curve, Piece};
+use super::divided::{Joint, Part, divided, joint};
 use super::{Body, CurvePoint, DepthGrid, Profile};
 use crate::error::ProfileError;
 
-/// Shortest part, `m`, into which a row of depths divides a cell: however often a profile wears, it has no more than 20 nodes a mm.
-const SHORTEST_PART: f64 = 0.05e-3;
 /// Part of its length that a place must keep where the profile is convex: beyond its radius of curvature an outline crosses itself.
 const LEAST_STRETCH: f64 = 0.02;
-/// Turn, rad, below which the old profile has no kink between two cells.
-const SMOOTH: f64 = 1e-4;
 /// Distance, `m`, that the two sides of a kink may move apart by wear at it; the curve closes it.
 const WIDEST_GAP: f64 = 1e-6;
 
@@ -47,16 +44,12 @@ impl Depths<'_> {
         }
     }
 
-    /// Arc lengths beyond one, ascending, at which a cell is divided.
-    fn beyond(&self, from: f64) -> impl Iterator<Item = f64> + '_ {
-        let (rows, places): (&[[f64; 2]], &[f64]) = match self {
-            Depths::Rows(rows) => (rows.rows, &[]),
-            Depths::Cells(_, _, places) => (&[], places),
-        };
-        let rows = rows[rows.partition_point(|row| row[0] <= from)..]
-            .iter()
-            .map(|row| row[0]);
-        rows.chain(places[places.partition_point(|&place| place <= from)..].iter().copied())
+    /// Arc lengths, ascending, at which the curve is divided.
+    fn knots(&self) -> Vec<f64> {
+        match self {
+            Depths::Rows(rows) => rows.rows.iter().map(|row| row[0]).collect(),
+            Depths::Cells(_, _, places) => places.clone(),
+        }
     }
 }
 
@@ -120,13 +113,6 @@ pub(super) struct Worn {
     pub(super) point: CurvePoint,
     pub(super) stretch: f64,
     speed: f64,
-}
-
-/// Slope of a curve's curvature over the arc length, as it is within a cell, `1/m²`.
-pub(super) fn curvature_slope(curve: &Curve, cell: usize, arc: f64) -> f64 {
-    let step = 1e-3 * (curve.arcs()[cell + 1] - curve.arcs()[cell]);
-    let [before, after] = [-step, step].map(|step| curve.within(cell, arc + step).curvature);
-    (after - before) / (2.0 * step)
 }
 
 /// Wears a place of a curve, whose curvature has a slope there; `side` is 1 where the material is to the left of the curve, −1 where it is to the right.
@@ -193,23 +179,21 @@ impl Profile {
     fn worn_at_depths(&self, depths: &Depths) -> Result<Profile, ProfileError> {
         let side = side(self.body);
         let mut pieces: Vec<Piece> = Vec::new();
-        for (cell, arcs) in self.curve.arcs().windows(2).enumerate() {
-            let is_smooth = cell > 0 && self.turn(cell).abs() < SMOOTH;
-            for (number, part) in parts(depths, [arcs[0], arcs[1]]).windows(2).enumerate() {
-                let mut piece = worn_piece(&self.curve, cell, [part[0], part[1]], depths, side)
-                    .map_err(|reason| self.no_wear(reason))?;
-                if let Some(before) = pieces.last_mut() {
-                    let gap = meet(before, &mut piece, number > 0 || is_smooth);
-                    if gap > WIDEST_GAP {
-                        return Err(self.no_wear(format!(
-                            "at the arc length {:.3} mm it would open the two sides of a kink by {:.3} mm",
-                            1e3 * part[0],
-                            1e3 * gap
-                        )));
-                    }
+        for part in divided(&self.curve, 0..self.curve.arcs().len() - 1, &depths.knots()) {
+            let mut piece = worn_piece(&self.curve, &part, depths, side).map_err(|reason| self.no_wear(reason))?;
+            if let Some(before) = pieces.last_mut() {
+                let [cell, _] = part.cells;
+                let begins = part.ends[0] == self.curve.arcs()[cell];
+                let gap = meet(before, &mut piece, !begins || joint(&self.curve, cell) != Joint::Kink);
+                if gap > WIDEST_GAP {
+                    return Err(self.no_wear(format!(
+                        "at the arc length {:.3} mm it would open the two sides of a kink by {:.3} mm",
+                        1e3 * part.ends[0],
+                        1e3 * gap
+                    )));
                 }
-                pieces.push(piece);
             }
+            pieces.push(piece);
         }
         let curve = Curve::of_pieces(pieces, 0.0);
         let curve = curve.ok_or_else(|| self.no_wear("nothing is left of a part of it".to_owned()))?;
@@ -228,13 +212,6 @@ impl Profile {
             name: self.name.clone(),
             reason,
         }
-    }
-
-    /// Change of direction, rad, between a cell and the one before it.
-    fn turn(&self, cell: usize) -> f64 {
-        let arc = self.curve.arcs()[cell];
-        let [before, after] = [cell - 1, cell].map(|cell| self.curve.within(cell, arc).tangent);
-        before[0] * after[1] - before[1] * after[0]
     }
 }
 
@@ -264,21 +241,24 @@ fn check(rows: &[[f64; 2]], length: f64) -> Result<(), String> {
     }
 }
 
-/// Wears a part of a cell; else the reason why nothing is left of it.
-fn worn_piece(curve: &Curve, cell: usize, ends: [f64; 2], depths: &Depths, side: f64) -> Result<Piece, String> {
-    let within = 0.5 * (ends[0] + ends[1]);
-    let place = |arc: f64| {
+/// Wears a part of a curve; else the reason why nothing is left of it.
+fn worn_piece(curve: &Curve, part: &Part, depths: &Depths, side: f64) -> Result<Piece, String> {
+    let within = 0.5 * (part.ends[0] + part.ends[1]);
+    let place = |cell: usize, arc: f64| {
         let here = curve.within(cell, arc);
-        worn(&here, curvature_slope(curve, cell, arc), depths.at(arc, within), side)
+        worn(&here, curve.curvature_slope(cell, arc), depths.at(arc, within), side)
     };
     let mut nodes = Vec::with_capacity(2);
-    let length = if depths.is_zero(ends[0], ends[1]) {
-        ends[1] - ends[0]
+    let length = if depths.is_zero(part.ends[0], part.ends[1]) {
+        part.ends[1] - part.ends[0]
     } else {
-        Curve::arc_length(ends[0], ends[1], |arc| place(arc).speed)
+        let stretches = part.stretches(curve);
+        stretches
+            .map(|(cell, [from, to])| Curve::arc_length(from, to, |arc| place(cell, arc).speed))
+            .sum()
     };
-    for arc in ends {
-        let worn = place(arc);
+    for (cell, arc) in part.cells.into_iter().zip(part.ends) {
+        let worn = place(cell, arc);
         if worn.stretch < LEAST_STRETCH {
             return Err(format!(
                 "{} mm are worn at the arc length {:.3} mm, where its radius is {:.3} mm: nothing is left of it",
@@ -307,22 +287,6 @@ fn meet(before: &mut Piece, after: &mut Piece, smooth: bool) -> f64 {
 
 /// End of the source of a worn profile.
 const WORN: &str = ", worn";
-
-/// Ends of the parts of a cell: the rows within it divide it where the parts are long enough. So a file of the profile has points as close everywhere, which
-/// its reader chooses the cells by.
-fn parts(depths: &Depths, [from, to]: [f64; 2]) -> Vec<f64> {
-    let mut parts = vec![from];
-    for arc in depths.beyond(from) {
-        if to - arc < SHORTEST_PART {
-            break;
-        }
-        if arc - parts[parts.len() - 1] >= SHORTEST_PART {
-            parts.push(arc);
-        }
-    }
-    parts.push(to);
-    parts
-}
 
 #[cfg(test)]
 mod tests;

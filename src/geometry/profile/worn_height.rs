@@ -1,22 +1,23 @@
 //! Height of a wheel's profile that wears: the function of [`HeightFunction`] with knots that move with the surface.
 //!
-//! Each knot belongs to an arc length of the new profile. It lies where the surface has receded to along the normal there, so that the function is
-//! exact at the knots whatever the depth, and of degree five between them. What has been computed from the new profile once is kept; to wear
-//! changes the function in place.
+//! Each knot belongs to an arc length of the new profile: a knot of the depth's spline, or a place where the new profile's curvature jumps (`divided`). It lies
+//! where the surface has receded to along the normal there, so that the function is exact at the knots whatever the depth, and of degree five between them,
+//! where nothing jumps. What has been computed from the new profile once is kept; to wear changes the function in place.
 
+use super::divided::{Part, divided};
 use super::height::{self, HeightFunction};
-use super::worn::{curvature_slope, side, worn};
-use super::{CurvePoint, Profile};
+use super::worn::{side, worn};
+use super::{CurvePoint, DepthGrid, Profile};
 use crate::error::ProfileError;
 
-/// Longest distance of two knots, `m`: that of the cells in which a contact collects the depth.
-const LONGEST: f64 = 0.1e-3;
 /// Distance of two knots, over that of the new profile, below which the surface has folded onto itself.
 const LEAST_STRETCH: f64 = 0.02;
 
 /// New profile of a wheel, at the knots of its height function.
 #[derive(Debug, Clone)]
 pub struct WornHeight {
+    /// Cells in which the depth is collected.
+    grid: DepthGrid,
     /// Knots: arc length and place.
     knots: Vec<Knot>,
     /// Ends of each polynomial, with direction and curvature as they are on its side.
@@ -41,27 +42,33 @@ struct End {
 }
 
 impl WornHeight {
-    /// Knots of a new profile.
+    /// Knots of a new profile, and so many cells over them in which a depth is collected.
     ///
     /// # Errors
     /// The profile is nowhere flat.
-    pub fn new(profile: &Profile) -> Result<WornHeight, ProfileError> {
+    pub fn new(profile: &Profile, cells: usize) -> Result<WornHeight, ProfileError> {
         let nowhere_flat = || ProfileError::NoCurve {
             name: profile.name.clone(),
             reason: "it is nowhere a function of the lateral position".to_owned(),
         };
         let curve = &profile.curve;
-        let parts = height::parts(curve, profile.middle, LONGEST).ok_or_else(nowhere_flat)?;
-        let of_parts = |(cell, arcs): &height::Part| {
-            arcs.map(|arc| End {
-                point: curve.within(*cell, arc),
-                curvature_slope: curvature_slope(curve, *cell, arc),
+        let flat = height::flat_cells(curve, profile.middle).ok_or_else(nowhere_flat)?;
+        let grid = DepthGrid::new([flat.start, flat.end].map(|joint| curve.arcs()[joint]), cells);
+        let parts = height::steep_parts(curve, divided(curve, flat, &grid.knots()).into_iter());
+        let of_part = |Part { cells, ends }: &Part| {
+            [0, 1].map(|end| End {
+                point: curve.within(cells[end], ends[end]),
+                curvature_slope: curve.curvature_slope(cells[end], ends[end]),
             })
         };
-        let ends: Vec<[End; 2]> = parts.iter().map(of_parts).collect();
+        let ends: Vec<[End; 2]> = parts.iter().map(of_part).collect();
         let knots = (0..=parts.len()).map(|knot| {
             let (before, after) = (knot.saturating_sub(1), knot.min(parts.len() - 1));
-            let arc = if knot == 0 { parts[0].1[0] } else { parts[before].1[1] };
+            let arc = if knot == 0 {
+                parts[0].ends[0]
+            } else {
+                parts[before].ends[1]
+            };
             let [left, right] = [
                 if knot == 0 { ends[0][0] } else { ends[before][1] },
                 ends[after][usize::from(knot == parts.len())],
@@ -74,6 +81,7 @@ impl WornHeight {
             }
         });
         Ok(WornHeight {
+            grid,
             knots: knots.collect(),
             new: HeightFunction::of_parts(curve, &parts).ok_or_else(nowhere_flat)?,
             ends,
@@ -85,9 +93,9 @@ impl WornHeight {
         self.new.clone()
     }
 
-    /// Arc lengths between which the height is a function, `m`.
-    pub fn range(&self) -> [f64; 2] {
-        [self.knots[0].arc, self.knots[self.knots.len() - 1].arc]
+    /// Cells in which a depth is collected, over the arc lengths between which the height is a function.
+    pub fn grid(&self) -> DepthGrid {
+        self.grid
     }
 
     /// Wears a function of this wheel between two arc lengths, `m`, where the depth, with two derivatives, is another one than the function
@@ -146,11 +154,16 @@ mod tests {
     use super::*;
     use crate::geometry::profile::{Body, DepthGrid};
 
+    /// Arc lengths of all cells.
+    fn everywhere(grid: &DepthGrid) -> [f64; 2] {
+        [grid.first, grid.first + grid.spacing * grid.cells as f64]
+    }
+
     /// Wheel and a depth of 60 µm over its flange and its tread.
     fn worn_wheel() -> (Profile, WornHeight, DepthGrid, Vec<f64>) {
         let new = Profile::built_in("S1002").unwrap();
-        let height = WornHeight::new(&new).unwrap();
-        let grid = DepthGrid::new(height.range(), 1500);
+        let height = WornHeight::new(&new, 1500).unwrap();
+        let grid = height.grid();
         let bump = |arc: f64, middle: f64, half: f64| {
             let t = ((arc - middle) / half).clamp(-1.0, 1.0);
             60e-6 * (1.0 - t * t).powi(3)
@@ -167,7 +180,7 @@ mod tests {
     fn without_depth_it_is_the_new_profile() {
         let (new, height, grid, _) = worn_wheel();
         let mut function = height.function();
-        height.wear(&mut function, height.range(), |_| [0.0; 3]).unwrap();
+        height.wear(&mut function, everywhere(&grid), |_| [0.0; 3]).unwrap();
         let own = new.height_function().unwrap();
         for place in 0..1000 {
             let y = -0.055 + 1e-4 * f64::from(place);
@@ -186,7 +199,7 @@ mod tests {
         let (new, height, grid, means) = worn_wheel();
         let mut function = height.function();
         height
-            .wear(&mut function, height.range(), |arc| grid.at(&means, arc))
+            .wear(&mut function, everywhere(&grid), |arc| grid.at(&means, arc))
             .unwrap();
         let worn = new.worn_by_cells(&grid, &means).unwrap();
         // Its origin is the worn running circle.
@@ -206,7 +219,7 @@ mod tests {
         let mut some = means.clone();
         some[flange.end..].fill(0.0);
         height
-            .wear(&mut twice, height.range(), |arc| grid.at(&some, arc))
+            .wear(&mut twice, everywhere(&grid), |arc| grid.at(&some, arc))
             .unwrap();
         height
             .wear(&mut twice, grid.reach(flange.end..grid.cells), |arc| {
@@ -223,7 +236,7 @@ mod tests {
         means[((arc - grid.first) / grid.spacing) as usize] += 1e-3;
         let mut function = height.function();
         let refused = height
-            .wear(&mut function, height.range(), |arc| grid.at(&means, arc))
+            .wear(&mut function, everywhere(&grid), |arc| grid.at(&means, arc))
             .unwrap_err();
         assert!((refused - arc).abs() < 1e-3, "{refused} {arc}");
         assert_eq!(new.body(), Body::Wheel);
