@@ -1,16 +1,17 @@
 //! The output sensitivities are the derivatives of a step, at random: of a line and of a patch, for each law of friction. A few cases a law, the
-//! same in every run; `DERIVATIVE_CASES` says how many, and `make derivatives` draws two thousand.
+//! same in every run; `DERIVATIVE_CASES` says how many or which ones, and `make derivatives` draws two thousand.
 
 use crate::derivatives::{Mismatch, Tally, compare, does_not_rest};
 use crate::setups::{Falling, Layer, line, patch, rolling, rolling_straight, settle};
 use proptest::prelude::*;
 use proptest::strategy::ValueTree;
 use proptest::test_runner::TestRunner;
+use std::ops::Range;
 use wheelrail::parameters::{ContactModel, FrictionLaw, Parameters, SlipSource, TABLE_POINTS, Wheel, WheelHeating};
 use wheelrail::signals::Inputs;
 use wheelrail::wheel_rail::Model;
 
-/// Cases of a law, unless `DERIVATIVE_CASES` says how many.
+/// Cases of a law, unless `DERIVATIVE_CASES` says which.
 const CASES: usize = 6;
 
 /// Share of all derivatives that are compared at least: the rest is at corners.
@@ -233,14 +234,28 @@ pub fn check_where_it_rests(parameters: Parameters, inputs: Inputs, step: f64) -
     (tally.steps > 0).then_some(tally.compared)
 }
 
+/// Numbers of the cases that are compared: of as many as `DERIVATIVE_CASES` says, or of those from one to before another (`1289..1290`).
+fn numbers() -> Range<usize> {
+    let Ok(cases) = std::env::var("DERIVATIVE_CASES") else {
+        return 0..CASES;
+    };
+    let (first, end) = cases.split_once("..").unwrap_or(("0", &cases));
+    let number = |text: &str| text.parse().expect("DERIVATIVE_CASES");
+    number(first)..number(end)
+}
+
 /// Draws cases, compares their derivatives, prints the counts, and fails with what does not agree.
 fn draw(contact_model: ContactModel, law: Law) {
-    let count = std::env::var("DERIVATIVE_CASES").map_or(CASES, |count| count.parse().expect("DERIVATIVE_CASES"));
+    let numbers = numbers();
+    let count = numbers.len();
     let mut runner = TestRunner::new(ProptestConfig::default());
     let strategy = cases(contact_model, law);
     let (mut tally, mut failures) = (Tally::default(), Vec::new());
-    for number in 0..count {
+    for number in 0..numbers.end {
         let case = strategy.new_tree(&mut runner).expect("a case").current();
+        if !numbers.contains(&number) {
+            continue;
+        }
         let mut mismatches = Vec::new();
         tally.add(compare_where_it_rests(&case, &mut mismatches));
         if !mismatches.is_empty() {
