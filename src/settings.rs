@@ -233,6 +233,8 @@ pub struct SensitivitySettings {
     /// displacement, wear and flux. It is larger, so that a change of the rail that hardly moves the tractions is not
     /// lost in round-off.
     pub linear_output_step: f64,
+    /// Factor on the step for outputs that it loses in round-off, because the fields that they hang on move less than others.
+    pub wider_output_step: f64,
     /// Least step, relative to the nominal value of the input. Like bodies at creepage 0 have fields that are nothing but
     /// round-off, and a share of those is lost in the outputs that the others make; no contact changes within this step.
     pub least_output_step: f64,
@@ -370,6 +372,7 @@ impl Default for SensitivitySettings {
             largest_residual: 1e-6,
             output_step: 1e-7,
             linear_output_step: 1e-5,
+            wider_output_step: 100.0,
             least_output_step: 1e-9,
         }
     }

@@ -81,8 +81,41 @@ struct Difference {
     austenite: bool,
 }
 
-/// Derivatives of the outputs along a change of inputs and fields, by a central difference: the outputs are short expressions of the
-/// fields, and a step is known that suits all of them.
+/// Slope of an output by a central difference.
+#[derive(Clone, Copy)]
+struct Slope {
+    value: f64,
+    /// Half of what the slopes to both sides are apart: a bound of what a corner between the ends does to the value, and about what
+    /// round-off does.
+    bend: f64,
+    /// Rounding of the output itself over the step.
+    rounding: f64,
+}
+
+impl Slope {
+    /// Slope by the values here and a step ahead and behind.
+    fn new(here: f64, [ahead, behind]: [f64; 2], step: f64) -> Slope {
+        Slope {
+            value: (ahead - behind) / (2.0 * step),
+            bend: ((ahead - here) - (here - behind)).abs() / (2.0 * step),
+            rounding: f64::EPSILON * here.abs() / step,
+        }
+    }
+
+    /// Value of the slope over the wider step where that is the straighter one, else of that over the narrower: curvature and corners bend the
+    /// wider one more, round-off the narrower.
+    fn better(narrow: Slope, wide: Slope) -> f64 {
+        if wide.bend <= narrow.bend + narrow.rounding {
+            wide.value
+        } else {
+            narrow.value
+        }
+    }
+}
+
+/// Derivatives of the outputs along a change of inputs and fields, by central differences: the outputs are short expressions of the
+/// fields, and a step is known that suits all of them but for round-off. An output that hangs on fields which hardly move while others do is
+/// nothing but round-off over that step, and is taken over a wider one ([`Slope::better`]).
 fn output_tangent<E: Engine>(
     problem: &Problem<E>,
     fields: &E::Fields,
@@ -93,9 +126,8 @@ fn output_tangent<E: Engine>(
     moved: &mut E::Fields,
 ) -> Outputs {
     let conditions = &problem.conditions;
-    let step = fields
-        .output_step(change, &problem.settings.sensitivity)
-        .max(difference.least_step);
+    let settings = &problem.settings.sensitivity;
+    let step = fields.output_step(change, settings).max(difference.least_step);
     moved.copy_from(fields);
     let mut outputs = |step: f64| {
         moved.move_along(fields, change, step, difference.austenite);
@@ -106,13 +138,18 @@ fn output_tangent<E: Engine>(
         let totals = integrals.totals_after(parameters, conditions, &Totals::default());
         integrals.outputs(parameters, &conditions.inputs, &totals)
     };
-    let (ahead, behind) = (outputs(step), outputs(-step));
+    let here = outputs(0.0);
+    let mut sides = |step: f64| (step, [outputs(step), outputs(-step)]);
+    let (narrow, wide) = (sides(step), sides(settings.wider_output_step * step));
     let mut derivative = Outputs::default();
     // What is counted is constant but for jumps, and what is kept does not see the step.
     let moves = |signal: &&OutputSignal| !matches!(signal.kind, OutputKind::Counted | OutputKind::Kept);
     for signal in OUTPUTS.iter().filter(moves) {
-        let difference = (signal.get)(&ahead) - (signal.get)(&behind);
-        (signal.set)(&mut derivative, difference / (2.0 * step));
+        let slope = |(step, sides): &(f64, [Outputs; 2])| {
+            let [ahead, behind] = sides.each_ref().map(signal.get);
+            Slope::new((signal.get)(&here), [ahead, behind], *step)
+        };
+        (signal.set)(&mut derivative, Slope::better(slope(&narrow), slope(&wide)));
     }
     if !difference.austenite {
         derivative.austenite_depth = 0.0;

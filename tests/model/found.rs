@@ -174,3 +174,35 @@ fn patches_that_creep_backwards() {
         check(parameters, inputs(moved), 1e-3);
     }
 }
+
+/// A wheel that creeps and slides: its slip changes with friction by a hundred times its size, by the change of the displacement in a short step, and
+/// its pressure by next to nothing.
+#[test]
+fn a_creeping_line_whose_pressure_hardly_moves() {
+    let mut table = Parameters {
+        friction_law: FrictionLaw::Table,
+        friction_table_points: 3,
+        wheel_shear_modulus: 8.2e10,
+        wheel_heating: WheelHeating::Off,
+        ..line(SlipSource::Creepage, Wheel::Elastic)
+    };
+    table.friction_table_temperature[..3].copy_from_slice(&[383.82041624920856, 523.8012449076157, 686.6478628140491]);
+    table.friction_table_coefficient[..3].copy_from_slice(&[
+        0.5735993664360852,
+        0.5762115659339716,
+        0.25051833012110486,
+    ]);
+    check(
+        table,
+        inputs(Inputs {
+            wheel_speed: -0.09984146058334009,
+            normal_load: 80943.74704979688,
+            creepage: -0.15308933796424506,
+            vehicle_speed: -0.054228945185244924,
+            friction_scale: 0.7735579651606018,
+            incoming_temperature: 328.09587504696515,
+            ..Inputs::default()
+        }),
+        1e-3,
+    );
+}
