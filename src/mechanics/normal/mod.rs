@@ -6,6 +6,7 @@
 //!
 //! Two methods solve it, which must agree to 1e-8: [`active_set`], the default, and [`pschenichnyj`], the paper's.
 
+pub mod active_inverse;
 pub mod active_set;
 pub mod normal_problem;
 pub mod pschenichnyj;
