@@ -1,5 +1,6 @@
 //! The stepped model: inputs in, state advanced, outputs out. It knows nothing of FMI.
 
+mod division;
 mod jumps;
 
 #[cfg(feature = "verification")]
@@ -16,6 +17,7 @@ use crate::geometry::profile::Profile;
 use crate::parameters::Parameters;
 use crate::settings::Settings;
 use crate::signals::{Inputs, OUTPUTS, Outputs, Totals};
+use division::{Division, SubStep};
 use serde::{Deserialize, Serialize};
 
 pub use crate::contact::problem::Convergence;
@@ -235,7 +237,6 @@ impl Model {
         };
         workspace.contact.renew_budget();
         let start = state.time;
-        let mut committed = 0.0;
         let interrupted = |committed, error| Interrupted { committed, error };
         inputs
             .check(&self.parameters)
@@ -244,96 +245,45 @@ impl Model {
 
         let jump = self.change(&state.inputs, inputs);
         let ramp = self.change(inputs, &self.inputs_at(inputs, rates, duration));
-        let mut substep = duration / (ramp / settings.jump).ceil().clamp(1.0, settings.ramp_substeps);
-        let planned = substep;
-        let mut largest_substep = planned;
-        if jump > settings.jump {
-            substep = substep.min(settings.first_substep * self.passage_time(inputs));
-        }
+        let planned = duration / (ramp / settings.jump).ceil().clamp(1.0, settings.ramp_substeps);
+        let first = if jump > settings.jump {
+            settings.first_substep * self.passage_time(inputs)
+        } else {
+            f64::INFINITY
+        };
+        let mut division = Division::new(settings, duration, planned, first);
         let mut convergence = Convergence::default();
-        let (mut retries, mut staggered_retries, mut at_limit) = (0, 0, 0);
-        let mut failure: Option<Error> = None;
-        while committed < duration {
-            // The last sub-step takes the rest, so that no sliver is left over by rounding.
-            let remaining = duration - committed;
-            let length = if remaining < 1.5 * substep { remaining } else { substep };
-            let end = if length == remaining {
-                duration
-            } else {
-                committed + length
-            };
-            let at_end = self.inputs_at(inputs, rates, end);
-            let coupling = match failure {
-                None => Coupling::Implicit,
-                Some(_) => Coupling::Staggered,
-            };
-            let solved = match self.advance(workspace, state, &at_end, length, coupling) {
+        while let Some(part) = division.next() {
+            let at_end = self.inputs_at(inputs, rates, part.end);
+            let solved = match self.advance(workspace, state, &at_end, part) {
                 Ok(solved) => solved,
-                // What the window cannot hold no step can; a surface that a step wears away is worn away by shorter ones as well.
-                Err(
-                    error @ (Error::ContactLeavesWindow { .. }
-                    | Error::WheelOffRail { .. }
-                    | Error::WornAway { .. }
-                    | Error::OtherContactModel),
-                ) => {
-                    return Err(interrupted(committed, error));
-                }
                 Err(error) => {
-                    if let Some(first) = &failure {
-                        // Of two failures the first says why.
-                        if staggered_retries == settings.staggered_retries {
-                            return Err(interrupted(committed, first.clone()));
-                        }
-                        staggered_retries += 1;
-                        substep = 0.25 * length;
-                        largest_substep = 0.5 * length;
-                    } else if retries < settings.retries && !matches!(error, Error::TooMuchWork { .. }) {
-                        // A shorter sub-step starts closer to its solution.
-                        retries += 1;
-                        substep = 0.25 * length;
-                        largest_substep = largest_substep.min(0.5 * length);
-                    } else if settings.staggered_substeps > 0 {
-                        substep = remaining / settings.staggered_substeps as f64;
-                        largest_substep = substep;
-                        failure = Some(error);
-                    } else {
-                        return Err(interrupted(committed, error));
-                    }
+                    let shortened = division.shorten(part, error);
+                    shortened.map_err(|error| interrupted(division.committed(), error))?;
                     continue;
                 }
             };
-            committed = end;
-            state.time = start + committed;
-            // The budget is that of a step which is hard, not of one with many sub-steps: each has it anew until one fails.
-            if retries == 0 && failure.is_none() {
+            division.commit(part);
+            state.time = start + division.committed();
+            if division.has_not_failed() {
                 workspace.contact.renew_budget();
             }
-            convergence.iterations += solved.iterations;
-            convergence.residual = solved.residual;
-            convergence.fills_window |= solved.fills_window;
-            convergence.staggered |= solved.staggered;
-            convergence.profile_change = convergence.profile_change.max(solved.profile_change);
+            convergence.add(&solved);
             state.convergence = convergence;
-            // After some sub-steps at the limit that a failure has set, longer ones are tried.
-            at_limit = if length >= largest_substep { at_limit + 1 } else { 0 };
-            if at_limit >= settings.substeps_at_limit && failure.is_none() {
-                (largest_substep, at_limit) = ((2.0 * largest_substep).min(planned), 0);
-            }
-            substep = (2.0 * substep).min(largest_substep);
         }
         Ok(())
     }
 
-    /// One step of `duration` to the given inputs; commits only on success.
+    /// Takes one sub-step to the given inputs; commits only on success.
     fn advance(
         &self,
         workspace: &mut Workspace,
         state: &mut State,
         inputs: &Inputs,
-        duration: f64,
-        coupling: Coupling,
+        part: SubStep,
     ) -> Result<Convergence> {
-        let task = self.task(inputs, duration, coupling);
+        let duration = part.length;
+        let task = self.task(inputs, duration, part.coupling);
         let (convergence, integrals) =
             self.operators
                 .solve(&task, &mut workspace.contact, &state.contact, state.duration)?;

@@ -50,6 +50,17 @@ pub struct Convergence {
     pub profile_change: f64,
 }
 
+impl Convergence {
+    /// Adds that of the next sub-step.
+    pub(crate) fn add(&mut self, next: &Convergence) {
+        self.iterations += next.iterations;
+        self.residual = next.residual;
+        self.fills_window |= next.fills_window;
+        self.staggered |= next.staggered;
+        self.profile_change = self.profile_change.max(next.profile_change);
+    }
+}
+
 /// Coupling of mechanics with heat and wear over a step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Coupling {
