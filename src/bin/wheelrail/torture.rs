@@ -227,12 +227,13 @@ impl Summary {
 fn print_slow(out: &mut impl Write, slow: &Slow) -> io::Result<()> {
     writeln!(
         out,
-        "  --run {} step {}: {:.0} µs ({:.0} µs in the run), {} iterations, {} of {} nodes under pressure; {:.3e} s, V {:.3e} m/s, slip {:.3e} m/s, {:.3e} N",
+        "  --run {} step {}: {:.0} µs ({:.0} µs in the run), {} iterations{}, {} of {} nodes under pressure; {:.3e} s, V {:.3e} m/s, slip {:.3e} m/s, {:.3e} N",
         slow.taken.run,
         slow.taken.step,
         1e6 * slow.again,
         1e6 * slow.taken.time,
         slow.taken.iterations,
+        if slow.taken.staggered { " staggered" } else { "" },
         slow.pressed,
         slow.nodes,
         slow.duration,
