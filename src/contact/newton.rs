@@ -143,15 +143,36 @@ impl<E: Engine> Sweeps<'_, E> {
     }
 }
 
-/// Solves x = G(x) from the closest iterate so far. The caller sweeps the iterate that it ends with once more. Returns the number of sweeps
-/// and whether that iterate is the solution, or as good as one.
+/// Solves x = G(x) from the closest iterate so far, within a share of the work. The caller sweeps the iterate that it ends with once more: where it
+/// gets no further than the fixed point, that is the closest one. Returns the number of sweeps and whether that iterate is the solution, or as good
+/// as one.
 ///
 /// # Errors
-/// A solver that fails where it begins, or a budget of work that is spent.
+/// A budget of work that is spent.
 pub fn solve<E: Engine>(
     problem: &Problem<E>,
     newton: &mut Newton<E>,
     mut sweeps: Sweeps<E>,
+    test: &mut ConvergenceTest,
+    work: &mut Work,
+) -> Result<(usize, bool)> {
+    let mut share = work.share(problem.settings.interface.work);
+    let end = solve_within(problem, newton, &mut sweeps, test, &mut share);
+    work.add(share.spent())?;
+    Ok(end.unwrap_or_else(|_| {
+        newton.take_closest(sweeps.iterate);
+        (0, false)
+    }))
+}
+
+/// Solves x = G(x) within the given work.
+///
+/// # Errors
+/// A solver that fails where it begins, or a budget of work that is spent.
+fn solve_within<E: Engine>(
+    problem: &Problem<E>,
+    newton: &mut Newton<E>,
+    sweeps: &mut Sweeps<E>,
     test: &mut ConvergenceTest,
     work: &mut Work,
 ) -> Result<(usize, bool)> {

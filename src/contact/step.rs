@@ -172,16 +172,7 @@ fn solve_in_room<E: Engine>(
                 image: &mut *image,
             };
             // Where Newton's method gets no further either, the fixed point goes on from the closest iterate.
-            let mut share = work.share(problem.settings.interface.work);
-            let end = newton::solve(problem, newton, sweeps, &mut test, &mut share);
-            work.add(share.spent())?;
-            let (count, solved) = match end {
-                Err(_) => {
-                    newton.take_closest(iterate);
-                    (0, false)
-                }
-                Ok(end) => end,
-            };
+            let (count, solved) = newton::solve(problem, newton, sweeps, &mut test, work)?;
             (newton_sweeps, ends) = (Some(count), solved);
             anderson.restart();
             continue;
