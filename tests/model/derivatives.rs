@@ -429,6 +429,9 @@ fn compare_within(
             let same = |other: &Mismatch| other.output.name == mismatch.output.name && other.input == mismatch.input;
             again.iter().any(same)
         };
+        for settled in found.iter().filter(|mismatch| !is_there(mismatch)) {
+            println!("settled by {fineness:?}: {settled}");
+        }
         found.retain(is_there);
     }
     tally.finer = first - found.len();

@@ -257,7 +257,11 @@ fn draw(contact_model: ContactModel, law: Law) {
             continue;
         }
         let mut mismatches = Vec::new();
-        tally.add(compare_where_it_rests(&case, &mut mismatches));
+        let of_case = compare_where_it_rests(&case, &mut mismatches);
+        if of_case.finer > 0 {
+            println!("case {number}: {} settled by finer differences", of_case.finer);
+        }
+        tally.add(of_case);
         if !mismatches.is_empty() {
             let words: Vec<String> = mismatches.iter().map(|mismatch| format!("  {mismatch}")).collect();
             failures.push(format!("case {number}: {case:?}\n{}", words.join("\n")));
