@@ -48,11 +48,11 @@ impl PatchGrid {
 
     /// Number of cells along the window, `patch_nodes`.
     pub fn nodes(self) -> usize {
-        [10, 34, 48][self as usize]
+        [8, 34, 48][self as usize]
     }
 
     /// Number of strips across the window, `patch_strips`.
     pub fn strips(self) -> usize {
-        [7, 21, 31][self as usize]
+        [8, 21, 31][self as usize]
     }
 }

@@ -1,5 +1,6 @@
 //! Point at which the mechanics of a patch are linearised: contact, slip and law of the cells at the solution of a step.
 
+use super::centroid;
 use super::fields::PatchFields;
 use super::memory;
 use super::operators::PatchOperators;
@@ -42,6 +43,10 @@ pub struct Linearisation {
     bound: Vec<f64>,
     /// Slip per shear that the leading edge adds to the cells under pressure, along x and y, `m/s`.
     pub(super) edge: Vec<Vector>,
+    /// Loads of the strips, scaled.
+    pub(super) loads: Vec<f64>,
+    /// Slip at the centroid of a strip's load over that in the strip's middle, of the cells under pressure, `m/s`.
+    off_middle: Vec<Vector>,
     /// Law of friction along a path; none where friction does not depend on slip.
     pub(super) path_law: Option<PathLaw>,
     /// Friction law of the cells under pressure where friction depends on slip.
@@ -62,6 +67,8 @@ impl Linearisation {
             separation: on_grid(),
             bound: on_grid(),
             edge: vec![[0.0; 2]; grid.len()],
+            loads: vec![0.0; grid.strips],
+            off_middle: vec![[0.0; 2]; grid.len()],
             path_law: None,
             path: PathScratch::new(grid.strips * grid.cells),
         }
@@ -82,6 +89,7 @@ impl Linearisation {
         self.set_separation(problem, solution, normal, gap);
         self.set_slip(problem, fields, solvers);
         self.set_bounds(problem, fields);
+        self.set_off_middle(problem, fields, solvers);
         self.set_scheme(problem, fields);
         self.path_law = problem.path_law();
         if let Some(law) = &self.path_law {
@@ -148,6 +156,18 @@ impl Linearisation {
         }
     }
 
+    /// Sets the loads of the strips, and the slip at their centroids over that in the strips' middles.
+    fn set_off_middle(&mut self, problem: &PatchProblem, fields: &PatchFields, solvers: &PatchSolvers) {
+        let grid = &problem.operators.grid;
+        centroid::set_loads(grid, &fields.pressure, &mut self.loads);
+        for run in self.contact.runs() {
+            let centroid = centroid::centroid(&self.loads, run.strip);
+            for (index, place) in run.indices().zip(run.places(grid)) {
+                self.off_middle[index] = solvers.undeformed.slip_off_middle(grid, place, centroid);
+            }
+        }
+    }
+
     /// Sets the constants of the law. At rest without a step before there is the law for the slip ahead, and no response to it.
     fn set_scheme(&mut self, problem: &PatchProblem, fields: &PatchFields) {
         let diagonal = self.diagonal();
@@ -182,6 +202,7 @@ impl Linearisation {
             contact: &self.contact,
             response: &self.response,
             edge: &self.edge,
+            off_middle: &self.off_middle,
             free_slip: [&self.slip[0], &self.slip[1]],
             bound: &self.bound,
             path: self.path(),

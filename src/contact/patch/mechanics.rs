@@ -1,6 +1,7 @@
 //! The tractions of one iteration, temperature and wear as the iteration has them: pressure for the shear there is, then friction
 //! for that pressure.
 
+use super::centroid;
 use super::fields::PatchFields;
 use super::memory;
 use super::problem::PatchProblem;
@@ -205,6 +206,13 @@ fn solve_friction(
     }
     keep_within_bounds(grid, &solvers.contact, &solvers.bound, fields, &mut solvers.nothing);
     free_slip(problem, interface, &weights, fields, solvers);
+    centroid::set_loads(grid, &fields.pressure, &mut solvers.loads);
+    for run in solvers.contact.runs() {
+        let centroid = centroid::centroid(&solvers.loads, run.strip);
+        for (index, place) in run.indices().zip(run.places(grid)) {
+            solvers.off_middle[index] = solvers.undeformed.slip_off_middle(grid, place, centroid);
+        }
+    }
     let diagonal = f64::from(solvers.response.strip_kernels[0][solvers.response.origin]);
     let peak = largest(&fields.pressure);
     let path = path_law.map(|law| PathOfCells {
@@ -228,6 +236,7 @@ fn solve_friction(
             contact: &solvers.contact,
             response: &solvers.response,
             edge: &solvers.edge,
+            off_middle: &solvers.off_middle,
             free_slip: [&solvers.free_slip[0], &solvers.free_slip[1]],
             bound: &solvers.bound,
             path,

@@ -52,6 +52,10 @@ pub struct PatchSolvers {
     pub(in crate::contact) bound: Vec<f64>,
     /// Slip per shear that the leading edge adds to the cells under pressure, along x and y, `m/s`.
     pub(in crate::contact) edge: Vec<[f64; 2]>,
+    /// Loads of the strips, scaled.
+    pub(in crate::contact) loads: Vec<f64>,
+    /// Rigid slip at the centroid of a strip's load over that in the strip's middle, of the cells under pressure, `m/s`.
+    pub(in crate::contact) off_middle: Vec<[f64; 2]>,
     /// Friction law of the cells under pressure where friction depends on slip.
     pub(in crate::contact) path: PathScratch,
 }
@@ -109,6 +113,8 @@ impl PatchSolvers {
             shear_before: vectors(),
             bound: on_grid(),
             edge: vec![[0.0; 2]; grid.len()],
+            loads: vec![0.0; grid.strips],
+            off_middle: vec![[0.0; 2]; grid.len()],
             path: PathScratch::new(cells),
         }
     }

@@ -3,11 +3,13 @@
 //!
 //! It has solvers and tables of its own, so that it starts from the fields alone, whatever a step has left in its solvers.
 
+use super::centroid;
 use super::expansion;
 use super::fields::PatchFields;
 use super::linearisation::{Linearisation, Solution, leading, leading_cell, normal_problem};
 use super::operators::PatchOperators;
 use super::problem::PatchProblem;
+use super::solvers::PatchSolvers;
 use super::undeformed::Undeformed;
 use crate::body::influence::{self, Window};
 use crate::contact::engine::{Along, Direction};
@@ -41,6 +43,10 @@ pub struct PatchTangent {
     bound_change: Vec<f64>,
     /// Change of the slip per shear that the leading edge adds to the cells under pressure, `m/s`.
     edge_change: Vec<Vector>,
+    /// Change of the loads of the strips, scaled.
+    load_change: Vec<f64>,
+    /// Change of the slip at the centroid of a strip's load over that in the strip's middle, of the cells under pressure, `m/s`.
+    off_middle_change: Vec<Vector>,
     expansion: expansion::ExpansionBuffers,
     nothing: Vec<f64>,
     /// Change of μ of all cells at unchanged slip.
@@ -69,6 +75,8 @@ impl PatchTangent {
             free_slip: vectors(),
             bound_change: on_grid(),
             edge_change: vec![[0.0; 2]; grid.len()],
+            load_change: vec![0.0; grid.strips],
+            off_middle_change: vec![[0.0; 2]; grid.len()],
             expansion: expansion::ExpansionBuffers::new(grid, transform),
             nothing: on_grid(),
             friction_change: vec![0.0; grid.strips * grid.cells],
@@ -150,6 +158,7 @@ impl PatchTangent {
         );
         tangent.penetration = self.normal.tangent(&data, &self.point.contact, &mut tangent.pressure)?;
         self.edges(problem, fields, direction, tangent);
+        self.off_middle(problem, solvers, &tangent.pressure);
         if let Some(path_law) = &self.point.path_law {
             path_memory::tangent(
                 problem,
@@ -175,6 +184,7 @@ impl PatchTangent {
         let change = FrictionChange {
             free_slip: [&self.free_slip[0], &self.free_slip[1]],
             edge: &self.edge_change,
+            off_middle: &self.off_middle_change,
             bound: &self.bound_change,
             noise: self.noise(problem, fields, direction, &tangent.pressure),
             tolerance,
@@ -226,6 +236,26 @@ impl PatchTangent {
                 + self.point.weights.strain_speed
                     * problem.separation_ratio_tangent(gap, pressure, gap_change, pressure_change);
             self.edge_change[index] = problem.operators.edge_factors.map(|factor| factor * change);
+        }
+    }
+
+    /// Computes the change of the slip at the centroids of the strips' loads over that in the strips' middles.
+    fn off_middle(&mut self, problem: &PatchProblem, solvers: &PatchSolvers, pressure: &[f64]) {
+        let grid = &problem.operators.grid;
+        centroid::set_loads(grid, pressure, &mut self.load_change);
+        for run in self.point.contact.runs() {
+            let centroid = centroid::centroid(&self.point.loads, run.strip);
+            let moves = centroid::centroid_tangent(&self.point.loads, &self.load_change, run.strip);
+            // The slip changes linearly on the centroid's side of the middle.
+            let side = if centroid == 0.0 { moves } else { centroid }.signum();
+            for (index, place) in run.indices().zip(run.places(grid)) {
+                let by_slip = self.undeformed.slip_off_middle(grid, place, centroid);
+                self.off_middle_change[index] = by_slip;
+                if moves != 0.0 {
+                    let to_side = solvers.undeformed.slip_off_middle(grid, place, side);
+                    self.off_middle_change[index] = [0, 1].map(|i: usize| by_slip[i] + side * moves * to_side[i]);
+                }
+            }
         }
     }
 

@@ -34,6 +34,23 @@ impl Undeformed {
         }
     }
 
+    /// Rigid slip of a cell at so many breadths to the left of its strip's middle, over that in the middle, or its change, `m/s`. It changes
+    /// linearly towards the strip on that side, which there must be.
+    pub fn slip_off_middle(&self, grid: &Grid, place: usize, left: f64) -> [f64; 2] {
+        if left == 0.0 {
+            return [0.0; 2];
+        }
+        let beside = if left > 0.0 {
+            place + grid.stride()
+        } else {
+            place - grid.stride()
+        };
+        [0, 1].map(|component: usize| {
+            let slip = &self.rigid_slip[component];
+            left.abs() * (slip[beside] - slip[place])
+        })
+    }
+
     /// Sets gap and slip to those of the inputs and the motion that they make, or to their changes.
     pub fn set(&mut self, problem: &PatchProblem, inputs: &Inputs, motion: &Motion) {
         self.set_gap(problem, inputs);

@@ -51,6 +51,8 @@ pub struct FrictionProblem<'a> {
     pub response: &'a SlipResponse,
     /// Slip per shear that the leading edge adds to a cell, along x and y, cells.
     pub edge: &'a [Vector],
+    /// Slip at the centroid of a strip's load over that in the strip's middle, cells.
+    pub off_middle: &'a [Vector],
     /// S₀ on the grid, x and y.
     pub free_slip: [&'a [f64]; 2],
     /// μp, cells.
@@ -442,6 +444,7 @@ impl Friction {
                     shear: own,
                     ahead,
                     behind: slip(place.wrapping_add_signed(behind)),
+                    off_middle: problem.off_middle[index],
                     bound: problem.bound[index],
                 };
                 let scheme = scheme.at_edge(edge);

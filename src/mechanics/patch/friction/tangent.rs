@@ -12,6 +12,8 @@ pub struct FrictionChange<'a> {
     pub free_slip: [&'a [f64]; 2],
     /// Change of the slip per shear that the leading edge adds, cells.
     pub edge: &'a [Vector],
+    /// Change of the slip at the centroid of a strip's load over that in the strip's middle, cells.
+    pub off_middle: &'a [Vector],
     /// Change of μp, cells.
     pub bound: &'a [f64],
     /// Change of w.
@@ -25,6 +27,11 @@ pub struct FrictionChange<'a> {
 pub const LEAST_CHANGE: f64 = 1e-100;
 
 const UNIT: Matrix = [[1.0, 0.0], [0.0, 1.0]];
+
+/// Change of the slip behind a cell that changes the law as that of the slip off a strip's middle does ([`Cell::off_middle`](super::super::law::Cell)).
+fn twice(off_middle: Vector) -> Vector {
+    off_middle.map(|part| 2.0 * part)
+}
 
 impl Friction {
     /// Changes of μ by those of the slip in the last [`Friction::tangent`], cell by cell.
@@ -85,7 +92,7 @@ impl Friction {
         let (grid, n) = (problem.grid, problem.contact.cells());
         let window = problem.contact.window(grid, 1);
         let behind = if problem.response.forward { -1 } else { 1 };
-        let sum = |terms: [Vector; 5]| [0, 1].map(|i| terms.iter().map(|term| term[i]).sum::<f64>());
+        let sum = |terms: [Vector; 6]| [0, 1].map(|i| terms.iter().map(|term| term[i]).sum::<f64>());
         let at = |values: &[Vec<f64>; 2], place: usize| [values[0][place], values[1][place]];
         self.given.clear();
         for run in problem.contact.runs() {
@@ -97,6 +104,7 @@ impl Friction {
                     multiply(row.by_ahead, slip(place)),
                     multiply(row.by_ahead, [edge[0] * own[0], edge[1] * own[1]]),
                     multiply(row.by_behind, slip(place.wrapping_add_signed(behind))),
+                    multiply(row.by_behind, twice(change.off_middle[index])),
                     row.by_bound.map(|by_bound| by_bound * bound),
                     row.by_noise.map(|by_noise| by_noise * change.noise),
                 ]));
@@ -127,6 +135,7 @@ impl Friction {
                         multiply(row.by_ahead, ahead),
                         multiply(row.by_behind, at(&self.response, place.wrapping_add_signed(behind))),
                         [0.0; 2],
+                        [0.0; 2],
                     ]);
                     if problem.path.is_some() {
                         let (edge, shear) = (change.edge[index], at(shear, place));
@@ -134,7 +143,8 @@ impl Friction {
                         let last = place.wrapping_add_signed(behind);
                         let after = at(&self.response, last);
                         let slip_ahead = [0, 1].map(|i: usize| free(place, i) + edge[i] * shear[i] + ahead[i]);
-                        let slip_behind = [0, 1].map(|i: usize| free(last, i) + after[i]);
+                        let slip_behind =
+                            [0, 1].map(|i: usize| free(last, i) + after[i] + 2.0 * change.off_middle[index][i]);
                         self.on_path
                             .keep_slip_and_noise_change(index, slip_ahead, slip_behind, change.noise);
                     }

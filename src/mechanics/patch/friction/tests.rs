@@ -20,6 +20,7 @@ struct Case {
     contact: Contact,
     response: SlipResponse,
     edge: Vec<Vector>,
+    off_middle: Vec<Vector>,
     bound: Vec<f64>,
     free_slip: [Vec<f64>; 2],
     /// Slip of a cell per its own shear.
@@ -79,6 +80,12 @@ impl Case {
             };
             edge[leading] = [0.4 * own, 0.3 * own];
         }
+        // The load of a strip stands off its middle by a sixth of the way to the middle of the contact.
+        let off_middle = contact.runs().iter().flat_map(|run| {
+            let slip = own * spin * grid.y(run.strip) / 6.0;
+            std::iter::repeat_n([slip, 0.0], run.cells)
+        });
+        let off_middle = off_middle.collect();
         let mut free_slip = [vec![0.0; grid.len()], vec![0.0; grid.len()]];
         for strip in 0..STRIPS {
             for (cell, place) in grid.row(strip).enumerate() {
@@ -99,6 +106,7 @@ impl Case {
             contact,
             response,
             edge,
+            off_middle,
             bound,
             free_slip,
             own,
@@ -112,6 +120,7 @@ impl Case {
             contact: &self.contact,
             response: &self.response,
             edge: &self.edge,
+            off_middle: &self.off_middle,
             free_slip: [&self.free_slip[0], &self.free_slip[1]],
             bound: &self.bound,
             path: None,
@@ -165,10 +174,11 @@ impl Case {
                 for component in 0..2 {
                     s[component] += self.edge[index][component] * tau[component];
                 }
-                // s = S − q d, q = |S|²/(|S|² + |d|² + w²).
-                let d = [0.5 * (s[0] - b[0]), 0.5 * (s[1] - b[1])];
+                // s = S − q d, d = ½(S − B) − c, q = |S|²/(|S|² + 2|d|² + w²).
+                let c = self.off_middle[index];
+                let d = [0.5 * (s[0] - b[0]) - c[0], 0.5 * (s[1] - b[1]) - c[1]];
                 let square = s[0] * s[0] + s[1] * s[1];
-                let q = square / (square + d[0] * d[0] + d[1] * d[1] + self.noise().powi(2));
+                let q = square / (square + 2.0 * (d[0] * d[0] + d[1] * d[1]) + self.noise().powi(2));
                 states.push((tau, [s[0] - q * d[0], s[1] - q * d[1]], self.bound[index]));
             }
         }
