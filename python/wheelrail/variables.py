@@ -193,7 +193,7 @@ def allowed(variable: ModelVariable, low: float, high: float) -> str:
 def patch_grids(fmu: AnyPath) -> dict[str, dict[str, int]]:
     """Grids of a patch by name, each as values of `patch_nodes` and `patch_strips`.
 
-    The description of the former has them: "…: fast 10 x 7 (…), default 34 x 21 (…), …".
+    The description of the former has them: "…: fast 8 x 8 (…), default 34 x 21 (…), …".
     """
     variable = by_name(fspath(fmu)).get("patch_nodes")
     found = re.findall(r"(?:: |, )(\w+) (\d+) x (\d+) \(", (variable and variable.description) or "")

@@ -98,7 +98,7 @@ fn a_grid_of_the_patch_is_chosen_by_its_name() {
         read_to_string(&place.output).unwrap()
     };
     let named = table(&["--set", "patch_grid=fast"]);
-    assert_eq!(named, table(&["--set", "patch_nodes=10", "--set", "patch_strips=7"]));
+    assert_eq!(named, table(&["--set", "patch_nodes=8", "--set", "patch_strips=8"]));
     assert_ne!(named, table(&["--set", "patch_grid=fast", "--set", "patch_nodes=12"]));
     remove_file(&place.output).unwrap();
     let meant = "patch_grid = \"fats\": allowed is fast, default or fine; did you mean fast?";
