@@ -236,7 +236,8 @@ soak: fmu fmu3 $(VENV)/ready
 	$(call say,Random tests - new in every round)
 	@$(PY) tools/soak.py $(if $(MINUTES),--minutes $(MINUTES)) $(if $(SEED),--seed $(SEED)) -- --target $(PORTABLE) --glibc $(GLIBC)
 
-# Counts of what was compared, of what is at corners that the state names, and of what is at others; PROPTEST_RNG_SEED draws other cases.
+# Counts of what was compared, of what is at corners that the state names, and of what is at others; PROPTEST_RNG_SEED draws other cases, and
+# CASES=1289..1290 compares some of them alone.
 derivatives: $(VENV)/build
 	$(call say,Derivatives against differences of the step)
 	DERIVATIVE_CASES=$(or $(CASES),2000) $(CARGO) test --test model random_sensitivity -- --nocapture
