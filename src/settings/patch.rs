@@ -121,8 +121,8 @@ impl Settings {
         SplitSettings {
             tolerance: self.patch.split_tolerance,
             shear_tolerance: self.patch.shear_tolerance,
-            fixed_point_iterations: 40,
-            idle_iterations: 40,
+            // A linearisation costs as much as many sweeps.
+            idle_iterations: self.split.idle_iterations.saturating_mul(2),
             accepted_change: 2e-3,
             stalled_tolerance: 2e-3,
             first_mechanics_tolerance: self.patch.first_mechanics_tolerance,

@@ -1,9 +1,9 @@
 //! Search for what makes a step slow: the step is taken again without one of the methods for hard steps at a time.
 
-use super::{StepTime, Torture, draw, is_hot, take};
+use super::{DriveStep, StepTime, Torture, draw, is_hot, take};
 use crate::error::Result;
 use crate::settings::Settings;
-use crate::wheel_rail::Model;
+use crate::wheel_rail::{Model, State};
 use std::time::Instant;
 
 /// A step under the magnifying glass.
@@ -54,7 +54,23 @@ const METHODS: [Method; 6] = [
 ];
 
 /// Repetitions of a step.
-const REPEATS: usize = 5;
+const REPEATS: usize = 3;
+
+/// Least time of a step from a state in some repetitions, `s`, and the state after it.
+///
+/// # Errors
+/// That of the step.
+fn repeated(model: &Model, before: &State, step: &DriveStep) -> Result<(f64, State)> {
+    let mut workspace = model.workspace();
+    let (mut least, mut state) = (f64::INFINITY, before.clone());
+    for _ in 0..REPEATS {
+        state = before.clone();
+        let start = Instant::now();
+        take(model, &mut workspace, &mut state, step).map_err(|(_, error)| error)?;
+        least = least.min(start.elapsed().as_secs_f64());
+    }
+    Ok((least, state))
+}
 
 /// Takes the step again, with and without these methods.
 ///
@@ -80,14 +96,8 @@ fn explained(torture: &Torture, taken: StepTime) -> Result<Slow> {
         }
     }
     let step = drive.step();
-    let before = state.clone();
-    let mut again = f64::INFINITY;
-    for _ in 0..REPEATS {
-        state = before.clone();
-        let start = Instant::now();
-        take(&model, &mut workspace, &mut state, &step).map_err(|(_, error)| error)?;
-        again = again.min(start.elapsed().as_secs_f64());
-    }
+    let before = state;
+    let (again, state) = repeated(&model, &before, &step)?;
     let mut without = Vec::with_capacity(METHODS.len());
     for (name, switch_off) in METHODS {
         let mut settings = Settings::default();
@@ -95,11 +105,8 @@ fn explained(torture: &Torture, taken: StepTime) -> Result<Slow> {
         settings.step.staggered_substeps = 0;
         switch_off(&mut settings);
         let model = Model::with_settings(parameters.clone(), settings)?;
-        let (mut workspace, mut state) = (model.workspace(), before.clone());
-        let start = Instant::now();
-        let outcome = take(&model, &mut workspace, &mut state, &step);
-        let time = start.elapsed().as_secs_f64();
-        without.push((name, outcome.ok().map(|()| (time, state.convergence.iterations))));
+        let taken = repeated(&model, &before, &step).ok();
+        without.push((name, taken.map(|(time, state)| (time, state.convergence.iterations))));
     }
     let motion = state.inputs.motion(&parameters);
     let nodes = model.contact_nodes(&state);

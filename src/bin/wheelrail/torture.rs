@@ -34,6 +34,9 @@ pub struct Options {
     /// Number of the slowest steps to explain.
     #[arg(long, default_value_t = 10)]
     slowest: usize,
+    /// Explain the slowest of the steps that were solved: none that was taken staggered.
+    #[arg(long)]
+    solved: bool,
 }
 
 /// The contact models of the runs.
@@ -148,7 +151,7 @@ impl Options {
                 // A summary that a panicking thread has left is as good as it was.
                 let mut summary = summary.lock().unwrap_or_else(PoisonError::into_inner);
                 for run in &taken {
-                    summary.add(run, CANDIDATES * self.slowest);
+                    summary.add(run, CANDIDATES * self.slowest, self.solved);
                 }
             }
         };
@@ -162,9 +165,11 @@ impl Options {
 }
 
 impl Summary {
-    fn add(&mut self, run: &Run, slowest: usize) {
+    /// Adds a run, and keeps so many of the slowest steps, of those that were solved alone or of all.
+    fn add(&mut self, run: &Run, slowest: usize, solved: bool) {
         self.times.extend(run.steps.iter().map(|step| step.time));
-        self.slowest.extend(&run.steps);
+        self.slowest
+            .extend(run.steps.iter().filter(|step| !(solved && step.staggered)));
         self.slowest.sort_by(|a, b| b.time.total_cmp(&a.time));
         self.slowest.truncate(slowest);
         self.staggered += run.steps.iter().filter(|step| step.staggered).count();
@@ -227,13 +232,12 @@ impl Summary {
 fn print_slow(out: &mut impl Write, slow: &Slow) -> io::Result<()> {
     writeln!(
         out,
-        "  --run {} step {}: {:.0} µs ({:.0} µs in the run), {} iterations{}, {} of {} nodes under pressure; {:.3e} s, V {:.3e} m/s, slip {:.3e} m/s, {:.3e} N",
+        "  --run {} step {}: {:.0} µs ({:.0} µs in the run), {} iterations, {} of {} nodes under pressure; {:.3e} s, V {:.3e} m/s, slip {:.3e} m/s, {:.3e} N",
         slow.taken.run,
         slow.taken.step,
         1e6 * slow.again,
         1e6 * slow.taken.time,
         slow.taken.iterations,
-        if slow.taken.staggered { " staggered" } else { "" },
         slow.pressed,
         slow.nodes,
         slow.duration,
