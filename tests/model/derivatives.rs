@@ -102,6 +102,12 @@ pub struct Mismatch {
     difference: f64,
 }
 
+/// Derivative and difference, and whether they agree.
+struct Comparison {
+    mismatch: Mismatch,
+    agrees: bool,
+}
+
 impl std::fmt::Display for Mismatch {
     fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
         let place = if self.output.kind == OutputKind::Counted {
@@ -417,22 +423,25 @@ fn compare_within(
     tolerances: [f64; 2],
     mismatches: &mut Vec<Mismatch>,
 ) -> Result<Tally, Error> {
-    let mut found = Vec::new();
-    let mut tally = compare_at(&parameters, inputs, step, tolerances, Fineness::USUAL, &mut found)?;
+    let mut compared = Vec::new();
+    let mut tally = compare_at(&parameters, inputs, step, tolerances, Fineness::USUAL, &mut compared)?;
+    let disagrees = |comparison: Comparison| (!comparison.agrees).then_some(comparison.mismatch);
+    let mut found: Vec<Mismatch> = compared.into_iter().filter_map(disagrees).collect();
     let first = found.len();
     for fineness in Fineness::FINER {
         let mut again = Vec::new();
         if found.is_empty() || compare_at(&parameters, inputs, step, tolerances, fineness, &mut again).is_err() {
             continue;
         }
-        let is_there = |mismatch: &Mismatch| {
+        // Compared and found to agree: one that has a corner within the finer difference is not settled by it.
+        let is_settled = |mismatch: &Mismatch| {
             let same = |other: &Mismatch| other.output.name == mismatch.output.name && other.input == mismatch.input;
-            again.iter().any(same)
+            again.iter().any(|other| other.agrees && same(&other.mismatch))
         };
-        for settled in found.iter().filter(|mismatch| !is_there(mismatch)) {
+        for settled in found.iter().filter(|mismatch| is_settled(mismatch)) {
             println!("settled by {fineness:?}: {settled}");
         }
-        found.retain(is_there);
+        found.retain(|mismatch| !is_settled(mismatch));
     }
     tally.finer = first - found.len();
     mismatches.append(&mut found);
@@ -446,7 +455,7 @@ fn compare_at(
     step: f64,
     [relative, of_size]: [f64; 2],
     fineness: Fineness,
-    mismatches: &mut Vec<Mismatch>,
+    compared: &mut Vec<Comparison>,
 ) -> Result<Tally, Error> {
     let model = Model::with_settings(parameters.clone(), settings(fineness.tolerance)).unwrap();
     let mut workspace = model.workspace();
@@ -492,15 +501,15 @@ fn compare_at(
             let scale = size(output, &before, &state) / nominal(&model, inputs, row);
             let tolerance = relative * derivative.abs() + of_size * scale + difference.rounding;
             tally.compared += 1;
-            let agrees = (derivative - difference.value).abs() <= tolerance;
-            if !agrees {
-                mismatches.push(Mismatch {
+            compared.push(Comparison {
+                mismatch: Mismatch {
                     output,
                     input: input.name,
                     derivative,
                     difference: difference.value,
-                });
-            }
+                },
+                agrees: (derivative - difference.value).abs() <= tolerance,
+            });
         }
     }
     Ok(tally)
