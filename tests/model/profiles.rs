@@ -328,3 +328,49 @@ fn two_contacts_are_found_from_nothing() {
         );
     }
 }
+
+/// The forces of a wheelset that goes from the gauge corner to the flange follow their slope where the strips of a window become finer or coarser. The contact is up
+/// to 12 mm broad there and carries in 1 mm at its end: |d_i − (d_{i−1} + d_{i+1})/2| over the load, with the change d_i of a force in a step of 2 µm, is
+/// at most what strips of 0.4 mm resolve. With strips of 0.8 mm it was 4.8, 0.8 and 0.5 %.
+#[test]
+fn forces_follow_their_slope_where_the_load_passes_to_the_flange() {
+    let parameters = Parameters {
+        contact_model: ContactModel::Profiles,
+        slip_source: SlipSource::VehicleSpeed,
+        side: Side::Left,
+        ..Parameters::default()
+    };
+    let model = std::sync::Arc::new(Model::new(parameters).unwrap());
+    for (load, range, bound) in [
+        (10e3, [6.6e-3_f64, 6.7e-3], 0.007),
+        (60e3, [6.67e-3, 6.81e-3], 0.003),
+        (100e3, [6.58e-3, 6.76e-3], 0.003),
+    ] {
+        let inputs = |displacement: f64| Inputs {
+            normal_load: load,
+            vehicle_speed: 20.0,
+            wheel_speed: 20.0 / Parameters::default().wheel_radius,
+            lateral_displacement: displacement,
+            ..Inputs::default()
+        };
+        let [from, to] = range;
+        let steps = ((to - from) / 2e-6_f64).round();
+        let mut run = wheelrail::Simulation::of(model.clone(), &inputs(from)).unwrap();
+        run.hold(&inputs(from), 1e-3, 10).unwrap();
+        let forces: Vec<_> = (0..=steps as usize)
+            .map(|step| {
+                run.step(&inputs(from + 2e-6 * step as f64), 1e-3).unwrap();
+                let outputs = &run.state.outputs;
+                let normal: f64 = outputs.contact.iter().map(|contact| contact.normal_force).sum();
+                [outputs.force_x, outputs.force_y, normal].map(|force| force / load)
+            })
+            .collect();
+        for (step, four) in forces.windows(4).enumerate() {
+            for force in 0..3 {
+                let change = |k: usize| four[k + 1][force] - four[k][force];
+                let jump = (change(1) - 0.5 * (change(0) + change(2))).abs();
+                assert!(jump < bound, "{load} N, step {step}, force {force}: {jump}");
+            }
+        }
+    }
+}

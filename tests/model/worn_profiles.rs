@@ -313,7 +313,7 @@ fn a_profile_that_is_worn_away_is_refused_with_its_place() {
         wear_acceleration: 1e8,
         ..bodies()
     };
-    let inputs = sliding(6.6e-3, 0.01);
+    let inputs = sliding(6.5e-3, 0.01);
     let mut run = Simulation::new(&parameters, &inputs).unwrap();
     // The first contact slides into its place: a tenth of a millimetre in any step as short.
     run.step(&inputs, 1e-8).unwrap();

@@ -13,6 +13,10 @@ use super::windows::{Region, WINDOWS};
 pub const CONTACTS: usize = 3 * WINDOWS;
 /// Extent of the region that a window is placed for, over that of the contact in it: the contact may grow in a step.
 const GROWTH: f64 = 1.08;
+/// Turn of the rail over a contact, rad, from which on it lies in a gauge corner: 5 mm of one of 13 mm.
+const CORNER_TURN: f64 = 0.4;
+/// The extent across of a contact in a gauge corner, whose ends go slowly: with fine strips a window has little room for it.
+const CORNER_GROWTH: f64 = 1.05;
 /// Extent about such a region, over that of the region, in which no other contact is looked for: the window there finds it by itself, and so near a
 /// contact the sinking of the surface is not known well.
 pub const BESIDE: f64 = 1.8;
@@ -63,7 +67,7 @@ pub fn find(
         approach,
     } = expected;
     found.clear();
-    carrying(operators, fields, GROWTH * growth, found);
+    carrying(operators, fields, growth, found);
     found.retain(|own| search.is_near(own.region.across, approach + LIFTED));
     apart.set_resultants(operators, fields);
     let carrying = found.len();
@@ -129,7 +133,7 @@ fn carrying(operators: &SurfaceOperators, fields: &SurfaceFields, growth: f64, f
                         narrowest,
                     };
                     found.push(Wanted {
-                        region: region.grown(growth),
+                        region: grown(operators, &region, growth),
                         depth: CARRIES,
                     });
                 }
@@ -150,6 +154,23 @@ fn carrying(operators: &SurfaceOperators, fields: &SurfaceFields, growth: f64, f
             run.force += force;
             run.squares += force * force;
         }
+    }
+}
+
+/// Region for a contact, grown as is expected of it. In a gauge corner the load goes from one end of a broad contact to the other, and a narrow part carries
+/// most of it: there a contact counts as no broader than the part over which the rail turns by [`CORNER_TURN`].
+fn grown(operators: &SurfaceOperators, contact: &Region, growth: f64) -> Region {
+    let [[y, z], [v, w]] = contact.across.map(|arc| operators.bodies.rail.at(arc).normal);
+    let turn = (y * w - z * v).atan2(y * v + z * w).abs();
+    let region = contact.grown(GROWTH * growth);
+    if turn <= CORNER_TURN {
+        return region;
+    }
+    let [from, to] = contact.grown(CORNER_GROWTH * growth).across;
+    Region {
+        across: [from, to],
+        narrowest: region.narrowest.min((to - from) * CORNER_TURN / turn),
+        ..region
     }
 }
 

@@ -19,6 +19,8 @@ pub const SHAPES: usize = LENGTHS * BREADTHS;
 
 /// Cells along the window, and strips across it, that stay free on either side of a region that a window is placed for.
 const MARGIN: [f64; 2] = [1.5, 1.0];
+/// Strips across the window that stay free on either side of a region in a window that stays.
+const LEAST_MARGIN: f64 = 0.5;
 /// Least share of a window's length that the region in it takes up, before the window becomes shorter.
 const LEAST_SHARE: f64 = 0.36;
 /// Share of a window's strips that the narrowest contact in it has at least when a window is placed, and when it stays.
@@ -145,7 +147,7 @@ impl Sizes {
         }
         let Grid { cells, strips, .. } = self.largest;
         let length = finest_holding(region.along, cells, MARGIN[0], self.largest.length, LENGTHS);
-        let breadth = self.breadth_for(region);
+        let breadth = self.breadth_of(region, self.finest_for(region, kept));
         let grid = self.grid(length, breadth);
         let first = |extent: [f64; 2], size: f64, count: usize| {
             (0.5 * (extent[0] + extent[1]) / size - 0.5 * count as f64).round() as i32
@@ -158,14 +160,30 @@ impl Sizes {
         }
     }
 
-    /// Number of the breadth for a region: the broadest that resolves the narrowest contact, but broad enough for the region.
-    fn breadth_for(&self, region: &Region) -> usize {
+    /// Number of the least breadth that holds a region: with a margin, and without one where the window has had it, so that a contact which just
+    /// fits does not go to and fro.
+    fn finest_for(&self, region: &Region, kept: Option<Place>) -> usize {
         let Grid { strips, breadth, .. } = self.largest;
-        let finest = finest_holding(region.across, strips, MARGIN[1], breadth, BREADTHS);
+        let finest = |margin: f64| finest_holding(region.across, strips, margin, breadth, BREADTHS);
+        let [with_margin, without] = [MARGIN[1], LEAST_MARGIN].map(finest);
+        match kept {
+            Some(kept) => kept.breadth.min(without).max(with_margin),
+            None => with_margin,
+        }
+    }
+
+    /// Number of the breadth for a region: the broadest that resolves the narrowest contact, but none finer than the given one.
+    fn breadth_of(&self, region: &Region, finest: usize) -> usize {
+        let Grid { strips, breadth, .. } = self.largest;
         let resolved = region.narrowest / (FEWEST_STRIPS[0] * strips as f64);
         (0..finest)
             .find(|&level| shrunk(breadth, level) <= resolved)
             .unwrap_or(finest)
+    }
+
+    /// Number of the breadth for a region of a new window.
+    fn breadth_for(&self, region: &Region) -> usize {
+        self.breadth_of(region, self.finest_for(region, None))
     }
 
     /// Breadth of a strip of the window for a region, `m`.
@@ -183,7 +201,7 @@ impl Sizes {
         let length = (region.along[1] - region.along[0]) / (window.along[1] - window.along[0]);
         let strips = region.narrowest / (window.across[1] - window.across[0]);
         holds(window.along, region.along, grid.length)
-            && holds(window.across, region.across, 0.5 * grid.breadth)
+            && holds(window.across, region.across, LEAST_MARGIN * grid.breadth)
             && (place.length + 1 == LENGTHS || length > LEAST_SHARE)
             && (strips > FEWEST_STRIPS[1] || self.breadth_for(region) <= place.breadth)
             && (place.breadth == 0 || strips < MOST_STRIPS)
@@ -202,4 +220,36 @@ fn finest_holding(extent: [f64; 2], count: usize, margin: f64, largest: f64, lev
         .rev()
         .find(|&level| needed <= shrunk(largest, level))
         .unwrap_or(0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn sizes() -> Sizes {
+        Sizes {
+            largest: Grid::new(34, 32, 17e-3, 12.8e-3),
+        }
+    }
+
+    fn region(across: [f64; 2]) -> Region {
+        Region {
+            along: [-4e-3, 4e-3],
+            across,
+            narrowest: 5e-3,
+        }
+    }
+
+    /// A region that needs all strips of its window but one keeps their breadth when it moves; a new window for it has broader ones.
+    #[test]
+    fn a_contact_that_just_fits_keeps_its_strips() {
+        let sizes = sizes();
+        let before = sizes.place(&region([20e-3, 31.8e-3]), None);
+        let moved = region([22e-3, 34.3e-3]);
+        let kept = sizes.place(&moved, Some(before));
+        assert_eq!((before.breadth, kept.breadth), (1, 1));
+        assert!(kept.strip > before.strip);
+        assert!(kept.region(&sizes.grid(kept.length, kept.breadth)).meets(&moved));
+        assert_eq!(sizes.place(&moved, None).breadth, 0);
+    }
 }
