@@ -98,6 +98,9 @@ pub struct SplitSettings {
     pub negligible: f64,
     /// Iterations after which Anderson's method takes part. Two plain ones settle most steps.
     pub accelerate_after: usize,
+    /// Ratio of the last two changes below which Anderson's method does not take part: where plain iterations contract, differences that hold the
+    /// error of the mechanics lead away.
+    pub plain_below: f64,
     /// Least temperature to which the change of the temperature is related, `K`.
     pub least_temperature: f64,
     /// The error of an iteration is estimated as its change times the ratio of the last two changes. The estimate is used
@@ -273,6 +276,7 @@ impl Default for SplitSettings {
             mechanics_alone_tolerance: 1e-11,
             negligible: 0.1,
             accelerate_after: 1,
+            plain_below: 0.0,
             least_temperature: 1.0,
             trusted_contraction: 0.3,
             sharpening: 0.1,

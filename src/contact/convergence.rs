@@ -15,6 +15,8 @@ pub struct ConvergenceTest {
     settings: SplitSettings,
     /// Change of the interface vector in the last iteration; infinite before the first.
     change: f64,
+    /// Ratio of the last two changes.
+    ratio: f64,
     /// Change of the shear in the last iteration, relative to the peak pressure.
     shear_change: f64,
     /// Factor on the tolerance of the mechanics: smaller after iterations that did not contract.
@@ -27,6 +29,7 @@ impl ConvergenceTest {
         ConvergenceTest {
             settings,
             change: f64::INFINITY,
+            ratio: f64::INFINITY,
             shear_change: f64::INFINITY,
             sharpened: 1.0,
         }
@@ -47,6 +50,7 @@ impl ConvergenceTest {
         if contraction == 1.0 && self.change.is_finite() {
             self.sharpened *= self.settings.sharpening;
         }
+        self.ratio = change / self.change;
         self.change = change;
         self.shear_change = tractions.shear_change;
         // A node that comes and goes with next to no pressure holds nothing up.
@@ -67,6 +71,11 @@ impl ConvergenceTest {
         } else {
             1.0
         }
+    }
+
+    /// Whether the last iteration has contracted by so much that plain ones go on.
+    pub fn contracts(&self) -> bool {
+        self.ratio < self.settings.plain_below
     }
 
     /// Replaces the change of the last iteration, after more of it has been computed.

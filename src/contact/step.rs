@@ -182,7 +182,7 @@ fn solve_in_room<E: Engine>(
             newton.take_closest(iterate);
             continue;
         }
-        if iterations > settings.accelerate_after {
+        if iterations > settings.accelerate_after && !test.contracts() {
             anderson.next(iterate.values(), image.values_mut());
         }
         std::mem::swap(iterate, image);

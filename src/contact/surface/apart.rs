@@ -33,7 +33,7 @@ impl Resultant {
     /// ∫ p/r dA at a place, to the first order in the block's size over the distance, which counts as at least so much.
     fn at(&self, along: f64, across: f64, least: f64) -> f64 {
         let [x, y] = [along - self.middle[0], across - self.middle[1]];
-        let distance = x.hypot(y).max(least);
+        let distance = (x * x + y * y).sqrt().max(least);
         let [moment_x, moment_y] = self.moments;
         (self.force + (moment_x * x + moment_y * y) / (distance * distance)) / distance
     }
@@ -84,7 +84,7 @@ impl Apart {
     /// Begins with the resultants of the pressure of the fields, or of its change.
     pub fn set_resultants(&mut self, operators: &SurfaceOperators, fields: &SurfaceFields) {
         self.resultants.iter_mut().for_each(Vec::clear);
-        // How many rounds follow must not hang on what was solved before.
+        // What follows must not hang on what was solved before.
         self.places.iter_mut().for_each(|places| places.fill(0.0));
         for (window, place) in fields.used() {
             let grid = operators.of(&place).grid;

@@ -27,6 +27,10 @@ use crate::numerics::dense::add_multiple;
 use crate::parameters::Parameters;
 use crate::settings::{SensitivitySettings, Settings, SplitSettings};
 
+/// Ratio of two changes of the interface vector below which iterations are plain: with contacts of different size the mechanics' errors are a large
+/// part of the last changes.
+const PLAIN_BELOW: f64 = 0.3;
+
 /// Fields before the step at the places of its windows.
 fn at_places<'a>(moved: bool, carried: &'a SurfaceFields, before: &'a SurfaceFields) -> &'a SurfaceFields {
     if moved { carried } else { before }
@@ -85,6 +89,7 @@ impl Engine for SurfaceOperators {
         SplitSettings {
             // The load is found to this by the height of the wheel.
             mechanics_alone_tolerance: settings.patch_split().mechanics_alone_tolerance.max(1e-9),
+            plain_below: PLAIN_BELOW,
             ..settings.patch_split()
         }
     }

@@ -8,12 +8,13 @@
 //! The friction is that of the iteration before, in proportion to the pressure: where all slides, that is exact at once. The approach
 //! is found by the secant method.
 
+use super::approaches::{Approaches, LEAST_SIZE};
 use super::fields::SurfaceFields;
 use super::geometry::{ELSEWHERE, Pose};
 use super::operators::SurfaceOperators;
 use super::search::LEAST_RISE;
 use super::solvers::SurfaceSolvers;
-use super::windows::Place;
+use super::windows::{Place, WINDOWS};
 use crate::contact::engine::Engine;
 use crate::contact::interface::Interface;
 use crate::contact::patch::fields::PatchFields;
@@ -38,24 +39,12 @@ const USUAL_APPROACHES: usize = 8;
 const LOAD_TOLERANCE: f64 = 1e-9;
 /// Error of the load, relative, that is accepted where no approach has a smaller one: it is far below what the mesh resolves.
 const ACCEPTED: f64 = 1e-6;
-/// Change of the excess of load over the error of the pressure that shows the stiffness.
-const SHOWS_STIFFNESS: f64 = 5.0;
-/// Least and largest relative change of the load with a relative one of the approach: Hertz's is 3/2, that of a contact which begins far
-/// below the height of the first touch, on a worn rail, is many times as much.
-const STIFFNESSES: [f64; 2] = [0.3, 100.0];
-/// Part of an excess of load that is left where an approach was chosen too small, and the factor on the stiffness then.
-const SLOW: f64 = 0.5;
-const SOFTER: f64 = 0.4;
-/// Longest step of the approach over the usual one.
-const LONGEST_REACH: f64 = 16.0;
 /// Cells whose mean pressure, under a load, the error of the pressure is measured by.
 const FEW_CELLS: f64 = 10.0;
 /// Error of the pressure at the first approach, relative.
 const FIRST_TOLERANCE: f64 = 1e-3;
 /// Error of the pressure at an approach over that of the load at the one before.
 const TOLERANCE_SHARE: f64 = 0.03;
-/// Approach that counts for a step of it, over that of the largest load.
-const LEAST_SIZE: f64 = 0.05;
 /// Limit of the approach in units of that under the largest load. A search that goes farther is given up: no height carries the load.
 const FARTHEST: f64 = 50.0;
 /// Least ratio of a window's vertical force by friction to that by pressure in a staggered step that finds no height otherwise. At -0.5 the pressure carries
@@ -65,6 +54,8 @@ const LEAST_FRICTION_SHARE: f64 = -0.5;
 const ROUNDS: usize = 60;
 /// Limit of these rounds in a staggered step, whose work is bounded.
 const STAGGERED_ROUNDS: usize = 6;
+/// Change of what the others do to a window, over the approach, that is left when the rounds end, over the error of the pressure.
+const COUPLED_SHARE: f64 = 0.1;
 /// Rounds after which windows that displace each other as much as in the round before do not settle.
 const SETTLING_ROUNDS: usize = 4;
 /// Least change of a displacement in such a round over the approach, and over the change in the round before.
@@ -305,6 +296,9 @@ fn press_with_friction(
 ) -> Result<()> {
     let mut search = Approaches::new(problem, fields, solvers);
     solvers.apart.set_resultants(problem.operators, fields);
+    for (window, place) in fields.used() {
+        solvers.apart.displace(problem.operators, window, &place);
+    }
     let tolerance_of_load = tolerance
         .max(LOAD_TOLERANCE)
         .max(search.load.map_or(0.0, |load| least_load_error(problem, load)));
@@ -361,115 +355,6 @@ fn press_with_friction(
     })
 }
 
-/// Secant method for the approach at which a load is carried.
-struct Approaches {
-    /// Load, `N`; none where the approach is given.
-    load: Option<f64>,
-    /// Approach, `m`.
-    approach: f64,
-    /// Approach before and its excess of load, relative.
-    last: Option<[f64; 2]>,
-    /// Change of the load with the approach, relative, `1/m`.
-    stiffness: f64,
-    /// Approaches known to be too small and too large, `m`.
-    bracket: [f64; 2],
-    /// Longest step over the usual one.
-    reach: f64,
-    /// Approach that counts for the size of a step at least, `m`: a rail that bulges carries at an approach of nothing, and below.
-    size: f64,
-}
-
-impl Approaches {
-    fn new(problem: &SurfaceProblem, fields: &SurfaceFields, solvers: &SurfaceSolvers) -> Approaches {
-        let bracket = [f64::NEG_INFINITY, f64::INFINITY];
-        let size = LEAST_SIZE * problem.operators.shapes[0].scales.displacement;
-        if problem.is_height_given() {
-            return Approaches {
-                load: None,
-                approach: solvers.reference,
-                last: None,
-                stiffness: 0.0,
-                bracket,
-                reach: 1.0,
-                size,
-            };
-        }
-        let (load, approach) = (
-            problem.vertical_load(),
-            fields.approach[0].max(0.05 * solvers.reference),
-        );
-        Approaches {
-            load: Some(load),
-            approach,
-            bracket,
-            reach: 1.0,
-            size,
-            last: None,
-            // Hertz's load is as the approach to the power of 3/2.
-            stiffness: if fields.stiffness > 0.0 {
-                clamped(fields.stiffness / load, approach.abs().max(size))
-            } else {
-                1.5 / approach
-            },
-        }
-    }
-
-    /// Takes the excess of load at the approach, relative, with an error of it, and moves on.
-    fn next(&mut self, excess: f64, error: f64) {
-        if self.load.is_none() {
-            return;
-        }
-        // The force grows with the approach, but for the error of the pressure.
-        if excess.abs() > SHOWS_STIFFNESS * error {
-            self.bracket[usize::from(excess > 0.0)] = self.approach;
-        }
-        if let Some([before, excess_before]) = self.last {
-            if (excess - excess_before).abs() > SHOWS_STIFFNESS * error {
-                let slope = (excess - excess_before) / (self.approach - before);
-                self.stiffness = clamped(slope, self.approach.abs().max(self.size));
-            } else if excess * excess_before > SLOW * excess_before * excess_before {
-                // The way was too small to show the stiffness, which is therefore less than it was taken for.
-                self.stiffness *= SOFTER;
-            }
-        }
-        self.last = Some([self.approach, excess]);
-        // Half way to no contact at most, and to twice the approach: where another contact begins to carry, the stiffness jumps. Where nothing carries
-        // there is none.
-        let next = if excess > -1.0 {
-            self.approach - excess / self.stiffness
-        } else {
-            f64::INFINITY
-        };
-        let size = self.reach * self.approach.abs().max(self.size);
-        let within = next.clamp(self.approach - 0.5 * size, self.approach + size);
-        // What is farther away is reached in steps that grow.
-        self.reach = if within == next {
-            1.0
-        } else {
-            (2.0 * self.reach).min(LONGEST_REACH)
-        };
-        self.approach = within;
-        let [low, high] = self.bracket;
-        if low.is_finite() && high.is_finite() && !(low < self.approach && self.approach < high) {
-            self.approach = 0.5 * (low + high);
-        }
-    }
-
-    /// Leaves the approach and the stiffness in the fields.
-    fn end(&self, fields: &mut SurfaceFields) {
-        fields.approach[0] = self.approach;
-        if let (Some(load), Some(_)) = (self.load, self.last) {
-            fields.stiffness = self.stiffness * load;
-        }
-    }
-}
-
-/// Stiffness within what is possible at an approach, relative, `1/m`.
-fn clamped(stiffness: f64, approach: f64) -> f64 {
-    let [least, most] = STIFFNESSES.map(|stiffness| stiffness / approach);
-    stiffness.clamp(least, most)
-}
-
 /// Solves the pressure of all windows at an approach. Returns the vertical force with the friction in proportion, `N`.
 ///
 /// # Errors
@@ -486,18 +371,28 @@ fn press_at(
         Coupling::Implicit => ROUNDS,
         Coupling::Staggered => STAGGERED_ROUNDS,
     };
+    let coupled = COUPLED_SHARE * tolerance;
+    // Change of what the others do to a window since it was solved, over the approach.
+    let mut pending = [f64::INFINITY; WINDOWS];
     let mut last_change = f64::INFINITY;
     for round in 0..rounds {
-        let mut change = 0.0;
         for (window, place) in fields.used() {
-            let scale = operators.of(&place).scales.displacement;
-            let displaced = solvers.apart.displace(operators, window, &place);
-            change = f64::max(change, displaced * scale / approach.abs().max(LEAST_SIZE * scale));
+            if pending[window] <= coupled {
+                continue;
+            }
             press_window(problem, approach, fields, solvers, (window, place), tolerance)?;
+            pending[window] = 0.0;
             solvers.apart.take(operators, fields, window, &place);
+            for (other, place) in fields.used().filter(|(other, _)| *other != window) {
+                let scale = operators.of(&place).scales.displacement;
+                let displaced = solvers.apart.displace(operators, other, &place);
+                pending[other] += displaced * scale / approach.abs().max(LEAST_SIZE * scale);
+            }
         }
-        // In the second round the first window has seen the others as well; of one contact nothing comes back.
-        if change <= tolerance && (round > 0 || !solvers.apart.is_coupled()) {
+        let change = fields
+            .used()
+            .fold(0.0, |most, (window, _)| f64::max(most, pending[window]));
+        if change <= coupled {
             break;
         }
         let [least, ratio] = UNSETTLED;

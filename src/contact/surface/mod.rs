@@ -4,6 +4,7 @@
 //! where they overlap. In each window the fields, the mechanics, heat and wear are those of a patch.
 
 mod apart;
+mod approaches;
 mod bodies;
 mod contacts;
 mod engine;

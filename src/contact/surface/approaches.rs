@@ -1,0 +1,128 @@
+//! Secant method for the approach at which a load is carried.
+
+use super::fields::SurfaceFields;
+use super::mechanics::SurfaceProblem;
+use super::solvers::SurfaceSolvers;
+
+/// Change of the excess of load over the error of the pressure that shows the stiffness.
+const SHOWS_STIFFNESS: f64 = 5.0;
+/// Least and largest relative change of the load with a relative one of the approach: Hertz's is 3/2, that of a contact which begins far
+/// below the height of the first touch, on a worn rail, is many times as much.
+const STIFFNESSES: [f64; 2] = [0.3, 100.0];
+/// Part of an excess of load that is left where an approach was chosen too small, and the factor on the stiffness then.
+const SLOW: f64 = 0.5;
+const SOFTER: f64 = 0.4;
+/// Longest step of the approach over the usual one.
+const LONGEST_REACH: f64 = 16.0;
+/// Approach that counts for a step of it, over that of the largest load.
+pub const LEAST_SIZE: f64 = 0.05;
+
+/// Secant method for the approach at which a load is carried.
+pub struct Approaches {
+    /// Load, `N`; none where the approach is given.
+    pub load: Option<f64>,
+    /// Approach, `m`.
+    pub approach: f64,
+    /// Approach before and its excess of load, relative.
+    last: Option<[f64; 2]>,
+    /// Change of the load with the approach, relative, `1/m`.
+    stiffness: f64,
+    /// Approaches known to be too small and too large, `m`.
+    bracket: [f64; 2],
+    /// Longest step over the usual one.
+    reach: f64,
+    /// Approach that counts for the size of a step at least, `m`: a rail that bulges carries at an approach of nothing, and below.
+    size: f64,
+}
+
+impl Approaches {
+    /// Search that begins at the approach of the fields, with the stiffness found before; the given approach alone where it is given.
+    pub fn new(problem: &SurfaceProblem, fields: &SurfaceFields, solvers: &SurfaceSolvers) -> Approaches {
+        let bracket = [f64::NEG_INFINITY, f64::INFINITY];
+        let size = LEAST_SIZE * problem.operators.shapes[0].scales.displacement;
+        if problem.is_height_given() {
+            return Approaches {
+                load: None,
+                approach: solvers.reference,
+                last: None,
+                stiffness: 0.0,
+                bracket,
+                reach: 1.0,
+                size,
+            };
+        }
+        let (load, approach) = (
+            problem.vertical_load(),
+            fields.approach[0].max(0.05 * solvers.reference),
+        );
+        Approaches {
+            load: Some(load),
+            approach,
+            bracket,
+            reach: 1.0,
+            size,
+            last: None,
+            // Hertz's load is as the approach to the power of 3/2.
+            stiffness: if fields.stiffness > 0.0 {
+                clamped(fields.stiffness / load, approach.abs().max(size))
+            } else {
+                1.5 / approach
+            },
+        }
+    }
+
+    /// Takes the excess of load at the approach, relative, with an error of it, and moves on.
+    pub fn next(&mut self, excess: f64, error: f64) {
+        if self.load.is_none() {
+            return;
+        }
+        // The force grows with the approach, but for the error of the pressure.
+        if excess.abs() > SHOWS_STIFFNESS * error {
+            self.bracket[usize::from(excess > 0.0)] = self.approach;
+        }
+        if let Some([before, excess_before]) = self.last {
+            if (excess - excess_before).abs() > SHOWS_STIFFNESS * error {
+                let slope = (excess - excess_before) / (self.approach - before);
+                self.stiffness = clamped(slope, self.approach.abs().max(self.size));
+            } else if excess * excess_before > SLOW * excess_before * excess_before {
+                // The way was too small to show the stiffness, which is therefore less than it was taken for.
+                self.stiffness *= SOFTER;
+            }
+        }
+        self.last = Some([self.approach, excess]);
+        // Half way to no contact at most, and to twice the approach: where another contact begins to carry, the stiffness jumps. Where nothing carries
+        // there is none.
+        let next = if excess > -1.0 {
+            self.approach - excess / self.stiffness
+        } else {
+            f64::INFINITY
+        };
+        let size = self.reach * self.approach.abs().max(self.size);
+        let within = next.clamp(self.approach - 0.5 * size, self.approach + size);
+        // What is farther away is reached in steps that grow.
+        self.reach = if within == next {
+            1.0
+        } else {
+            (2.0 * self.reach).min(LONGEST_REACH)
+        };
+        self.approach = within;
+        let [low, high] = self.bracket;
+        if low.is_finite() && high.is_finite() && !(low < self.approach && self.approach < high) {
+            self.approach = 0.5 * (low + high);
+        }
+    }
+
+    /// Leaves the approach and the stiffness in the fields.
+    pub fn end(&self, fields: &mut SurfaceFields) {
+        fields.approach[0] = self.approach;
+        if let (Some(load), Some(_)) = (self.load, self.last) {
+            fields.stiffness = self.stiffness * load;
+        }
+    }
+}
+
+/// Stiffness within what is possible at an approach, relative, `1/m`.
+fn clamped(stiffness: f64, approach: f64) -> f64 {
+    let [least, most] = STIFFNESSES.map(|stiffness| stiffness / approach);
+    stiffness.clamp(least, most)
+}
