@@ -114,12 +114,13 @@ platforms: fmu
 	@$(PY) tools/platforms.py $(PLATFORMS)
 	@$(MAKE) --no-print-directory fmu fmu3
 
-# python/, every FMU that is built, and the command line; the version is that of Cargo.toml. Where the FMU has libraries
-# for other platforms, a second wheel without the command line is for these.
+# python/, every FMU that is built, and the command line; the version is that of Cargo.toml. Where `make platforms` has built
+# the command line for Windows, one with that; where the FMU has libraries for other platforms, one without is for these.
 wheel: fmu fmu3 $(VENV)/ready
 	$(call say,Python package)
 	@rm -rf dist
 	@$(PY) -m hatchling build -t wheel -d dist
+	@if [ -n "$$($(PY) tools/platforms.py --command win64)" ]; then WHEELRAIL_WHEEL=win_amd64 $(PY) -m hatchling build -t wheel -d dist; fi
 	@if $(PY) -m zipfile -l $(FMU) | grep -o 'binaries/[a-z0-9]*/' | grep -v /linux64/ > /dev/null; then \
 	  WHEELRAIL_WHEEL=any $(PY) -m hatchling build -t wheel -d dist; fi
 

@@ -1,7 +1,8 @@
 """What a wheel takes along from outside of python/: FMUs, the command line, a table of inputs, named parameters.
 
-The command line is a program for the platform that it was built on, and so is a wheel with it. `WHEELRAIL_WHEEL=any`
-makes one without it, for each platform that the FMUs have a library for.
+The command line is a program for the platform that it was built on, and so is a wheel with it.
+`WHEELRAIL_WHEEL=win_amd64` takes that which `make platforms` has built for Windows, `WHEELRAIL_WHEEL=any` makes a wheel
+without one, for each platform that the FMUs have a library for.
 """
 
 import os
@@ -24,19 +25,23 @@ class Files(BuildHookInterface):
             build_data["force_include"][str(path)] = f"wheelrail/presets/{path.name}"
         # What is linked in, as CycloneDX, where PEP 770 has it.
         build_data["sbom_files"].append("modelDescription/licenses/THIRD-PARTY.cdx.json")
-        if os.environ.get("WHEELRAIL_WHEEL") == "any":
+        wanted = os.environ.get("WHEELRAIL_WHEEL")
+        if wanted == "any":
             return
         build_data["sbom_files"].append("python/licenses/COMMAND.cdx.json")
-        command = needed(target / "release" / ("wheelrail.exe" if os.name == "nt" else "wheelrail"))
+        if wanted == "win_amd64":
+            command = needed(target / "platforms" / "win64" / "wheelrail.exe", "make platforms")
+        else:
+            command = needed(target / "release" / ("wheelrail.exe" if os.name == "nt" else "wheelrail"))
         build_data["shared_scripts"][str(command)] = command.name
         build_data["pure_python"] = False
-        build_data["tag"] = f"py3-none-{platform(target)}"
+        build_data["tag"] = f"py3-none-{wanted or platform(target)}"
 
 
-def needed(path):
-    """A file that `make fmu` builds."""
+def needed(path, made_by="make fmu"):
+    """A file that a target of the Makefile builds."""
     if not path.exists():
-        raise FileNotFoundError(f"{path.name} is not in {path.parent}: run `make fmu` first")
+        raise FileNotFoundError(f"{path.name} is not in {path.parent}: run `{made_by}` first")
     return path
 
 

@@ -133,6 +133,22 @@ def test_wheel_of_the_other_platforms(wheel, command, tmp_path):
         assert set(second.namelist()) < set(first.namelist())
 
 
+def test_wheel_of_windows(wheel, command, tmp_path):
+    """Where `make platforms` has built the command line of Windows: all of the first wheel, with that command."""
+    built = REPOSITORY / "target" / "platforms" / "win64" / "wheelrail.exe"
+    if not built.exists():
+        pytest.skip("there is no command line of Windows: `make platforms` builds it")
+    other = built_wheel(tmp_path, WHEELRAIL_WHEEL="win_amd64")
+    assert other.name == wheel.name.replace(PLATFORM, "win_amd64")
+    with zipfile.ZipFile(wheel) as first, zipfile.ZipFile(other) as second:
+        ends = [{name.removesuffix(".exe") for name in archive.namelist()} for archive in (first, second)]
+        assert ends[0] == ends[1]
+        (name,) = [name for name in second.namelist() if ".data/scripts/" in name]
+        assert second.read(name) == built.read_bytes()
+        assert b"Tag: py3-none-win_amd64" in second.read(name.partition(".data/")[0] + ".dist-info/WHEEL")
+    assert binaries.needs(built) <= binaries.NEEDED["win64"] | binaries.COMMAND_NEEDED["win64"]
+
+
 def test_command_runs_where_there_is_only_pip(fresh, tmp_path):
     """It is found in the environment, and gives what the package gives, without this repository."""
     _, folder = fresh("import wheelrail")

@@ -20,6 +20,8 @@ NEEDED = {
         "ws2_32.dll",
     },
 }
+# What a command line needs besides.
+COMMAND_NEEDED = {"win64": {"advapi32.dll"}}
 OLDEST_GLIBC = (2, 17)
 
 

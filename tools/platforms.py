@@ -28,10 +28,15 @@ from toolchains import AARCH64, PLATFORMS, WIN64, MissingError
 # What the shared library is made of; the same as in the archive of linux64.
 LIBRARY = ("--locked", "--release", "--lib", "--no-default-features", "--features", "fmi")
 HOST = manoeuvre.HOST
+# The command line, with all features, as on linux64.
+COMMAND = ("--locked", "--release", "--bin", "wheelrail")
 SHIM = HOST.with_name("bcryptprimitives.c")
 WARNINGS = ("-std=c11", "-O2", "-Wall", "-Wextra", "-Werror")
-# Beside a library that is as it should be: a digest of the sources that it was built from.
+# What the command line is tried by: it has to print the lines that it prints on linux64.
+COMMAND_TRIED = (["--version"], ["describe", "--xml", "--fmi", "3"], ["profile", "S1002", "--measures"])
+# Beside a library, and a command, that is as it should be: a digest of the sources that it was built from.
 PASSED = "passed"
+COMMAND_PASSED = "command.passed"
 # The platforms' names in the archive of each version of FMI: 2.0 has none for aarch64.
 NAMES = {"fmi2": {"win64": "win64"}, "fmi3": {"win64": "x86_64-windows", "aarch64-linux": "aarch64-linux"}}
 
@@ -61,10 +66,11 @@ def say(text):
     print(f"\n== {text}", flush=True)
 
 
-def digest_of_sources():
-    """Return a SHA-256 of what libraries are compiled from."""
+def digest_of_sources(with_command=False):
+    """Return a SHA-256 of what libraries are compiled from, or the command line."""
     digest = hashlib.sha256()
-    paths = [path for path in (REPOSITORY / "src").rglob("*.rs") if not path.is_relative_to(REPOSITORY / "src" / "bin")]
+    command = REPOSITORY / "src" / "bin"
+    paths = [path for path in (REPOSITORY / "src").rglob("*.rs") if with_command or not path.is_relative_to(command)]
     for path in sorted([*paths, REPOSITORY / "Cargo.toml", REPOSITORY / "Cargo.lock"]):
         digest.update(f"{path.relative_to(REPOSITORY)}\0".encode() + path.read_bytes())
     return digest.hexdigest()
@@ -84,6 +90,15 @@ def print_binaries(version):
             print(f"--binary={NAMES[version][platform.name]}={path}")
 
 
+def print_command(name):
+    """Print the path of a platform's command line, if it passed."""
+    (platform,) = (platform for platform, _, _ in BUILDS if platform.name == name)
+    folder = PLATFORMS / name
+    mark = folder / COMMAND_PASSED
+    if mark.exists() and mark.read_text() == digest_of_sources(with_command=True):
+        print(folder / platform.command)
+
+
 def reference_library():
     """Return the library of linux64 that `make fmu` left."""
     path = TARGET / "library.path"
@@ -101,6 +116,16 @@ def compile_library(platform, chain):
     (copy.parent / PASSED).unlink(missing_ok=True)
     shutil.copy2(built, copy)
     write_origin(copy, chain.compiler, platform.linker)
+    return copy
+
+
+def compile_command(platform, chain):
+    """Compile the command line of a platform; return a copy that no other build writes to."""
+    chain.call(chain.build, *COMMAND)
+    built = PLATFORMS / "build" / platform.target / "release" / platform.command
+    copy = PLATFORMS / platform.name / platform.command
+    (copy.parent / COMMAND_PASSED).unlink(missing_ok=True)
+    shutil.copy2(built, copy)
     return copy
 
 
@@ -167,6 +192,7 @@ def build(platform, toolchain, report, given):
         return report.fail(platform.name, [f"cargo ended with status {error.returncode}"])
     print(f"{library} ({library.stat().st_size / 1e6:.1f} MB, {time.monotonic() - started:.0f} s)", flush=True)
     report.built[platform.name] = library
+    return chain
 
 
 def inspect(name, reference, report):
@@ -193,6 +219,37 @@ def run(name, host, reference, report, given):
     lines, wrong = reference.compare(printed)
     print("\n".join(lines), f"run in {time.monotonic() - started:.0f} s", sep="\n", flush=True)
     report.fail(name, wrong)
+
+
+def command_line(platform, chain, host, report, given):
+    """Build the command line of a platform for its wheel, and run it: it has to print what that of linux64 does."""
+    started, name = time.monotonic(), f"{platform.name}, command line"
+    say(name)
+    try:
+        command = compile_command(platform, chain)
+        run, environment = host(command.parent, given.install)
+    except MissingError as missing:
+        return report.skip(name, missing)
+    except subprocess.CalledProcessError as error:
+        return report.fail(name, [f"cargo ended with status {error.returncode}"])
+    surplus = binaries.needs(command) - binaries.NEEDED[platform.name] - binaries.COMMAND_NEEDED[platform.name]
+    wrong = [f"needs {sorted(surplus)}"] if surplus else []
+    # What runs the host runs any program.
+    run = [*run[:-1], command]
+    for options in COMMAND_TRIED:
+        own = subprocess.run([*run, *options], capture_output=True, text=True, env=environment)
+        other = subprocess.run([TARGET / "release" / "wheelrail", *options], capture_output=True, text=True)
+        called = f"`wheelrail {' '.join(options)}`"
+        if own.returncode != 0:
+            wrong.append(f"{called} ended with status {own.returncode}: {own.stderr}")
+        elif own.stdout.splitlines() != other.stdout.splitlines():
+            wrong.append(f"{called} prints other lines than on linux64")
+        print(called, flush=True)
+    report.fail(name, wrong)
+    size = command.stat().st_size / 1e6
+    print(f"{command} ({size:.1f} MB), built and run in {time.monotonic() - started:.0f} s", flush=True)
+    if not wrong:
+        (command.parent / COMMAND_PASSED).write_text(digest_of_sources(with_command=True))
 
 
 def copy_sources(folder):
@@ -256,7 +313,12 @@ def main():
     parser.add_argument("--abi-tests", action="store_true", help="run `cargo test --test fmi` under wine as well")
     parser.add_argument("--binaries", choices=NAMES, help="print `wheelrail pack`'s options for what was built before")
     parser.add_argument("--require", action="store_true", help="what is skipped is an error")
+    parser.add_argument(
+        "--command", choices=[WIN64.name], help="print the path of the command line that was built before"
+    )
     given = parser.parse_args()
+    if given.command:
+        return print_command(given.command)
     if given.binaries:
         return print_binaries(given.binaries)
     started, report = time.monotonic(), Report()
@@ -264,12 +326,14 @@ def main():
     reference = Reference(library)
     sources = digest_of_sources()
     for platform, toolchain, host in BUILDS:
-        build(platform, toolchain, report, given)
+        chain = build(platform, toolchain, report, given)
         if platform.name in report.built and not given.build_only:
             inspect(platform.name, library, report)
             run(platform.name, host, reference, report, given)
             if not any(line.startswith(platform.name) for line in report.wrong):
                 (PLATFORMS / platform.name / PASSED).write_text(sources)
+                if platform.command:
+                    command_line(platform, chain, host, report, given)
     if given.abi_tests:
         abi_tests(report, given)
     if given.twice:

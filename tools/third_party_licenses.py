@@ -12,6 +12,8 @@ import subprocess
 from pathlib import Path
 
 REPOSITORY = Path(__file__).resolve().parent.parent
+# Platforms of a wheel with the command line. What one of them alone links is in the lists of both.
+TARGETS = ("x86_64-unknown-linux-gnu", "x86_64-pc-windows-gnu")
 # The files, what each is of, and the features that it is built with.
 OUTPUTS = [
     (REPOSITORY / "modelDescription" / "licenses" / "THIRD-PARTY.txt", "library", "fmi"),
@@ -21,25 +23,9 @@ OUTPUTS = [
 
 def linked_packages(features):
     """Packages of the normal dependencies with some features, procedural macros and build scripts left out."""
-    tree = subprocess.check_output(
-        [
-            "cargo",
-            "tree",
-            "--no-default-features",
-            "--features",
-            features,
-            "--edges",
-            "normal,no-proc-macro",
-            "--prefix",
-            "none",
-            "--target",
-            "x86_64-unknown-linux-gnu",
-            "--format",
-            "{p}",
-        ],
-        cwd=REPOSITORY,
-        text=True,
-    )
+    options = ["--no-default-features", "--features", features, "--edges", "normal,no-proc-macro", "--prefix", "none"]
+    options += [word for target in TARGETS for word in ("--target", target)]
+    tree = subprocess.check_output(["cargo", "tree", *options, "--format", "{p}"], cwd=REPOSITORY, text=True)
     linked = {tuple(line.split()[:2]) for line in tree.splitlines() if line.strip()}
     metadata = json.loads(
         subprocess.check_output(

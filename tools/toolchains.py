@@ -35,9 +35,10 @@ class Platform:
     target: str  # rustc's
     library: str  # cargo's name of the shared library
     linker: str  # in words
+    command: str = ""  # cargo's name of the command line, where a wheel takes it along
 
 
-WIN64 = Platform("win64", "x86_64-pc-windows-gnu", "wheelrail.dll", "MinGW")
+WIN64 = Platform("win64", "x86_64-pc-windows-gnu", "wheelrail.dll", "MinGW", "wheelrail.exe")
 AARCH64 = Platform("aarch64-linux", "aarch64-unknown-linux-gnu", "libwheelrail.so", "zig for glibc 2.17")
 
 
