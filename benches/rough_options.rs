@@ -2,7 +2,8 @@
 //!
 //! Options are falling friction, its memory, layers, the heat of the wheel and the wear of profiles; besides, a wheel that creeps along, V = 0 to 1 m/s, and one that
 //! stands, over one that rolls, and a window for a larger load. The processor's time of a step of each, by turns of a few steps, so that a machine that
-//! becomes slower makes them all slower. Iterations a step are the same on every machine.
+//! becomes slower makes them all slower. Iterations a step are the same on every machine. `cargo bench --bench rough_options -- profiles` has the contacts alone
+//! whose names begin so.
 
 mod braking;
 mod timing;
@@ -146,7 +147,16 @@ fn wear_of_profiles(default: &Parameters, inputs: &[Inputs]) -> Vec<Setting> {
     };
     vec![
         option("plain", f64::INFINITY, plain),
-        option("wear of both profiles", 1.05, wearing),
+        option("wear of both profiles", 1.05, wearing.clone()),
+        // The work of it alone: surfaces change in the last digits, and the iterations are those of the plain step.
+        option(
+            "the same, a millionth of it",
+            1.05,
+            Parameters {
+                wear_acceleration: 1e-6,
+                ..wearing
+            },
+        ),
     ]
 }
 
@@ -254,16 +264,26 @@ fn compare(contact: &str, options: &[Setting]) {
 }
 
 fn main() {
+    // Cargo adds options of its own.
+    let asked = std::env::args().skip(1).find(|argument| !argument.starts_with('-'));
+    let is_asked = |contact: &str| asked.as_ref().is_none_or(|asked| contact.starts_with(asked.as_str()));
     let track = track::track();
     let default = Parameters::default();
     for (name, displacement) in track::PROFILES {
-        let inputs = track::on_profiles(&track, displacement);
-        compare(&format!("profiles, {name}"), &wear_of_profiles(&default, &inputs));
+        let contact = format!("profiles, {name}");
+        if is_asked(&contact) {
+            let inputs = track::on_profiles(&track, displacement);
+            compare(&contact, &wear_of_profiles(&default, &inputs));
+        }
     }
     for (nodes, strips) in [(10, 7), (24, 15), (default.patch_nodes, default.patch_strips)] {
-        let patch = braking::patch_parameters(nodes, strips);
-        compare(&format!("{nodes} x {strips}"), &options(&patch, &track));
+        let contact = format!("{nodes} x {strips}");
+        if is_asked(&contact) {
+            compare(&contact, &options(&braking::patch_parameters(nodes, strips), &track));
+        }
     }
-    let line = braking::parameters(default.contact_nodes);
-    compare("line", &options(&line, &track::straight(&track)));
+    if is_asked("line") {
+        let line = braking::parameters(default.contact_nodes);
+        compare("line", &options(&line, &track::straight(&track)));
+    }
 }

@@ -232,6 +232,11 @@ impl WindowGeometry {
         }
     }
 
+    /// Surface of the rail in the middle of the strips.
+    pub fn points(&self) -> &[RailPoint] {
+        &self.points
+    }
+
     /// Takes what another one has found.
     pub fn copy_from(&mut self, other: &WindowGeometry) {
         self.points.copy_from_slice(&other.points);

@@ -23,7 +23,7 @@ use crate::contact::patch::operators::PatchOperators;
 use crate::contact::patch::problem::PatchProblem;
 use crate::contact::problem::{Coupling, Problem};
 use crate::error::{Error, Result};
-use crate::geometry::rail::PlacedRail;
+use crate::geometry::unrolled::RailPoint;
 use crate::mechanics::normal::normal_problem::Constraint;
 use crate::mechanics::normal_tangential::TractionChange;
 use crate::parameters::Control;
@@ -115,17 +115,24 @@ impl<'a> SurfaceProblem<'a> {
         window: usize,
         place: &Place,
     ) -> [f64; 2] {
-        let rail = &solvers.worn.of(self.operators).rail;
+        let points = solvers.windows[window].geometry.points();
         let vertical = self.pose().vertical();
-        vertical_forces(self.operators, vertical, rail, place, &fields.windows[window])
+        vertical_forces(
+            self.operators,
+            vertical,
+            |strip| points[strip],
+            place,
+            &fields.windows[window],
+        )
     }
 }
 
-/// Forces of a window on the wheel along the track's vertical, given in the rail's axes, or their changes: of the pressure and of the friction, `N`.
+/// Forces of a window on the wheel along the track's vertical, given in the rail's axes, or their changes: of the pressure and of the friction, `N`. `point` is the rail's
+/// surface in the middle of a strip.
 pub fn vertical_forces(
     operators: &SurfaceOperators,
     vertical: [f64; 2],
-    rail: &PlacedRail,
+    point: impl Fn(usize) -> RailPoint,
     place: &Place,
     fields: &PatchFields,
 ) -> [f64; 2] {
@@ -138,7 +145,7 @@ pub fn vertical_forces(
         if pressure == 0.0 && shear == 0.0 {
             continue;
         }
-        let point = rail.at(place.arc(grid, strip));
+        let point = point(strip);
         let upward = |direction: [f64; 2]| vertical[0] * direction[0] + vertical[1] * direction[1];
         forces[0] += upward(point.normal) * pressure;
         forces[1] -= upward(point.tangent()) * shear;

@@ -159,6 +159,9 @@ pub fn wear(problem: &SurfaceProblem, bodies: &Bodies, fields: &mut SurfaceField
         depth[body][cell] += duration * area / operators.grids[body].spacing;
     });
     fields.worn.depth = depth;
-    let cells = (fields.worn.depth.iter().flatten()).zip(fields.worn.before.iter().flatten());
-    cells.fold(0.0, |largest: f64, (after, before)| largest.max((after - before).abs()))
+    let change = |body: usize| {
+        let cells = fields.worn.depth[body].iter().zip(&fields.worn.before[body]);
+        cells.fold(0.0, |largest: f64, (after, before)| largest.max((after - before).abs()))
+    };
+    change(WHEEL).max(change(RAIL))
 }

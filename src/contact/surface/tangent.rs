@@ -214,9 +214,10 @@ fn touches(fields: &PatchFields) -> bool {
 /// Force of all windows along the track's vertical, given in the rail's axes, or its change, `N`.
 fn vertical_force(operators: &SurfaceOperators, vertical: [f64; 2], worn: &WornBodies, fields: &SurfaceFields) -> f64 {
     let rail = &worn.of(operators).rail;
-    let forces = fields
-        .used()
-        .map(|(window, place)| vertical_forces(operators, vertical, rail, &place, &fields.windows[window]));
+    let forces = fields.used().map(|(window, place)| {
+        let point = |strip: usize| rail.at(place.arc(&operators.of(&place).grid, strip));
+        vertical_forces(operators, vertical, point, &place, &fields.windows[window])
+    });
     forces.map(|[normal, friction]| normal + friction).sum()
 }
 

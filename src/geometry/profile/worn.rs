@@ -125,7 +125,8 @@ pub(super) fn worn(here: &CurvePoint, curvature_slope: f64, depth: [f64; 3], sid
         -(curvature_slope * left + 2.0 * curvature * slope),
         stretch * curvature + second,
     );
-    let speed = stretch.hypot(slope);
+    // Neither is small or large, as `hypot` would have to look at.
+    let speed = (stretch * stretch + slope * slope).sqrt();
     Worn {
         point: CurvePoint {
             place: [here.place[0] - left * tz, here.place[1] + left * ty],

@@ -32,10 +32,12 @@ struct Knot {
     arc: f64,
     /// Place; the direction is the mean of both sides.
     point: CurvePoint,
+    /// Whether the profile is the same on both sides.
+    is_smooth: bool,
 }
 
 /// End of a polynomial on the new profile.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 struct End {
     point: CurvePoint,
     curvature_slope: f64,
@@ -74,10 +76,16 @@ impl WornHeight {
                 ends[after][usize::from(knot == parts.len())],
             ];
             let [y, z] = [0, 1].map(|k| left.point.tangent[k] + right.point.tangent[k]);
-            let tangent = [y / y.hypot(z), z / y.hypot(z)];
+            let is_smooth = left == right;
+            let tangent = if is_smooth {
+                left.point.tangent
+            } else {
+                [y / y.hypot(z), z / y.hypot(z)]
+            };
             Knot {
                 arc,
                 point: CurvePoint { tangent, ..left.point },
+                is_smooth,
             }
         });
         Ok(WornHeight {
@@ -113,28 +121,29 @@ impl WornHeight {
         let first = self.knots.partition_point(|knot| knot.arc <= from).saturating_sub(1);
         let last = self.knots.partition_point(|knot| knot.arc < to).min(self.ends.len());
         let place = |knot: usize, depth: [f64; 3]| worn(&self.knots[knot].point, 0.0, depth, side).point.place;
+        let at = |end: &End, depth: [f64; 3]| worn(&end.point, end.curvature_slope, depth, side).point;
         let mut depth_before = depth(self.knots[first].arc);
         let mut before = place(first, depth_before);
+        // Where a knot has but one side, the end of a cell is the beginning of the next one.
+        let mut carried: Option<CurvePoint> = None;
         for cell in first..last {
-            let [
-                Knot { arc, point: new },
-                Knot {
-                    arc: next,
-                    point: new_next,
-                },
-            ] = [self.knots[cell], self.knots[cell + 1]];
-            let depth_after = depth(next);
-            let after = place(cell + 1, depth_after);
-            if after[0] - before[0] < LEAST_STRETCH * (new_next.place[0] - new.place[0]) {
-                return Err(arc);
+            let [knot, next] = [&self.knots[cell], &self.knots[cell + 1]];
+            let depth_after = depth(next.arc);
+            let [begin, end] = &self.ends[cell];
+            let mut after = at(end, depth_after);
+            if !next.is_smooth {
+                after.place = place(cell + 1, depth_after);
             }
-            let [begin, end] = self.ends[cell];
-            let at = |end: End, depth: [f64; 3], place: [f64; 2]| CurvePoint {
-                place,
-                ..worn(&end.point, end.curvature_slope, depth, side).point
-            };
-            function.replace(cell, [at(begin, depth_before, before), at(end, depth_after, after)]);
-            (before, depth_before) = (after, depth_after);
+            if after.place[0] - before[0] < LEAST_STRETCH * (next.point.place[0] - knot.point.place[0]) {
+                return Err(knot.arc);
+            }
+            let begin = carried.unwrap_or_else(|| CurvePoint {
+                place: before,
+                ..at(begin, depth_before)
+            });
+            function.replace(cell, [begin, after]);
+            carried = next.is_smooth.then_some(after);
+            (before, depth_before) = (after.place, depth_after);
         }
         Ok(())
     }
