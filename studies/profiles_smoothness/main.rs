@@ -4,11 +4,11 @@
 //!
 //! A wheelset S1002 on 60E1 rolls at 20 m/s and moves from 4 to 8 mm to the left in steps of 0.01 mm, a millisecond each: on the left the load goes from the tread to
 //! the flange, on the right it stays on the tread. With the force F_i after the step i and its change d_i = F_{i+1} − F_i, the jump beyond the slope is
-//! |d_i − (d_{i−1} + d_{i+1})/2|, over the load. About the largest the way is gone again in tenths of the steps: what jumps stays as large, what is steep or
-//! bends becomes smaller by the ten- to the thousandfold.
+//! |d_i − (d_{i−1} + d_{i+1})/2|, over the load. About the largest, and wherever windows change, the way is gone again in tenths of the steps: what jumps stays as
+//! large, what is steep or bends becomes smaller by the ten- to the thousandfold.
 //!
-//! A row for each wheel, load and force: the largest jump, what is left of it with a tenth of the step, the way on which the force changes as much by
-//! its slope there, and what changes there of the windows.
+//! A row for each wheel, load and force: the largest jump, the largest one with a tenth of the step, and of this the place, the way on which the force changes
+//! as much by its slope there, and what changes there of the windows.
 
 use std::io::{self, Write};
 use wheelrail::parameters::{ContactModel, Parameters, Side, SlipSource};
@@ -110,6 +110,9 @@ fn largest_jump(points: &[Point], load: f64, force: fn(&Outputs) -> f64) -> Jump
     jumps.max_by(|a, b| a.size.total_cmp(&b.size)).unwrap_or_default()
 }
 
+/// Word for windows that have not changed.
+const UNCHANGED: &str = "-";
+
 /// Words for what has changed of the windows from one point to the next.
 fn changes(before: &Point, after: &Point) -> String {
     let (from, to) = (&before.windows, &after.windows);
@@ -120,9 +123,13 @@ fn changes(before: &Point, after: &Point) -> String {
         _ if from[1] != to[1] => format!("strips of {:.0} µm, then {:.0}", 1e6 * from[1], 1e6 * to[1]),
         _ if from[0] != to[0] => format!("cells of {:.0} µm, then {:.0}", 1e6 * from[0], 1e6 * to[0]),
         _ if from[2] != to[2] => format!("moved by {:.0} strips", (to[2] - from[2]) / to[1]),
-        _ => "-".to_owned(),
+        _ => UNCHANGED.to_owned(),
     });
-    words.collect::<Vec<_>>().join("; ")
+    let words: Vec<_> = words.collect();
+    if words.iter().all(|word| word == UNCHANGED) {
+        return UNCHANGED.to_owned();
+    }
+    words.join("; ")
 }
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -147,22 +154,36 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             let count = ((RANGE[1] - RANGE[0]) * 1e3 * STEPS_IN_MILLIMETRE).round() as usize;
             let step = 1e-3 / STEPS_IN_MILLIMETRE;
             let points = case.way(&mut run, (0..=count).map(|k| RANGE[0] + step * k as f64))?;
-            for (force_name, force) in FORCES {
-                let coarse = largest_jump(&points, load, force);
-                let from = &points[coarse.point.saturating_sub(3)];
+            let largest = FORCES.map(|(_, force)| largest_jump(&points, load, force));
+            // About the largest jumps and wherever windows change, in tenths of the steps.
+            let changed = (1..points.len() - 2).filter(|&k| changes(&points[k], &points[k + 1]) != UNCHANGED);
+            let mut places: Vec<_> = changed.chain(largest.iter().map(|jump| jump.point)).collect();
+            places.sort_unstable();
+            places.dedup();
+            let mut left = [const { None::<(Jump, String, f64)> }; FORCES.len()];
+            for place in places {
+                let from = &points[place.saturating_sub(3)];
                 let mut again = Simulation::resume(model.clone(), from.state.clone())?;
                 let finer = (1..=6 * FINER).map(|k| from.displacement + step * k as f64 / FINER as f64);
                 let fine = case.way(&mut again, finer)?;
-                let left = largest_jump(&fine, load, force);
+                for ((_, force), left) in FORCES.iter().zip(&mut left) {
+                    let jump = largest_jump(&fine, load, *force);
+                    if left.as_ref().is_none_or(|(most, ..)| jump.size > most.size) {
+                        let [before, after] = [0, 1].map(|k| &fine[jump.point + k]);
+                        *left = Some((jump, changes(before, after), before.displacement));
+                    }
+                }
+            }
+            for (((force_name, _), coarse), left) in FORCES.iter().zip(largest).zip(left) {
+                let (fine, windows, displacement) = left.unwrap_or_default();
                 writeln!(
                     out,
-                    "| {name} | {:.0} | {force_name} | {:.3} | {:.3} | {:.3} | {:.2} | {} |",
+                    "| {name} | {:.0} | {force_name} | {:.3} | {:.3} | {:.3} | {:.2} | {windows} |",
                     1e-3 * load,
                     100.0 * coarse.size,
-                    100.0 * left.size,
-                    1e3 * fine[left.point].displacement,
-                    1e6 * left.way,
-                    changes(&fine[left.point], &fine[left.point + 1]),
+                    100.0 * fine.size,
+                    1e3 * displacement,
+                    1e6 * fine.way,
                 )?;
             }
         }

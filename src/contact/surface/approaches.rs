@@ -1,8 +1,6 @@
 //! Secant method for the approach at which a load is carried.
 
 use super::fields::SurfaceFields;
-use super::mechanics::SurfaceProblem;
-use super::solvers::SurfaceSolvers;
 
 /// Change of the excess of load over the error of the pressure that shows the stiffness.
 const SHOWS_STIFFNESS: f64 = 5.0;
@@ -36,38 +34,33 @@ pub struct Approaches {
 }
 
 impl Approaches {
-    /// Search that begins at the approach of the fields, with the stiffness found before; the given approach alone where it is given.
-    pub fn new(problem: &SurfaceProblem, fields: &SurfaceFields, solvers: &SurfaceSolvers) -> Approaches {
-        let bracket = [f64::NEG_INFINITY, f64::INFINITY];
-        let size = LEAST_SIZE * problem.operators.shapes[0].scales.displacement;
-        if problem.is_height_given() {
-            return Approaches {
-                load: None,
-                approach: solvers.reference,
-                last: None,
-                stiffness: 0.0,
-                bracket,
-                reach: 1.0,
-                size,
-            };
+    /// The given approach alone, `m`.
+    pub fn given(approach: f64) -> Approaches {
+        Approaches {
+            load: None,
+            approach,
+            last: None,
+            stiffness: 0.0,
+            bracket: [f64::NEG_INFINITY, f64::INFINITY],
+            reach: 1.0,
+            size: 0.0,
         }
-        let (load, approach) = (
-            problem.vertical_load(),
-            fields.approach[0].max(0.05 * solvers.reference),
-        );
+    }
+
+    /// Search for the approach of a load, `N`, from a guess, `m`, with the stiffness found before, `N/m`, or none. `scale` is the approach under the largest
+    /// load, `m`.
+    pub fn of_load(load: f64, approach: f64, stiffness: f64, scale: f64) -> Approaches {
+        let size = LEAST_SIZE * scale;
         Approaches {
             load: Some(load),
-            approach,
-            bracket,
-            reach: 1.0,
             size,
-            last: None,
             // Hertz's load is as the approach to the power of 3/2.
-            stiffness: if fields.stiffness > 0.0 {
-                clamped(fields.stiffness / load, approach.abs().max(size))
+            stiffness: if stiffness > 0.0 {
+                clamped(stiffness / load, approach.abs().max(size))
             } else {
                 1.5 / approach
             },
+            ..Approaches::given(approach)
         }
     }
 

@@ -301,7 +301,13 @@ fn press_with_friction(
     solvers: &mut SurfaceSolvers,
     tolerance: f64,
 ) -> Result<()> {
-    let mut search = Approaches::new(problem, fields, solvers);
+    let scale = problem.operators.shapes[0].scales.displacement;
+    let mut search = if problem.is_height_given() {
+        Approaches::given(solvers.reference)
+    } else {
+        let guess = fields.approach[0].max(0.05 * solvers.reference);
+        Approaches::of_load(problem.vertical_load(), guess, fields.stiffness, scale)
+    };
     solvers.apart.set_resultants(problem.operators, fields);
     for (window, place) in fields.used() {
         solvers.apart.displace(problem.operators, window, &place);
@@ -310,7 +316,7 @@ fn press_with_friction(
         .max(LOAD_TOLERANCE)
         .max(search.load.map_or(0.0, |load| least_load_error(problem, load)));
     let mut left = f64::INFINITY;
-    let farthest = FARTHEST * problem.operators.shapes[0].scales.displacement;
+    let farthest = FARTHEST * scale;
     // The pressure need not be better than the approach is.
     let mut own_tolerance = tolerance.max(FIRST_TOLERANCE);
     let budget = problem.mechanics_budget();
