@@ -276,7 +276,7 @@ fn main() {
             compare(&contact, &wear_of_profiles(&default, &inputs));
         }
     }
-    for (nodes, strips) in [(10, 7), (24, 15), (default.patch_nodes, default.patch_strips)] {
+    for (nodes, strips) in [(8, 8), (24, 15), (default.patch_nodes, default.patch_strips)] {
         let contact = format!("{nodes} x {strips}");
         if is_asked(&contact) {
             compare(&contact, &options(&braking::patch_parameters(nodes, strips), &track));

@@ -15,7 +15,7 @@ use wheelrail::parameters::ContactModel;
 
 const ROUNDS: usize = 3;
 /// Cells along and across.
-const GRIDS: [(usize, usize); 6] = [(34, 21), (24, 15), (16, 11), (12, 9), (10, 7), (8, 5)];
+const GRIDS: [(usize, usize); 6] = [(34, 21), (24, 15), (16, 11), (12, 9), (8, 8), (8, 5)];
 
 fn main() {
     let track = track::track();

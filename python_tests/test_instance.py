@@ -287,12 +287,12 @@ def test_grids_of_a_patch_by_name(either):
     grids = {name: Instance(either, contact_model="patch", patch_grid=name) for name in ("fast", "default", "fine")}
     cells = {name: instance.get("patch_nodes", "patch_strips") for name, instance in grids.items()}
     assert cells["default"] == Instance(either).get("patch_nodes", "patch_strips")
-    assert cells["fast"] == [10, 7]
+    assert cells["fast"] == [8, 8]
     assert cells["fine"] > cells["default"] > cells["fast"]
     instance = grids["default"]
     if either.endswith("Contact.fmu"):
         instance.set(patch_grid="fast")
-        assert instance.get("patch_nodes", "patch_strips") == [10, 7]
+        assert instance.get("patch_nodes", "patch_strips") == [8, 8]
     else:
         with pytest.raises(ValueError, match="length of arrays"):
             instance.set(patch_grid="fast")
