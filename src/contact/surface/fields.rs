@@ -139,8 +139,8 @@ macro_rules! rows_of_windows {
             row!(Nonlinear, Extrapolated, approach),
             row!(Independent, Before, worn.depth[0]),
             row!(Independent, Before, worn.depth[1]),
-            row!(Independent, Before, worn.before[0]),
-            row!(Independent, Before, worn.before[1]),
+            row!(Independent, Computed, worn.before[0]),
+            row!(Independent, Computed, worn.before[1]),
             $(
                 row!(Nonlinear, Extrapolated, windows[$window].shear[0]),
                 row!(Nonlinear, Extrapolated, windows[$window].shear[1]),

@@ -155,13 +155,12 @@ pub fn wear(problem: &SurfaceProblem, bodies: &Bodies, fields: &mut SurfaceField
     let (operators, duration) = (problem.operators, problem.conditions.duration);
     // The depths are taken out, so that what the fields wear can be added to them.
     let mut depth = std::mem::take(&mut fields.worn.depth);
+    let mut change = 0f64;
     areas(problem, bodies, fields, |body, cell, area| {
         depth[body][cell] += duration * area / operators.grids[body].spacing;
+        // No part is negative: the last one that a cell gets makes the change the largest.
+        change = change.max(depth[body][cell] - fields.worn.before[body][cell]);
     });
     fields.worn.depth = depth;
-    let change = |body: usize| {
-        let cells = fields.worn.depth[body].iter().zip(&fields.worn.before[body]);
-        cells.fold(0.0, |largest: f64, (after, before)| largest.max((after - before).abs()))
-    };
-    change(WHEEL).max(change(RAIL))
+    change
 }

@@ -101,7 +101,7 @@ impl WornBodies {
         };
         if let Some(cells) = differing(&own[WHEEL], &depths[WHEEL]) {
             let (grid, depth) = (&operators.grids[WHEEL], &depths[WHEEL]);
-            let reach = grid.reach(cells);
+            let reach = grid.reach(cells.clone());
             let folded = operators
                 .worn_height
                 .wear(&mut bodies.wheel.profile, reach, |arc| grid.at(depth, arc));
@@ -110,14 +110,14 @@ impl WornBodies {
                 own[WHEEL].fill(f64::NAN);
                 return Err(worn_away(operators, WHEEL, grid.at(depth, arc)[0], arc));
             }
-            own[WHEEL].copy_from_slice(depth);
+            own[WHEEL][cells.clone()].copy_from_slice(&depth[cells]);
             bodies.measures = measures(&bodies.wheel);
         }
         if let Some(cells) = differing(&own[RAIL], &depths[RAIL]) {
             let (grid, depth) = (&operators.grids[RAIL], &depths[RAIL]);
-            let [from, to] = grid.reach(cells);
+            let [from, to] = grid.reach(cells.clone());
             if let Some(worn) = bodies.rail.depth_mut() {
-                worn.copy_from_slice(depth);
+                worn[cells.clone()].copy_from_slice(&depth[cells.clone()]);
             }
             for (arc, point) in &mut bodies.scan {
                 if from <= *arc && *arc <= to {
@@ -128,7 +128,7 @@ impl WornBodies {
                     }
                 }
             }
-            own[RAIL].copy_from_slice(depth);
+            own[RAIL][cells.clone()].copy_from_slice(&depth[cells]);
         }
         Ok(())
     }

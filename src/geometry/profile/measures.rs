@@ -182,7 +182,15 @@ impl WheelMeasures {
         let slope = |y: f64| function.value_slope_curvature(y)[1];
         let (knots, begins) = (function.knots(), |cell: usize| function.beginning(cell)[0]);
         let (datum, middle, last) = (height(0.0), function.cell_of(0.0), knots.len() - 2);
-        let lowest = (0..=middle).min_by(|&a, &b| begins(a).total_cmp(&begins(b)))?;
+        let lower = |(lowest, least): (usize, f64), cell: usize| {
+            let height = begins(cell);
+            if height < least {
+                (cell, height)
+            } else {
+                (lowest, least)
+            }
+        };
+        let (lowest, _) = (0..=middle).fold((0, f64::INFINITY), lower);
         if lowest == 0 || datum - begins(lowest) < THICKNESS_DEPTH + GRADIENT_HEIGHT {
             return None;
         }
@@ -198,8 +206,11 @@ impl WheelMeasures {
             highest = highest.max(height);
             deepest = deepest.max(highest - height);
         };
+        let mut next = function.beginning((thick + 1).min(last));
         for cell in thick + 1..last {
-            let [[here, rises], [_, rises_next]] = [cell, cell + 1].map(|cell| function.beginning(cell));
+            let [here, rises] = next;
+            next = function.beginning(cell + 1);
+            let [_, rises_next] = next;
             visit(here);
             if rises * rises_next < 0.0 {
                 visit(height(crossing([knots[cell], knots[cell + 1]], slope)));
