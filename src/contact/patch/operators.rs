@@ -12,7 +12,7 @@ use crate::geometry::gap;
 use crate::heat::basis::DepthBasis;
 use crate::heat::incoming::Incoming;
 use crate::mechanics::leading_edge::LAYER_STRAIN;
-use crate::mechanics::patch::normal::NormalInfluence;
+use crate::mechanics::patch::normal::{NarrowInfluence, NormalInfluence};
 use crate::parameters::Parameters;
 use crate::transport::strips::Strips;
 use std::f64::consts::PI;
@@ -43,8 +43,8 @@ pub struct PatchOperators {
     /// Transforms that serve fewer strips, ascending, with the tables of u by shear for them: a product costs as much as it serves
     /// strips.
     pub narrow: Vec<(Transform, Tables<f64>)>,
-    /// Transforms with tables of the normal influence, for windows whose contact is known to be within a part of them; none else.
-    pub narrow_normal: Vec<(Transform, Tables<f64>)>,
+    /// Normal influence for fewer strips, ascending, for windows whose contact is known to be within a part of them; none else.
+    pub narrow_normal: Vec<NarrowInfluence>,
     /// The kernels of u_x by τ_x and of u_y by τ_y of a strip on itself, by the lag along x, as the tables have it.
     pub strip_kernels: [Vec<f64>; 2],
     /// Displacement u by pressure, and with the same tables the upward displacement by shear, scaled; none where the bodies are alike.
@@ -114,11 +114,7 @@ impl PatchOperators {
                 .collect(),
             narrow_normal: narrow_normal
                 .iter()
-                .map(|&strips| Transform::new(&grid, strips))
-                .map(|transform| {
-                    let tables = transform.scalar_tables(|lag| kernels.normal(lag));
-                    (transform, tables)
-                })
+                .map(|&strips| NarrowInfluence::new(Transform::new(&grid, strips), |lag| kernels.normal(lag)))
                 .collect(),
             strip_kernels: strip_kernels(&kernels, &grid),
             coupling: kernels.coupling(&transform),

@@ -79,6 +79,29 @@ impl NormalInfluence {
     }
 }
 
+/// Normal influence for loads on a part of the strips: a product costs as much as it serves strips.
+#[derive(Debug, Clone)]
+pub struct NarrowInfluence {
+    /// Transform of the tables.
+    transform: Transform,
+    /// A.
+    tables: Tables<f64>,
+    /// A in single precision.
+    single: Tables<f32>,
+}
+
+impl NarrowInfluence {
+    /// Normal influence for a transform, as a function of the lag.
+    pub fn new(transform: Transform, influence: impl Fn((isize, isize)) -> f64) -> NarrowInfluence {
+        let tables = transform.scalar_tables(influence);
+        NarrowInfluence {
+            single: tables.single(),
+            tables,
+            transform,
+        }
+    }
+}
+
 /// Data of one normal problem.
 #[derive(Clone, Copy)]
 pub struct PatchNormalProblem<'a> {
@@ -88,9 +111,9 @@ pub struct PatchNormalProblem<'a> {
     pub transform: &'a Transform,
     /// A.
     pub normal_influence: &'a NormalInfluence,
-    /// Transforms that serve fewer strips, ascending, with the tables of A for them: where a penetration is given, contact is only where the
+    /// Normal influence for fewer strips, ascending: where a penetration is given, contact is only where the
     /// undeformed bodies overlap, and nothing else need be looked at. None looks at the whole grid.
-    pub narrow: &'a [(Transform, Tables<f64>)],
+    pub narrow: &'a [NarrowInfluence],
     /// g on the grid.
     pub gap: &'a [f64],
     /// D on the grid.
@@ -99,6 +122,14 @@ pub struct PatchNormalProblem<'a> {
     pub constraint: Constraint,
     /// Error of the pressure to be reached.
     pub tolerance: f64,
+}
+
+/// Transform and tables for a product, and the part of the grid that it reads.
+struct Frame<'p> {
+    transform: &'p Transform,
+    tables: &'p Tables<f64>,
+    single: &'p Tables<f32>,
+    window: Window,
 }
 
 /// Solver of the normal problem and its buffers.
@@ -270,11 +301,7 @@ impl Normal {
     }
 
     /// Part of the grid that a product reads for loads on the contact, with the transform and the tables that serve it.
-    fn frame<'p>(
-        &self,
-        problem: &PatchNormalProblem<'p>,
-        contact: &Contact,
-    ) -> (&'p Transform, &'p Tables<f64>, Window) {
+    fn frame<'p>(&self, problem: &PatchNormalProblem<'p>, contact: &Contact) -> Frame<'p> {
         let loaded = contact.window(problem.grid, 0);
         let hull = |a: &Range<usize>, b: &Range<usize>| {
             if b.is_empty() {
@@ -288,16 +315,31 @@ impl Normal {
             read: hull(&self.window.read, &loaded.loaded),
             loaded: loaded.loaded,
         };
-        let serves = |transform: &Transform| transform.strips() >= window.strips.len();
-        match problem.narrow.iter().find(|(transform, _)| serves(transform)) {
-            Some((transform, tables)) => (transform, tables, window),
-            None => (problem.transform, &problem.normal_influence.tables, window),
+        let serves = |narrow: &&NarrowInfluence| narrow.transform.strips() >= window.strips.len();
+        match problem.narrow.iter().find(serves) {
+            Some(narrow) => Frame {
+                transform: &narrow.transform,
+                tables: &narrow.tables,
+                single: &narrow.single,
+                window,
+            },
+            None => Frame {
+                transform: problem.transform,
+                tables: &problem.normal_influence.tables,
+                single: &problem.normal_influence.single,
+                window,
+            },
         }
     }
 
     /// The displacement by a pressure, unless it is known.
     fn displace(&mut self, problem: &PatchNormalProblem, contact: &Contact, pressure: &[f64]) {
-        let (transform, tables, window) = self.frame(problem, contact);
+        let Frame {
+            transform,
+            tables,
+            window,
+            ..
+        } = self.frame(problem, contact);
         let holds = |outer: &Range<usize>, inner: &Range<usize>| outer.start <= inner.start && inner.end <= outer.end;
         let known = holds(&self.displaced.strips, &window.strips) && holds(&self.displaced.read, &window.read);
         if known && self.displaced_by == pressure {
@@ -352,7 +394,12 @@ impl Normal {
         tolerance: f64,
     ) -> (f64, f64) {
         let (grid, n) = (problem.grid, contact.cells());
-        let (transform, tables, window) = self.frame(problem, contact);
+        let Frame {
+            transform,
+            tables,
+            single,
+            window,
+        } = self.frame(problem, contact);
         let preconditioner: usize = contact.runs().iter().map(|run| run.cells * run.cells).sum();
         let work = work_of_product(transform, &window, 1) + preconditioner as u64;
         self.displace(problem, contact, pressure);
@@ -370,8 +417,7 @@ impl Normal {
         }
         let load_given = matches!(problem.constraint, Constraint::Total(_));
         // What single precision leaves out is far below so large a tolerance.
-        let in_single =
-            problem.tolerance >= self.settings.single_tolerance && std::ptr::eq(transform, problem.transform);
+        let in_single = problem.tolerance >= self.settings.single_tolerance;
         self.ones[..n].fill(1.0);
         problem
             .normal_influence
@@ -419,8 +465,7 @@ impl Normal {
                     *single = *double as f32;
                 }
                 let (load, out) = ([&direction[..], &nothing[..]], [&mut image[..], &mut ignored[..]]);
-                let tables = &problem.normal_influence.single;
-                transform.apply_single(tables, &window, load, out, &mut self.scratch_single);
+                transform.apply_single(single, &window, load, out, &mut self.scratch_single);
                 for (double, single) in self.direction_image.iter_mut().zip(image) {
                     *double = f64::from(*single);
                 }
