@@ -8,9 +8,11 @@ mod interface;
 #[cfg(test)]
 pub(crate) mod limits;
 mod patch;
+mod step;
 
 pub use interface::InterfaceSettings;
 pub use patch::PatchSettings;
+pub use step::StepSettings;
 
 /// Settings of all solvers. A [`crate::wheel_rail::Model`] has one set, the default unless told otherwise.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -35,35 +37,6 @@ pub struct Settings {
     pub patch: PatchSettings,
     /// The interface vector of hard steps, and the linear systems of its changes.
     pub interface: InterfaceSettings,
-}
-
-/// Division of a step into sub-steps.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct StepSettings {
-    /// A change of the inputs by more than this share of their scale is a jump: what follows it is a transient of the
-    /// length of a passage, which one long implicit step would smear.
-    pub jump: f64,
-    /// Length of the first sub-step after a jump, in passages of the contact window; each further one is twice as long.
-    pub first_substep: f64,
-    /// Largest number of sub-steps of equal length while the inputs change at given rates.
-    pub ramp_substeps: f64,
-    /// Shortest time that a step takes, `s`: a rate of change over less would overflow, and no output tells the
-    /// difference.
-    pub shortest: f64,
-    /// Number of times in one step that a sub-step that fails is tried again with a quarter of its length; those after
-    /// it stay below half of it. 12: a 16-millionth of the step.
-    pub retries: usize,
-    /// Sub-steps at that limit after which it is doubled.
-    pub substeps_at_limit: usize,
-    /// Number of sub-steps in which the rest of a step is taken staggered whose coupled equations are not solved; 0 refuses such a
-    /// step.
-    pub staggered_substeps: usize,
-    /// Number of times in one step that a staggered sub-step that fails is tried again with a quarter of its length.
-    pub staggered_retries: usize,
-    /// Budget of a step in multiplications and additions, about: counted, not timed.
-    pub work: u64,
-    /// Work of the mechanics in a staggered sub-step after which they are not solved any closer.
-    pub staggered_work: u64,
 }
 
 /// Convergence of the operator split.
@@ -241,23 +214,6 @@ pub struct SensitivitySettings {
     /// Least step, relative to the nominal value of the input. Like bodies at creepage 0 have fields that are nothing but
     /// round-off, and a share of those is lost in the outputs that the others make; no contact changes within this step.
     pub least_output_step: f64,
-}
-
-impl Default for StepSettings {
-    fn default() -> Self {
-        StepSettings {
-            jump: 0.2,
-            first_substep: 0.25,
-            ramp_substeps: 50.0,
-            shortest: 1e-100,
-            retries: 12,
-            substeps_at_limit: 4,
-            staggered_substeps: 4,
-            staggered_retries: 6,
-            work: 80_000_000,
-            staggered_work: 8_000_000,
-        }
-    }
 }
 
 impl Default for SplitSettings {

@@ -112,8 +112,9 @@ impl Model {
     ///
     /// # Errors
     /// As [`Model::new`].
-    pub fn with_settings(parameters: Parameters, settings: Settings) -> Result<Model> {
+    pub fn with_settings(parameters: Parameters, mut settings: Settings) -> Result<Model> {
         parameters.validate()?;
+        settings.step = settings.step.for_cells(&parameters);
         let operators = Operators::new(&parameters)?;
         Ok(Model {
             parameters,

@@ -137,3 +137,14 @@ fn options_take_no_more_iterations() {
     takes_no_more("at 1 m/s", &plain, &track(0.05), [4.8, 29.9, 2.0, 9.1, 2.0]);
     takes_no_more("standing", &plain, &track(0.0), [0.0, 0.0, 0.0, 18.0, 2.0]);
 }
+
+/// Twice the default number of cells each way take eight times the work of a product: the budget of a step grows with it.
+#[test]
+fn steps_on_twice_the_cells_are_solved() {
+    let track = track(1.0);
+    let mut simulation = Simulation::new(&patch(68, 42), &track[0]).unwrap();
+    for inputs in &track[1..20] {
+        simulation.step(inputs, 1e-3).unwrap();
+        assert!(!simulation.state.convergence.staggered);
+    }
+}
