@@ -31,7 +31,7 @@ use wheelrail::verification::patch_limits::{LIMITS, Limit};
 use wheelrail::{Error, Parameters};
 
 /// Cells along and strips across of the patch's grids beside those that have a name.
-const GRIDS: [(usize, usize); 6] = [(8, 5), (10, 7), (12, 9), (16, 11), (24, 15), (34, 21)];
+const GRIDS: [(usize, usize); 6] = [(8, 5), (8, 8), (12, 9), (16, 11), (24, 15), (34, 21)];
 /// Elements along and across of FASTSIM's.
 const FASTSIM: [usize; 5] = [5, 10, 20, 40, 100];
 /// Rounds of the timing.
