@@ -5,6 +5,9 @@ displacements and the pull that holds the speed: as many as there are equations,
 
     forces on a body = m V κ (ẑ × v)      moments about its centre = V κ (ẑ × H)      forces on a rail = 0
 
+A wheelset may be driven or braked, by a torque about its axle that the frame takes up; the pull at the body holds the
+speed then too, as the rest of the train does.
+
 The contacts' forces are those of the units, after steps so long that nothing is left of what was before, and their
 derivatives those of the units by fmi2GetDirectionalDerivative. The suspension's are differences: it costs nothing. No
 line of this is shared with the bodies in Exudyn, but for the kinematics of a wheelset on its track and the data.
@@ -15,6 +18,7 @@ from curve_track import motion, turning
 from curve_vehicle import (
     AXLES,
     BODY,
+    FRAME,
     GRAVITY,
     OF_WHEEL,
     SHOWN,
@@ -59,6 +63,8 @@ class Equilibrium:
         self.base = standing(track, place, vehicle)
         # Displacements of each rail across and up, [axle][side], which the track has under this wheel.
         self.uneven = np.zeros((2, 2, 2))
+        # Force along the track that the torque of a wheelset makes, the same for both [N]: positive drives.
+        self.traction = 0.0
         # Bodies' displacements, with the wheels' speeds in place of their turns; rails.
         self.unknown = np.zeros(UNKNOWN_BODIES + RAILS)
         for axle in range(len(AXLES)):
@@ -146,6 +152,10 @@ class Equilibrium:
             both = forces[axle].sum(axis=0)
             force[axle] += axes @ both[:3]
             moment[axle] += axes @ both[3:]
+            # Motor and gear, or a brake's callipers, hang on the frame.
+            torque = self.traction * self.vehicle.wheel_radius * turns[axle][:, 2]
+            moment[axle] += torque
+            moment[FRAME] -= torque
         # What the curve takes.
         accelerations = cross(self.turning, self.velocity(coordinates[:, :3]))
         force -= self.mass[:, None] * accelerations

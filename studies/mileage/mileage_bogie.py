@@ -10,19 +10,18 @@ wheelset lie off their places by d, and the wheelset finds its own equilibrium b
 States are sampled so, about the equilibrium of the curve, at quantiles of a normal distribution of d.
 """
 
-import hashlib
-import tempfile
+import time
 from dataclasses import dataclass, replace
 from functools import cache
-from pathlib import Path
 from statistics import NormalDist
 
 import numpy as np
-from curve_equilibrium import LONG, MOST, PULL, RAILS, UNKNOWN_BODIES, Equilibrium
+from curve_equilibrium import LONG, MOST, PULL, PULL_UNIT, RAILS, UNKNOWN_BODIES, Equilibrium
 from curve_track import LATERAL, Layout, Track
-from curve_vehicle import FRAME, SIDES, WHEELS, Vehicle, Wheel
+from curve_vehicle import FRAME, SIDES, WHEELS, Vehicle
 from dask_runs import local_file
 from helpers import wheelrail
+from mileage_units import TimedWheel, profile_file
 
 # A place on straight track, one in the curve.
 ON_STRAIGHT, IN_CURVE = 6.0, 100.0  # m
@@ -72,17 +71,6 @@ class WornWheel:
     ends: tuple  # m
 
 
-def profile_file(text):
-    """The file of a profile on this machine."""
-    path = Path(tempfile.gettempdir()) / f"{hashlib.sha256(text.encode()).hexdigest()}.prw"
-    if not path.exists():
-        # Another process on the same machine may be doing the same.
-        with tempfile.NamedTemporaryFile("w", dir=path.parent, delete=False, encoding="utf-8") as own:
-            own.write(text)
-        Path(own.name).replace(path)
-    return path
-
-
 @cache
 def track_of(radius, cant):
     """The track of a class: straight, or a transition and a curve."""
@@ -121,6 +109,7 @@ class WornBogie(Equilibrium):
         # A wheel whose radius has become less stands as if its rail were lower.
         self.own = np.array([(0.0, -wheel.depth) for wheel in wheels]).reshape(2, 2, 2)
         self.uneven = self.own.copy()
+        self.traction = curve.traction
 
     def made_wheels(self, **parameters):
         """Units of the wheels, [axle][side], with profiles and radii of their own."""
@@ -128,7 +117,7 @@ class WornBogie(Equilibrium):
         for (_, side), worn in zip(WHEELS, self.worn, strict=True):
             radius = self.vehicle.wheel_radius - worn.depth
             path = str(profile_file(worn.profile))
-            made.append(Wheel(side, self.fmu, wheel_profile=path, wheel_radius=radius, **parameters))
+            made.append(TimedWheel(side, self.fmu, wheel_profile=path, wheel_radius=radius, **parameters))
         return [made[:2], made[2:]]
 
     def start_from(self, other):
@@ -299,6 +288,10 @@ def in_equilibrium(fmu, settings, wheels, curve, starts):
     for axle in range(2):
         running.unknown[6 * axle + 2] = -1.1e-3 - 0.5 * sum(depths_of(wheels)[2 * axle : 2 * axle + 2])
     running.unknown[UNKNOWN_BODIES:] = np.tile([0.0, -0.8e-3], 4)
+    # What both wheelsets pull goes through the secondary springs to the body, whose place is given.
+    pull = 2.0 * curve.traction
+    running.unknown[[0, 6, 6 * FRAME]] = pull / (2.0 * settings.vehicle.secondary_stiffness[0])
+    running.unknown[PULL] = -pull / PULL_UNIT
     running.attempt()
     running.close()
     tries.append((*bogie.start_from(running).attempt(), bogie.unknown))
@@ -359,8 +352,9 @@ def rates(component, digest, settings, wheels, curve, starts):
         area: of each wheel the area of each cell that wears off per distance [m], mean over the samples. rows: what
         tables have, for each state and wheel. starts: those of the next step. left: the largest force that is left over
         in a state [N]. missed: samples without an equilibrium, which are left out. held: 1 where the frame is that of
-        the step before. iterations: all of Newton's method.
+        the step before. iterations: all of Newton's method. seconds: how long all of it took, and the units' calls.
     """
+    began, before = time.perf_counter(), dict(TimedWheel.spent)
     fmu = local_file(component, digest)
     bogie, left, iterations = in_equilibrium(fmu, settings, wheels, curve, starts)
     middle = bogie.unknown
@@ -386,4 +380,6 @@ def rates(component, digest, settings, wheels, curve, starts):
     areas = [area / reached for area in areas]
     found = Starts(tuple(tuple(unknown.tolist()) for unknown in unknowns), depths_of(wheels))
     counts = {"missed": count - reached, "held": held, "iterations": iterations}
-    return {"area": areas, "rows": rows, "starts": found, "left": max(lefts), **counts}
+    seconds = {what: spent - before[what] for what, spent in TimedWheel.spent.items()}
+    seconds["all"] = time.perf_counter() - began
+    return {"area": areas, "rows": rows, "starts": found, "left": max(lefts), "seconds": seconds, **counts}

@@ -2,7 +2,8 @@
 
 A line is a list of classes. Each has a radius, positive to the left and infinite on straight track, the cant of the
 outer rail, a speed, the share of the line's length, the factor on friction at the gauge face, the friction coefficient,
-and the deviation of the track's lateral irregularity. A mirrored line has its curves to the other hand.
+the deviation of the track's lateral irregularity, and the traction of a wheelset there, which is negative where it
+brakes. A mirrored line has its curves to the other hand.
 """
 
 import csv
@@ -21,6 +22,7 @@ STRAIGHT = math.inf
 LENGTH = {"m": 1.0, "mm": 1e-3, "km": 1e3}
 SPEED = {"m/s": 1.0, "km/h": 1.0 / 3.6}
 NUMBER = {"1": 1.0, "%": 1e-2}
+FORCE = {"N": 1.0, "kN": 1e3}
 # Columns: units, unit in words, least and largest value.
 COLUMNS = {
     "radius": (LENGTH, "m", -math.inf, math.inf),
@@ -31,6 +33,7 @@ COLUMNS = {
     "gauge_face_friction": (NUMBER, "1", 0.0, 2.0),
     "friction": (NUMBER, "1", 0.02, 1.0),
     "irregularity": (LENGTH, "m", 0.0, 5e-3),
+    "traction": (FORCE, "N", -5e4, 5e4),
 }
 NEEDED = ("radius", "cant", "speed")
 LEAST_RADIUS = 150.0  # m: below, the changes of Newton's method from straight running are too large
@@ -56,13 +59,16 @@ class Curve:
     gauge_face_friction: float = 1.0  # factor on the friction coefficient
     friction: float = 0.35
     irregularity: float = 1.5e-3  # m: deviation of the track's lateral irregularity under a wheelset
+    traction: float = 0.0  # N: force along the track that a wheelset's torque makes, positive drives
 
     @property
     def name(self):
-        """What it is called in tables: R 300 right, or straight."""
-        if math.isinf(self.radius):
-            return "straight"
-        return f"R {abs(self.radius):g} {'left' if self.radius > 0.0 else 'right'}"
+        """What it is called in tables: R 300 right; straight, driven 8 kN."""
+        hand = "left" if self.radius > 0.0 else "right"
+        place = "straight" if math.isinf(self.radius) else f"R {abs(self.radius):g} {hand}"
+        if self.traction == 0.0:
+            return place
+        return f"{place}, {'driven' if self.traction > 0.0 else 'braked'} {1e-3 * abs(self.traction):g} kN"
 
     def mirrored(self):
         """The same to the other hand."""
@@ -70,10 +76,10 @@ class Curve:
 
 
 def named(line):
-    """The classes by names, each its own: those that share a radius are numbered."""
+    """The classes by names, each its own: those that share radius and traction are numbered."""
     found = {}
     for curve in line:
-        alike = sum(name.partition(",")[0] == curve.name for name in found)
+        alike = sum(other.name == curve.name for other in found.values())
         found[f"{curve.name}, {alike + 1}" if alike else curve.name] = curve
     return found
 
@@ -100,10 +106,13 @@ def main_line(gauge_face_friction=1.0):
     ]
 
 
-def straight_line():
-    """A line over plains at 160 km/h: five sixths straight, the others curves of 3000 m."""
-    curves = both_hands(3000.0, 50.0, 160.0, 1.0 / 6.0)
-    return [Curve(STRAIGHT, 0.0, 160.0 / 3.6, 5.0 / 6.0), *curves]
+def straight_line(tractions=((1.0, 0.0),)):
+    """A line over plains at 160 km/h: five sixths straight, the others curves of 3000 m.
+
+    On straight track wheelsets have tractions [N], each over a share of it.
+    """
+    straight = [Curve(STRAIGHT, 0.0, 160.0 / 3.6, 5.0 / 6.0 * share, traction=force) for share, force in tractions]
+    return [*straight, *both_hands(3000.0, 50.0, 160.0, 1.0 / 6.0)]
 
 
 def short_line():
@@ -129,7 +138,8 @@ def by_size(curve):
 def read_line(path):
     """Read a line from a CSV file: columns radius, cant, speed, and share or length; units in the headings.
 
-    Straight track has no radius, or 0. Columns that may be there: gauge_face_friction, friction, irregularity.
+    Straight track has no radius, or 0. Columns that may be there: gauge_face_friction, friction, irregularity,
+    traction.
     """
     path = Path(path)
     text = path.read_text(encoding="utf-8-sig")

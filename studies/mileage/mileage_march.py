@@ -24,6 +24,8 @@ from mileage_wheels import NewWheel, smoothed
 
 # Least and largest value of what a plan has as numbers, in SI units.
 RANGES = {"distance": (1e3, 1e10), "wear_factor": (1e-6, 100.0), "largest_depth": (1e-6, 5e-4)}
+# Share of what friction can carry that a wheelset's traction may take: the rest is for the curve and the irregularity.
+MOST_TRACTION = 0.6
 RANGES |= {"smoothing": (0.0, 0.02), "samples": (1, 99), "samples_straight": (1, 99)}
 # Of the four wheels, those of the other side.
 MIRROR = (1, 0, 3, 2)
@@ -74,6 +76,11 @@ class Plan:
         shares = sum(curve.share for curve in self.line)
         if abs(shares - 1.0) > 1e-9:
             raise wrong("plan", "the sum of the line's shares", f"{shares:g}", "1")
+        for name, curve in named(self.line).items():
+            most = MOST_TRACTION * curve.friction * 2.0 * self.vehicle.wheel_load
+            if abs(curve.traction) > most:
+                allowed = f"{-most:.0f} to {most:.0f} N, {MOST_TRACTION:g} of the friction under the wheelset,"
+                raise wrong(name, "traction", f"{curve.traction:g} N", allowed)
 
     def settings(self):
         """What tasks need of it."""
@@ -107,6 +114,11 @@ def classes_file(folder, step):
     return folder / f"classes_{step:04d}.parquet"
 
 
+def times_file(folder, step):
+    """The file of how long the workers took for a step: beside the others, whose bits are always the same."""
+    return folder / f"times_{step:04d}.json"
+
+
 def say(line):
     """Print a line of progress at once."""
     print(line, flush=True)
@@ -136,7 +148,7 @@ def march(client, plan, folder, component, report=say):
     if progress.step:
         report(f"  {progress.step} steps, {1e-3 * progress.distance:.0f} km, are there from before")
     else:
-        for left_over in (*folder.glob("wheels_*.parquet"), *folder.glob("classes_*.parquet")):
+        for left_over in (path for kind in ("wheels", "classes", "times") for path in folder.glob(f"{kind}_*")):
             left_over.unlink()
         write_state(folder, stamp, new, progress)
     shared = client.scatter(data, broadcast=True) if client else data
@@ -158,6 +170,9 @@ def march(client, plan, folder, component, report=say):
         left = plan.distance - progress.distance
         length = plan.largest_depth / growth.max()
         length = left / np.ceil(left / length - 1e-9)
+        seconds = [result["seconds"] for result in results]
+        spent = {what: sum(one[what] for one in seconds) for what in seconds[0]}
+        times_file(folder, progress.step).write_text(json.dumps(spent))
         write_classes(folder, stamp, progress, length, classes, results, raw, rate)
         starts = {name: result["starts"] for name, result in zip(classes, results, strict=True)}
         distance = plan.distance if left - length < 1.0 else progress.distance + length

@@ -1,5 +1,7 @@
 """Pictures of studies/mileage: profiles and measures over the mileage, and what wears in which curve."""
 
+from itertools import product
+
 import matplotlib.pyplot as plt
 import numpy as np
 from curve_vehicle import WHEELS
@@ -109,38 +111,54 @@ def who(found, key, number):
 
 
 def draw_curves(folder, steps, titles, name):
-    """Tγ over the radius, of the wheels on both rails, in some steps: new wheels, and worn ones."""
-    figure, panels = plt.subplots(1, 2, figsize=(9.0, 3.6), sharey=True, layout="constrained")
-    for axes, (axle, first) in zip(panels, (("leading", 0), ("trailing", 2)), strict=True):
+    """Tγ and fatigue over the radius, of the wheels on both rails, in some steps: new wheels, and worn ones.
+
+    Classes that are driven or braked are not in it.
+    """
+    figure, panels = plt.subplots(2, 2, figsize=(9.0, 6.4), sharex=True, sharey="row", layout="constrained")
+    shown = (("wear_number", 1.0), ("rcf_damage", 1e6))
+    for axes, ((quantity, factor), (axle, first)) in zip(
+        panels.flat, product(shown, (("leading", 0), ("trailing", 2))), strict=True
+    ):
         for step, title, style in zip(steps, titles, ("-o", "--s"), strict=True):
             every = by_class(folder, step)
-            classes = {name: one for name, one in every.items() if one["radius"] < 0.0 or np.isinf(one["radius"])}
+            one_hand = {name: one for name, one in every.items() if one["radius"] < 0.0 or np.isinf(one["radius"])}
+            classes = {name: one for name, one in one_hand.items() if not name.endswith("kN")}
             inverse = np.array([1.0 / abs(one["radius"]) for one in classes.values()])
             order = np.argsort(inverse)
             for wheel, rail, colour in ((first, "outer rail", RED), (first + 1, "inner rail", BLUE)):
-                values = np.array([one["wear_number"][wheel] for one in classes.values()])
+                values = factor * np.array([one[quantity][wheel] for one in classes.values()])
                 axes.plot(inverse[order], values[order], style, ms=3.5, color=colour, label=f"{rail}, {title}", lw=1.2)
         radii = [abs(one["radius"]) for one in classes.values() if np.isfinite(one["radius"])]
         axes.set_xticks([0.0, *(1.0 / radius for radius in radii)], ["straight", *(f"{radius:g}" for radius in radii)])
         axes.tick_params(axis="x", labelrotation=60)
-        axes.set(title=f"{axle} wheelset", xlabel="radius, evenly by its inverse [m]", yscale="log")
-    panels[0].set_ylabel("Tγ, mean over the states [N]")
-    panels[0].legend(fontsize=7)
+        axes.set(title=f"{axle} wheelset" if quantity == "wear_number" else "")
+    for axes in panels[0]:
+        axes.set_yscale("log")
+    for axes in panels[1]:
+        axes.axhline(0.0, color=BLACK, lw=0.6)
+        axes.set_xlabel("radius, evenly by its inverse [m]")
+    panels[0, 0].set_ylabel("Tγ, mean over the states [N]")
+    panels[1, 0].set_ylabel("fatigue of a passage [10⁻⁶]")
+    panels[0, 0].legend(fontsize=7)
     save(figure, name)
 
 
-def draw_laws(new, shapes, depths, distance, name):
-    """Where each law of wear takes its area from the leading wheel as new, and what lubricated gauge faces change."""
-    figure, (left, right) = plt.subplots(1, 2, figsize=(9.0, 3.6), sharex=True, layout="constrained")
+def draw_laws(new, shapes, by_law, depths, distance, name):
+    """Where each law of wear takes its area from a leading wheel, new and at a mileage; lubricated gauge faces."""
+    figure, panels = plt.subplots(1, 3, figsize=(11.0, 3.6), sharex=True, layout="constrained")
+    left, middle, right = panels
     for (law, areas), colour in zip(shapes.items(), (BLACK, GREEN, ORANGE), strict=True):
         left.plot(middles(new), 100.0 * areas[0] / areas[0].sum() / (1e3 * new.cell), color=colour, lw=1.2, label=law)
-    left.set(title="leading wheel, new: the laws of wear", ylabel="share of the worn area [% per mm]")
+        middle.plot(middles(new), 1e3 * by_law[law][0], color=colour, lw=1.2, label=law)
+    left.set(title="leading wheel, new: the laws", ylabel="share of the worn area [% per mm]")
+    middle.set(title=f"leading wheel, {label(distance)}", ylabel=DEPTH)
     for (title, depth), style in zip(depths.items(), ("-", "--"), strict=True):
         for number, colour in ((0, BLUE), (2, RED)):
             text = f"{NAMES[number].partition(' ')[0]}, {title}"
             right.plot(middles(new), 1e3 * depth[number], style, color=colour, lw=1.2, label=text)
-    right.set(title=f"gauge faces dry and lubricated, {label(distance)}", ylabel=DEPTH)
-    for axes in (left, right):
+    right.set(title=f"gauge faces, {label(distance)}", ylabel=DEPTH)
+    for axes in panels:
         axes.set(xlim=(-50, 40), xlabel="across the wheel [mm]")
         axes.legend(fontsize=7)
     save(figure, name)

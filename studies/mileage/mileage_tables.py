@@ -7,7 +7,7 @@ import pyarrow.parquet as pq
 from curve_vehicle import AXLES, WHEELS
 from dask_runs import is_done, stamp_of, write_table
 from helpers import markdown_table, wheelrail
-from mileage_march import classes_file, read_state, state_file
+from mileage_march import classes_file, read_state, state_file, times_file
 from mileage_wheels import MEASURES, NewWheel
 
 NAMES = [f"{axle} {side}" for axle, side in WHEELS]
@@ -84,8 +84,8 @@ def depths_at(folder, distance):
     return before.depth + share * (after.depth - before.depth)
 
 
-def lubrication_table(new, folders, distance):
-    """Worn area on flange, where it is steeper than 45°, and tread at a mileage, of runs by their titles."""
+def places_table(new, folders, distance):
+    """Worn area on flange, where it is steeper than 45°, root and tread at a mileage, of runs by their titles."""
     steep = new.normal[1] < np.cos(np.pi / 4.0)
     steep = 0.5 * (steep[1:] + steep[:-1]) > 0.25
     root = (new.y[1:] < -0.026) & ~steep
@@ -143,6 +143,12 @@ def run_table(plan, folder):
         "area that smoothing moves, of what is worn": f"{100 * (moved / taken).max():.1f} % at most",
         "area that smoothing loses": f"{(abs(lost) / taken).max():.0e} of it",
     }
+    spent = [json.loads(times_file(folder, step).read_text()) for step in range(count)]
+    whole = sum(one["all"] for one in spent)
+    shares = {what: 100.0 * sum(one[what] for one in spent) / whole for what in spent[0]}
+    title = "of the workers' time: the contacts' steps, their derivatives, making the units"
+    parts = (shares[what] for what in ("steps", "derivatives", "initialisation"))
+    rows[title] = ", ".join(f"{share:.0f} %" for share in parts)
     return markdown_table(["", ""], [list(row) for row in rows.items()])
 
 
@@ -158,7 +164,20 @@ def curves_table(folder, steps):
     return markdown_table(["class", "of the line", *NAMES], lines)
 
 
-def by_class(folder, step, quantities=("wear_number", "Y", "Q")):
+def fatigue_table(folder, steps):
+    """Damage by rolling contact fatigue of one passage of each wheel, as curves_table()."""
+    lines = []
+    tables = [by_class(folder, step) for step in steps]
+    for name in tables[0]:
+        line = [name]
+        for number in range(len(NAMES)):
+            values = (1e6 * table[name]["rcf_damage"][number] for table in tables)
+            line.append(" → ".join(f"{value + 0.0:.2f}".replace("-", "\u2212") for value in values))
+        lines.append(line)
+    return markdown_table(["damage of a passage, 10⁻⁶", *NAMES], lines)
+
+
+def by_class(folder, step, quantities=("wear_number", "rcf_damage", "Y", "Q")):
     """Means over the sampled states by class, an element for each wheel."""
     table, _ = classes_of(folder, step)
     found = {}
