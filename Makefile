@@ -180,7 +180,7 @@ $(addprefix coupling-,$(COUPLINGS)): coupling-%: couplings-set-up
 	$(call say,Coupling: $*)
 	@$(PY) studies $*
 
-MILEAGE := $(addprefix mileage_,$(addsuffix .png,profiles depths plain plain_measures measures curves laws))
+MILEAGE := $(addprefix mileage_,$(addsuffix .png,profiles depths plain plain_profiles plain_measures measures curves laws))
 HUNTING := $(addsuffix .png,hunting_stability hunting_cycle hunting_curve hunting_contact)
 
 # The pictures of the pages in docs/couplings/, and their tables where they are generated; commit what changes.

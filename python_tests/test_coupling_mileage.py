@@ -1,5 +1,6 @@
 """studies/mileage: wheels that wear over a line, the same for any number of workers, after a kill, and mirrored."""
 
+import json
 import os
 import subprocess
 import sys
@@ -10,12 +11,25 @@ import folders
 import mileage
 import numpy as np
 import pytest
+from curve_equilibrium import PULL, PULL_UNIT
 from curve_vehicle import VEHICLE
-from dask_runs import read_component
+from dask_runs import local_file, read_component
 from helpers import FMU3, wheelrail
-from mileage_line import BadInputError, is_its_own_mirror, main_line, mirrored, named, read_line, vehicle_of
-from mileage_march import MIRROR, march, read_state, state_file
-from mileage_tables import classes_of
+from mileage_bogie import in_equilibrium
+from mileage_line import (
+    STRAIGHT,
+    BadInputError,
+    Curve,
+    is_its_own_mirror,
+    main_line,
+    mirrored,
+    named,
+    read_line,
+    straight_line,
+    vehicle_of,
+)
+from mileage_march import MIRROR, march, read_state, state_file, times_file
+from mileage_tables import by_class, classes_of, fatigue_table, run_table
 from mileage_wheels import NewWheel, smoothed
 
 # The small run in a process of its own, which goes on after each file when it is told to: on workers, or on none.
@@ -74,6 +88,54 @@ def test_fatigue_of_the_classes_is_that_of_the_wear_numbers(run):
     low = single & (table["wear_number"] < 175.0)
     np.testing.assert_allclose(table["rcf_damage"][low], expected[low], rtol=1e-9, atol=1e-18)
     assert np.max(np.abs(table["rcf_damage"])) > 1e-6
+
+
+def test_tables_of_the_run(run):
+    """Damage of a passage by class, as the means have it; the units' calls take a part of the workers' time."""
+    folder, _ = run
+    worst = max(by_class(folder, 0)["R 500 right"]["rcf_damage"])
+    assert f"{1e6 * worst:.2f}" in fatigue_table(folder, (0,)).splitlines()[-1]
+    assert "the contacts' steps" in run_table(mileage.small_plan(), folder)
+    spent = json.loads(times_file(folder, 0).read_text())
+    assert all(seconds > 0.0 for seconds in spent.values())
+    assert spent["steps"] + spent["derivatives"] + spent["initialisation"] < spent["all"]
+
+
+@pytest.mark.parametrize("curve", [Curve(STRAIGHT, 0.0, 40.0, 1.0), Curve(-500.0, 0.11, 85.0 / 3.6, 1.0)])
+@pytest.mark.parametrize("traction", [8e3, -8e3])
+def test_torques_of_driven_and_braked_wheelsets(component, new, curve, traction):
+    """The contacts' torque about each axle is the traction times the wheel's radius; the train takes what is pulled."""
+    data, digest = component
+    settings = mileage.small_plan().settings()
+    wheels = [new.for_units(new.none())] * 4
+    bogie, left, _ = in_equilibrium(local_file(data, digest), settings, wheels, replace(curve, traction=traction), None)
+    assert left < 1.0
+    torque = np.array([wheel.get("friction_torque")[0] for wheel in bogie.all_wheels()]).reshape(2, 2).sum(axis=1)
+    along, up = bogie.forces[:, :, 0].sum(axis=1), bogie.forces[:, :, 2].sum(axis=1)
+    pull = PULL_UNIT * bogie.unknown[PULL]
+    bogie.close()
+    # To what Newton's method leaves.
+    assert torque == pytest.approx(np.full(2, -traction * VEHICLE.wheel_radius), abs=1.0)
+    if np.isinf(curve.radius):
+        # Both wheels roll on the running circle, to a tenth of a millimetre; spin takes some newtons.
+        assert along == pytest.approx(np.full(2, traction), rel=2e-3)
+        assert pull == pytest.approx(-2.0 * traction, rel=2e-3)
+        # Pulled at the secondary springs' height, it leans on the wheelset behind. The frame's pitch moves what stands
+        # on it by half a millimetre, which is 1 % of that moment.
+        leans = 2.0 * traction * VEHICLE.secondary_height / (2.0 * VEHICLE.half_wheelbase)
+        assert 0.5 * (up[1] - up[0]) == pytest.approx(leans, rel=0.02)
+
+
+def test_mirrored_line_with_traction(component, tmp_path):
+    """Driven in the curve and braked on straight track: mirrored curves wear the wheels of the other side."""
+    plan = mileage.small_plan(distance=50e3)
+    straight, curve = plan.line
+    plan = replace(plan, line=(replace(straight, traction=-6e3), replace(curve, traction=8e3)))
+    found = []
+    for name, line in (("one", plan.line), ("other", tuple(mirrored(plan.line)))):
+        assert march(None, replace(plan, line=line), tmp_path / name, component) == 1
+        found.append(read_state(state_file(tmp_path / name, 1)).depth)
+    assert np.abs(found[1][list(MIRROR)] - found[0]).max() < 1e-6 * found[0].max()
 
 
 def test_wheels_wear_where_they_roll(run, new):
@@ -171,6 +233,10 @@ def test_line_of_the_page():
     assert sum(curve.share for curve in line) == pytest.approx(1.0)
     assert is_its_own_mirror(line)
     assert len(named([*line, *line])) == 2 * len(line)
+    plain = straight_line(mileage.TRACTIONS)
+    assert sum(curve.share for curve in plain) == pytest.approx(1.0)
+    assert is_its_own_mirror(plain)
+    assert list(named(plain))[:3] == ["straight", "straight, driven 10 kN", "straight, braked 10 kN"]
     for curve in line:
         assert 1.5 * curve.speed**2 / (9.81 * abs(curve.radius)) - curve.cant < 0.07
 
@@ -189,11 +255,20 @@ def test_line_from_a_table(tmp_path):
     assert line[1].speed == pytest.approx(60.0 / 3.6)
     assert line[1].gauge_face_friction == 0.3
     assert is_its_own_mirror(line)
+    path.write_text(DRIVEN)
+    assert [curve.traction for curve in read_line(path)] == [0.0, -8e3]
+
+
+DRIVEN = "radius [m],cant [mm],speed [km/h],share [%],traction [kN]\n,0,140,60,0\n-300,100,60,40,-8\n"
 
 
 @pytest.mark.parametrize(
     ("text", "words"),
     [
+        (DRIVEN.replace("-8", "-80"), "line.csv, row 2: traction = -80000 N: -50000 to 50000 N is needed"),
+        (DRIVEN.replace("-8", "hard"), "line.csv, row 2: traction = 'hard': a number is needed"),
+        (DRIVEN.replace("-8", ""), "line.csv, row 2: traction = '': a number is needed"),
+        (DRIVEN.replace("[kN]", "[t]"), "line.csv: traction [t]: the unit is not known; allowed is N, kN"),
         (LINE.replace("-300", "-30"), "line.csv, row 2: radius = -30 m: 150 m or more, negative to the right"),
         (LINE.replace("-300", "abc"), "line.csv, row 2: radius = 'abc': a number is needed"),
         (LINE.replace("100,60", "1000,60"), "line.csv, row 2: cant = 1 m: 0 to 0.2 m is needed"),
@@ -212,6 +287,15 @@ def test_bad_lines(tmp_path, text, words):
     with pytest.raises(BadInputError) as caught:
         read_line(path)
     assert words in str(caught.value)
+
+
+def test_traction_beyond_friction():
+    """What a wheelset cannot put on the rail is refused, by its load and the friction of its class."""
+    line = (Curve(STRAIGHT, 0.0, 30.0, 1.0, traction=30e3),)
+    with pytest.raises(
+        BadInputError, match=r"straight, driven 30 kN: traction = 30000 N: -22\d\d\d to 22\d\d\d N, 0.6 of"
+    ):
+        mileage.small_plan(line=line)
 
 
 def test_vehicle_of_the_user():

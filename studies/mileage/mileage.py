@@ -76,7 +76,8 @@ def main_plan(**changes):
 def small_plan(**changes):
     """A plan that ends within a minute: straight track and one curve, two steps."""
     given = {"parameters": PARAMETERS, "wear_factor": 0.05, "largest_depth": 4e-5, "samples": 2}
-    return Plan(tuple(short_line()), **({"distance": 400e3, "samples_straight": 2} | given | changes))
+    given |= {"line": tuple(short_line()), "distance": 400e3, "samples_straight": 2}
+    return Plan(**(given | changes))
 
 
 # ---- comparisons ----------------------------------------------------------------------------------------------------
@@ -172,7 +173,8 @@ def study(client, component):
     draw_depths(new, base, "mileage_depths.png")
     draw_depths(new, straights, "mileage_plain.png")
     draw_measures(found["hills"], "mileage_measures.png", {})
-    draw_measures(found["plain"], "mileage_plain_measures.png", {})
+    draw_profiles(new, straights, "mileage_plain_profiles.png")
+    draw_measures(found["plain"], "mileage_plain_measures.png", {}, [found["rolling"]], "neither driven nor braked")
     draw_curves(base, (0, last), ("new", "at the end"), "mileage_curves.png")
     depths = {title: depths_at(folder, COMPARED) for title, folder in (dry_and_oiled | by_law).items()}
     shapes = {law: whole for law, (whole, _) in laws.items()}

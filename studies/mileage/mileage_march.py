@@ -29,7 +29,16 @@ MOST_TRACTION = 0.6
 RANGES |= {"smoothing": (0.0, 0.02), "samples": (1, 99), "samples_straight": (1, 99)}
 # Of the four wheels, those of the other side.
 MIRROR = (1, 0, 3, 2)
-UNITS = {"Y": "N", "Q": "N", "wear_number": "N", "peak_temperature": "K", "peak_pressure": "Pa", "left": "N"}
+UNITS = {
+    "radius": "m",
+    "traction": "N",
+    "Y": "N",
+    "Q": "N",
+    "wear_number": "N",
+    "peak_temperature": "K",
+    "peak_pressure": "Pa",
+    "left": "N",
+}
 
 
 @dataclass(frozen=True)
@@ -245,7 +254,8 @@ def write_classes(folder, stamp, progress, length, classes, results, raw, rate):
     for (name, curve), result in zip(classes.items(), results, strict=True):
         for row in result["rows"]:
             axle, side = WHEELS[row["wheel"]]
-            known = {"class": name, "wheel": f"{axle} {side}", "radius": curve.radius, "share": curve.share}
+            known = {"class": name, "wheel": f"{axle} {side}"}
+            known |= {"radius": curve.radius, "share": curve.share, "traction": curve.traction}
             rows.append(known | {name: value for name, value in row.items() if name != "wheel"})
     columns = {}
     for name in rows[0]:

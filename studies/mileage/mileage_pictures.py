@@ -13,6 +13,7 @@ from mileage_tables import NAMES, by_class, chosen
 
 COLOURS = (BLUE, SKY, RED, ORANGE)
 DEPTH = "depth along the normal [mm]"
+MILEAGE = "mileage [1000 km]"
 
 
 def middles(new):
@@ -57,10 +58,10 @@ def draw_depths(new, folder, name):
     """Depths over the profiles of the four wheels, coloured by the mileage."""
     states = [read_state(state_file(folder, step)) for step in chosen(folder, 11)]
     figure, panels = plt.subplots(2, 2, figsize=(9.0, 5.6), sharex=True, sharey="row", layout="constrained")
-    norm = Normalize(0.0, 1e-3 * states[-1].distance)
+    norm = Normalize(0.0, 1e-6 * states[-1].distance)
     for axes, (number, title) in zip(panels.flat, enumerate(NAMES), strict=True):
         for state in states[1:]:
-            shade = plt.cm.viridis_r(norm(1e-3 * state.distance))
+            shade = plt.cm.viridis_r(norm(1e-6 * state.distance))
             axes.plot(middles(new), 1e3 * state.depth[number], color=shade, lw=1.1)
         axes.set(title=title, xlim=(-50, 50))
         axes.axvline(0.0, color=BLACK, lw=0.6, ls=":")
@@ -68,27 +69,32 @@ def draw_depths(new, folder, name):
         axes.set_ylabel(DEPTH)
     for axes in panels[1]:
         axes.set_xlabel("across the wheel, to the field side [mm]")
-    figure.colorbar(ScalarMappable(norm, "viridis_r"), ax=panels, label="mileage [km]", shrink=0.7)
+    figure.colorbar(ScalarMappable(norm, "viridis_r"), ax=panels, label=MILEAGE, shrink=0.7)
     save(figure, name)
 
 
-def draw_measures(found, name, limits):
-    """Sh, Sd, qR, hollow, worn area and conicity over the mileage, with the user's limits."""
+def draw_measures(found, name, limits, others=(), title=""):
+    """Sh, Sd, qR, hollow, worn area and conicity over the mileage, with the user's limits.
+
+    Those of another run, with a title, are dashed.
+    """
     figure, panels = plt.subplots(2, 3, figsize=(9.6, 5.6), sharex=True, layout="constrained")
     shown = [("flange_height", "Sh [mm]", 1e3), ("flange_thickness", "Sd [mm]", 1e3)]
     shown += [("flange_gradient", "qR [mm]", 1e3), ("hollow_depth", "hollow [mm]", 1e3)]
     shown += [("worn_area", "worn area [mm²]", 1e6)]
     shown += [("conicity", "equivalent conicity at 3 mm [1]", 1.0)]
-    for axes, (key, title, factor) in zip(panels.flat, shown, strict=True):
-        for number, colour in alike(found, key):
-            own = found["wheel"] == NAMES[number]
-            x, y = 1e-3 * found["mileage"][own], factor * found[key][own]
-            axes.plot(x, y, color=colour, lw=1.3, label=who(found, key, number))
+    runs = [(found, "-", "")] + [(other, "--", f", {title}") for other in others]
+    for axes, (key, heading, factor) in zip(panels.flat, shown, strict=True):
+        for run, style, behind in runs:
+            for number, colour in alike(run, key):
+                own = run["wheel"] == NAMES[number]
+                x, y = 1e-6 * run["mileage"][own], factor * run[key][own]
+                axes.plot(x, y, style, color=colour, lw=1.3, label=who(run, key, number) + behind)
         if key in limits:
             axes.axhline(1e3 * limits[key], color=BLACK, lw=0.8, ls=":")
-        axes.set_title(title)
+        axes.set_title(heading)
     for axes in panels[1]:
-        axes.set_xlabel("mileage [km]")
+        axes.set_xlabel(MILEAGE)
     panels[1, 1].legend(fontsize=7)
     save(figure, name)
 
@@ -123,7 +129,7 @@ def draw_curves(folder, steps, titles, name):
         for step, title, style in zip(steps, titles, ("-o", "--s"), strict=True):
             every = by_class(folder, step)
             one_hand = {name: one for name, one in every.items() if one["radius"] < 0.0 or np.isinf(one["radius"])}
-            classes = {name: one for name, one in one_hand.items() if not name.endswith("kN")}
+            classes = {name: one for name, one in one_hand.items() if one["traction"] == 0.0}
             inverse = np.array([1.0 / abs(one["radius"]) for one in classes.values()])
             order = np.argsort(inverse)
             for wheel, rail, colour in ((first, "outer rail", RED), (first + 1, "inner rail", BLUE)):

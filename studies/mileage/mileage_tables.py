@@ -183,7 +183,7 @@ def by_class(folder, step, quantities=("wear_number", "rcf_damage", "Y", "Q")):
     found = {}
     for name in dict.fromkeys(table["class"]):
         own = table["class"] == name
-        entry = {"share": table["share"][own][0], "radius": table["radius"][own][0]}
+        entry = {known: table[known][own][0] for known in ("share", "radius", "traction")}
         for quantity in quantities:
             entry[quantity] = [float(table[quantity][own & (table["wheel"] == wheel)].mean()) for wheel in NAMES]
         found[str(name)] = entry
