@@ -1,11 +1,14 @@
 """studies/mileage: wheels that wear over a line, the same for any number of workers, after a kill, and mirrored."""
 
+import importlib.util
 import json
 import os
+import re
 import subprocess
 import sys
 from dataclasses import replace
 from itertools import pairwise
+from pathlib import Path
 
 import folders
 import mileage
@@ -225,6 +228,15 @@ def test_smoothing_loses_nothing(new):
     centre = np.abs(place) < 0.5 * wave
     swing = np.ptp((found / smoothed(window, new.cell, wave))[centre])
     assert swing == pytest.approx(0.5 * 0.6, rel=0.03)
+
+
+def test_modules_are_sent_behind_what_they_import():
+    """A scheduler and workers elsewhere import each module as it comes."""
+    for number, name in enumerate(mileage.MODULES):
+        text = Path(importlib.util.find_spec(name).origin).read_text()
+        imported = set(re.findall(r"^(?:from|import) (\w+)", text, re.MULTILINE))
+        assert not imported & set(mileage.MODULES[number:]), name
+        assert not {other for other in imported if other.startswith(("mileage", "curve"))} - set(mileage.MODULES), name
 
 
 def test_line_of_the_page():

@@ -40,7 +40,8 @@ from mileage_tables import (
 from mileage_wheels import MEASURES, NewWheel, smoothed
 
 WORK = RESULTS / "mileage"
-MODULES = ("mileage_line", "mileage_bogie", "mileage_units", "curve_equilibrium", "curve_vehicle", "curve_track")
+# Each behind what it imports: a scheduler and its workers import what they are sent.
+MODULES = ("curve_track", "curve_vehicle", "curve_equilibrium", "mileage_line", "mileage_units", "mileage_bogie")
 DISTANCE = 100_000e3  # m
 # The grid of a contact's window, the coarsest that has a name; a table says how far finer ones are from it.
 GRID = {"patch_nodes": 10, "patch_strips": 7}

@@ -119,7 +119,7 @@ def who(found, key, number):
 def draw_curves(folder, steps, titles, name):
     """Tγ and fatigue over the radius, of the wheels on both rails, in some steps: new wheels, and worn ones.
 
-    Classes that are driven or braked are not in it.
+    Of classes of one radius it has the one that is driven or braked least.
     """
     figure, panels = plt.subplots(2, 2, figsize=(9.0, 6.4), sharex=True, sharey="row", layout="constrained")
     shown = (("wear_number", 1.0), ("rcf_damage", 1e6))
@@ -129,7 +129,10 @@ def draw_curves(folder, steps, titles, name):
         for step, title, style in zip(steps, titles, ("-o", "--s"), strict=True):
             every = by_class(folder, step)
             one_hand = {name: one for name, one in every.items() if one["radius"] < 0.0 or np.isinf(one["radius"])}
-            classes = {name: one for name, one in one_hand.items() if one["traction"] == 0.0}
+            least = {}
+            for one in one_hand.values():
+                least[one["radius"]] = min(abs(one["traction"]), least.get(one["radius"], np.inf))
+            classes = {name: one for name, one in one_hand.items() if abs(one["traction"]) == least[one["radius"]]}
             inverse = np.array([1.0 / abs(one["radius"]) for one in classes.values()])
             order = np.argsort(inverse)
             for wheel, rail, colour in ((first, "outer rail", RED), (first + 1, "inner rail", BLUE)):
