@@ -34,6 +34,13 @@ fn main() {
         names.push(name.to_owned());
         models.push((parameters, track::on_profiles(&track, displacement)));
     }
+    // `cargo bench --bench rough_track -- two`: the line and the contacts that are named, alone.
+    let asked: Vec<String> = std::env::args()
+        .skip(1)
+        .filter(|name| !name.starts_with("--"))
+        .collect();
+    let is_asked = |name: &String| asked.is_empty() || name == "line" || asked.contains(name);
+    let (names, models): (Vec<_>, Vec<_>) = names.into_iter().zip(models).filter(|(name, _)| is_asked(name)).unzip();
     let runs = track::fastest(ROUNDS, &models, |(parameters, inputs)| Run::new(parameters, inputs));
     println!(
         "one step of 1 ms on a rough track, V = 20 to 70 m/s, all effects on, {} steps; times in us, fastest of {ROUNDS} rounds; iterations a step",

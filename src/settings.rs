@@ -61,8 +61,13 @@ pub struct SplitSettings {
     pub stalled_tolerance: f64,
     /// Tolerance of the mechanics in the first iteration, whose temperature is only a guess.
     pub first_mechanics_tolerance: f64,
+    /// Largest tolerance of the mechanics in those that follow: any of them may be the last.
+    pub largest_mechanics_tolerance: f64,
     /// Tolerance of the mechanics relative to the last change of the split: their error must not hide its contraction.
     pub mechanics_tolerance: f64,
+    /// Change of the next iteration, in tolerances of the split, down to which the mechanics are solved for the change that the contraction lets expect;
+    /// infinite where they are solved for the last one.
+    pub least_seen_change: f64,
     /// The smallest tolerance that is asked of the mechanics: round-off of the compliance's products.
     pub last_mechanics_tolerance: f64,
     /// Tolerance of the mechanics where they are solved alone, for the initial state.
@@ -227,7 +232,9 @@ impl Default for SplitSettings {
             accepted_change: 0.0,
             stalled_tolerance: 1e-5,
             first_mechanics_tolerance: 1e-8,
+            largest_mechanics_tolerance: 1e-8,
             mechanics_tolerance: 1e-4,
+            least_seen_change: f64::INFINITY,
             last_mechanics_tolerance: 1e-12,
             mechanics_alone_tolerance: 1e-11,
             negligible: 0.1,

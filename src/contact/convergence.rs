@@ -38,10 +38,25 @@ impl ConvergenceTest {
     /// Tolerance for the mechanics of the next iteration. At high speed a small error of the shear is a large one of the slip,
     /// and with it of the heat: where the split does not contract, it may be that error which it sees.
     pub fn mechanics_tolerance(&self) -> f64 {
-        (self.sharpened * self.settings.mechanics_tolerance * self.change).clamp(
-            self.settings.last_mechanics_tolerance,
-            (self.sharpened * self.settings.first_mechanics_tolerance).max(self.settings.last_mechanics_tolerance),
-        )
+        let last = self.settings.last_mechanics_tolerance;
+        let largest = if self.change.is_finite() {
+            self.settings.largest_mechanics_tolerance
+        } else {
+            self.settings.first_mechanics_tolerance
+        };
+        (self.sharpened * self.settings.mechanics_tolerance * self.seen_change())
+            .clamp(last, (self.sharpened * largest).max(last))
+    }
+
+    /// Change that an error of the mechanics must not hide: the last one, or the one that is to come if the iteration contracts as before, but not far below
+    /// the tolerance.
+    fn seen_change(&self) -> f64 {
+        let floor = self.settings.least_seen_change * self.settings.tolerance;
+        if self.ratio < self.settings.trusted_contraction {
+            self.change.min(floor).max(self.ratio * self.change)
+        } else {
+            self.change
+        }
     }
 
     /// Takes the change of an iteration and what its mechanics changed. Returns whether the vector has converged.

@@ -224,9 +224,9 @@ fn solve_staggered_in_room<E: Engine>(
     E::read(problem, now, solvers, iterate);
     let mut tractions = TractionChange::NONE;
     for _ in 0..problem.settings.interface.mechanics_sweeps {
-        // As closely as in the first sweep of a step: the temperature is a guess here as well.
-        tractions = E::solve_mechanics(problem, iterate, now, solvers, settings.first_mechanics_tolerance)?;
-        let rests = !tractions.set_changed && tractions.shear_change <= settings.first_mechanics_tolerance;
+        // Any of them may be the last; the temperature is a guess in all of them.
+        tractions = E::solve_mechanics(problem, iterate, now, solvers, settings.largest_mechanics_tolerance)?;
+        let rests = !tractions.set_changed && tractions.shear_change <= settings.largest_mechanics_tolerance;
         if rests || E::mechanics_work(solvers) > problem.mechanics_budget() {
             break;
         }

@@ -126,6 +126,7 @@ impl Settings {
             accepted_change: 2e-3,
             stalled_tolerance: 2e-3,
             first_mechanics_tolerance: self.patch.first_mechanics_tolerance,
+            largest_mechanics_tolerance: self.patch.first_mechanics_tolerance,
             last_mechanics_tolerance: self.patch.least_tolerance,
             mechanics_tolerance: 1e-1,
             ..self.split

@@ -11,7 +11,7 @@ use super::fields::SurfaceFields;
 use super::operators::SurfaceOperators;
 use super::windows::{Place, WINDOWS};
 use crate::body::grid::Grid;
-use crate::contact::patch::fields::PatchFields;
+use crate::numerics::dense::add_multiple;
 
 /// Strips and cells of a block of the source.
 const BLOCK: [usize; 2] = [4, 6];
@@ -77,18 +77,32 @@ impl Apart {
 
     /// Takes the pressure that a window has now, or its change.
     pub fn take(&mut self, operators: &SurfaceOperators, fields: &SurfaceFields, window: usize, place: &Place) {
-        let grid = operators.of(place).grid;
-        resultants(&grid, place, &fields.windows[window], &mut self.resultants[window]);
+        self.take_pressure(operators, &fields.windows[window].pressure, window, place);
+    }
+
+    /// Takes a pressure on the grid, or its change, for that of a window.
+    pub fn take_pressure(&mut self, operators: &SurfaceOperators, pressure: &[f64], window: usize, place: &Place) {
+        resultants(&operators.of(place).grid, place, pressure, &mut self.resultants[window]);
+    }
+
+    /// Begins without any.
+    pub fn clear(&mut self) {
+        self.resultants.iter_mut().for_each(Vec::clear);
+        // What follows must not hang on what was solved before.
+        self.places.iter_mut().for_each(|places| places.fill(0.0));
+    }
+
+    /// Changes the displacement of a window by that of a change of the pressures times a factor.
+    pub fn add(&mut self, other: &Apart, factor: f64, window: usize) {
+        add_multiple(&other.places[window], factor, &mut self.places[window]);
+        add_multiple(&other.displacement[window], factor, &mut self.displacement[window]);
     }
 
     /// Begins with the resultants of the pressure of the fields, or of its change.
     pub fn set_resultants(&mut self, operators: &SurfaceOperators, fields: &SurfaceFields) {
-        self.resultants.iter_mut().for_each(Vec::clear);
-        // What follows must not hang on what was solved before.
-        self.places.iter_mut().for_each(|places| places.fill(0.0));
+        self.clear();
         for (window, place) in fields.used() {
-            let grid = operators.of(&place).grid;
-            resultants(&grid, &place, &fields.windows[window], &mut self.resultants[window]);
+            self.take(operators, fields, window, &place);
         }
     }
 
@@ -148,7 +162,7 @@ impl Apart {
 }
 
 /// Finds the resultants of the blocks of a window that carry anything, the forces over the unit of pressure, `m²`.
-fn resultants(grid: &Grid, place: &Place, fields: &PatchFields, found: &mut Vec<Resultant>) {
+fn resultants(grid: &Grid, place: &Place, pressure: &[f64], found: &mut Vec<Resultant>) {
     found.clear();
     let middle = place.middle_along(grid);
     for strips in (0..grid.strips).step_by(BLOCK[0]) {
@@ -165,7 +179,7 @@ fn resultants(grid: &Grid, place: &Place, fields: &PatchFields, found: &mut Vec<
             for strip in strips.clone() {
                 let y = place.arc(grid, strip) - across;
                 for cell in cells.clone() {
-                    let force = fields.pressure[grid.place(strip, cell)] * grid.cell_area();
+                    let force = pressure[grid.place(strip, cell)] * grid.cell_area();
                     acts |= force != 0.0;
                     own.force += force;
                     own.moments[0] += force * (middle + grid.x(cell) - along);

@@ -1,9 +1,9 @@
-//! Secant method for the approach at which a load is carried.
+//! Search for the approach at which a load is carried: by the secant method, and by the stiffness where it is known.
 
 use super::fields::SurfaceFields;
 
 /// Change of the excess of load over the error of the pressure that shows the stiffness.
-const SHOWS_STIFFNESS: f64 = 5.0;
+pub const SHOWS_STIFFNESS: f64 = 5.0;
 /// Least and largest relative change of the load with a relative one of the approach: Hertz's is 3/2, that of a contact which begins far
 /// below the height of the first touch, on a worn rail, is many times as much.
 const STIFFNESSES: [f64; 2] = [0.3, 100.0];
@@ -64,11 +64,12 @@ impl Approaches {
         }
     }
 
-    /// Takes the excess of load at the approach, relative, with an error of it, and moves on.
-    pub fn next(&mut self, excess: f64, error: f64) {
-        if self.load.is_none() {
+    /// Takes the excess of load at the approach, relative, with an error of it, and moves on. `stiffness` is the change of the load with the approach where
+    /// it is known, `N/m`.
+    pub fn next(&mut self, excess: f64, error: f64, stiffness: Option<f64>) {
+        let Some(load) = self.load else {
             return;
-        }
+        };
         // The force grows with the approach, but for the error of the pressure.
         if excess.abs() > SHOWS_STIFFNESS * error {
             self.bracket[usize::from(excess > 0.0)] = self.approach;
@@ -81,6 +82,11 @@ impl Approaches {
                 // The way was too small to show the stiffness, which is therefore less than it was taken for.
                 self.stiffness *= SOFTER;
             }
+        }
+        // A stiffness that has left so much is one of other cells.
+        let slow = self.last.is_some_and(|[_, before]| excess.abs() > SLOW * before.abs());
+        if let Some(stiffness) = stiffness.filter(|_| !slow) {
+            self.stiffness = clamped(stiffness / load, self.approach.abs().max(self.size));
         }
         self.last = Some([self.approach, excess]);
         // Half way to no contact at most, and to twice the approach: where another contact begins to carry, the stiffness jumps. Where nothing carries
@@ -102,6 +108,14 @@ impl Approaches {
         let [low, high] = self.bracket;
         if low.is_finite() && high.is_finite() && !(low < self.approach && self.approach < high) {
             self.approach = 0.5 * (low + high);
+        }
+    }
+
+    /// Moves on by an excess of load, relative, that is foreseen before the first pressure is solved. `stiffness` is in `N/m`.
+    pub fn foresee(&mut self, excess: f64, stiffness: f64) {
+        if let Some(load) = self.load {
+            self.stiffness = clamped(stiffness / load, self.approach.abs().max(self.size));
+            self.approach -= excess / self.stiffness;
         }
     }
 

@@ -1,10 +1,12 @@
 //! The contact of profiles as an [`Engine`]: the patch's parts of a step in each window.
 
 use super::fields::SurfaceFields;
-use super::mechanics::{self, SurfaceProblem};
+use super::mechanics;
 use super::operators::SurfaceOperators;
 use super::placement;
 use super::plots;
+use super::pressure;
+use super::problem::SurfaceProblem;
 use super::profile_wear;
 use super::solvers::SurfaceSolvers;
 use super::tangent::{self, SurfaceTangent};
@@ -30,6 +32,11 @@ use crate::settings::{SensitivitySettings, Settings, SplitSettings};
 /// Ratio of two changes of the interface vector below which iterations are plain: with contacts of different size the mechanics' errors are a large
 /// part of the last changes.
 const PLAIN_BELOW: f64 = 0.3;
+/// Factor on a patch's tolerance of the tractions in the first sweep: the vertical force of the friction, which the pressure of the next one carries, is a
+/// guess as well.
+const FIRST_SLACK: f64 = 10.0;
+/// Change of a sweep to come, in tolerances, that the mechanics are solved for: with the last change in its place, two more sweeps saw the mechanics' errors alone.
+const LEAST_SEEN_CHANGE: f64 = 20.0;
 
 /// Fields before the step at the places of its windows.
 fn at_places<'a>(moved: bool, carried: &'a SurfaceFields, before: &'a SurfaceFields) -> &'a SurfaceFields {
@@ -47,9 +54,11 @@ fn begin_windows(
         windows,
         before: carried,
         moved,
+        responded,
         ..
     } = solvers;
     let before = before.map(|before| at_places(*moved, carried, before));
+    *responded = false;
     for (window, place) in now.used() {
         let (patch, own) = (problem.of(&place), &mut now.windows[window]);
         own.relaxation_length = begin::relaxation_length_of(&patch, &problem.operators.pair, &own.pressure);
@@ -90,6 +99,8 @@ impl Engine for SurfaceOperators {
             // The load is found to this by the height of the wheel.
             mechanics_alone_tolerance: settings.patch_split().mechanics_alone_tolerance.max(1e-9),
             plain_below: PLAIN_BELOW,
+            first_mechanics_tolerance: FIRST_SLACK * settings.patch.first_mechanics_tolerance,
+            least_seen_change: LEAST_SEEN_CHANGE,
             ..settings.patch_split()
         }
     }
@@ -167,7 +178,7 @@ impl Engine for SurfaceOperators {
         placement::place(problem, before, None, now, solvers)?;
         begin_windows(problem, before, now, solvers)?;
         if before.is_none()
-            && let Some(approach) = mechanics::approach_of_pressure(problem, now, solvers)
+            && let Some(approach) = pressure::approach_of_pressure(problem, now, solvers)
             // A negligible load may be carried at the height of the first touch already, which is known to a few nanometres: the first windows are as good.
             && approach > 0.0
         {

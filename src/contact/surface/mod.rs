@@ -4,6 +4,7 @@
 //! where they overlap. In each window the fields, the mechanics, heat and wear are those of a patch.
 
 mod apart;
+mod approach_response;
 mod approaches;
 mod bodies;
 mod contacts;
@@ -15,6 +16,8 @@ mod mechanics;
 pub mod operators;
 mod placement;
 mod plots;
+mod pressure;
+mod problem;
 mod profile_wear;
 mod search;
 pub mod solvers;

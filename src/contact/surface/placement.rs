@@ -2,8 +2,8 @@
 
 use super::contacts::{self, BESIDE, CONTACTS, Expected, Wanted};
 use super::fields::SurfaceFields;
-use super::mechanics::SurfaceProblem;
 use super::operators::SurfaceOperators;
+use super::problem::SurfaceProblem;
 use super::solvers::SurfaceSolvers;
 use super::windows::{Place, Region, Sizes, WINDOWS};
 use crate::contact::fields::Fields;

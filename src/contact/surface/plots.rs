@@ -3,8 +3,8 @@
 
 use super::bodies::{RAIL, WHEEL};
 use super::fields::SurfaceFields;
-use super::mechanics::SurfaceProblem;
 use super::operators::SurfaceOperators;
+use super::problem::SurfaceProblem;
 use super::windows::Place;
 use super::worn_bodies::WornBodies;
 use crate::contact::patch;

@@ -9,7 +9,7 @@
 
 use super::bodies::{Bodies, RAIL, WHEEL};
 use super::fields::SurfaceFields;
-use super::mechanics::SurfaceProblem;
+use super::problem::SurfaceProblem;
 use super::windows::Place;
 use crate::contact::patch::fields::PatchFields;
 use crate::friction::coulomb;

@@ -13,6 +13,7 @@ use crate::contact::interface::Interface;
 use crate::contact::patch::solvers::PatchSolvers;
 use crate::heat::strips::StripHeatScratch;
 use crate::mechanics::patch::contact::Contact;
+use crate::mechanics::patch::normal::response::PressureResponse;
 use crate::settings::Settings;
 use crate::wear::strips::StripWearSteps;
 
@@ -36,6 +37,10 @@ pub struct SurfaceSolvers {
     pub moved: bool,
     /// Influence of the windows on one another.
     pub apart: Apart,
+    /// Influence of the windows' responses on one another.
+    pub apart_response: Apart,
+    /// Whether the responses of the windows' pressures to the approach have been found in this step.
+    pub responded: bool,
     /// Regions to place windows for.
     pub wanted: Vec<Wanted>,
     /// Approach for which the geometry is that of the windows, `m`.
@@ -61,6 +66,8 @@ pub struct WindowSolvers {
     pub contact_before: Contact,
     /// Vertical force of the friction on the wheel over that of the pressure.
     pub friction_share: f64,
+    /// Response of the pressure to the approach, scaled.
+    pub response: PressureResponse,
     /// Opening of the gap at the reference approach, on the grid, scaled.
     pub gap: Vec<f64>,
 }
@@ -84,6 +91,8 @@ impl SurfaceSolvers {
             before: SurfaceFields::new(operators),
             moved: false,
             apart: Apart::new(operators),
+            apart_response: Apart::new(operators),
+            responded: false,
             wanted: Vec::with_capacity(CONTACTS),
             reference: 0.0,
             outgrown: 0.0,
@@ -109,6 +118,7 @@ impl WindowSolvers {
             image: Interface::new(first.grid.strips * first.grid.cells, 1),
             contact_before: Contact::new(&first.grid),
             friction_share: 0.0,
+            response: PressureResponse::new(&first.grid),
             gap: vec![0.0; first.grid.len()],
         }
     }

@@ -7,8 +7,8 @@
 use super::apart::Apart;
 use super::fields::SurfaceFields;
 use super::geometry::{Pose, WindowGeometry};
-use super::mechanics::{SurfaceProblem, vertical_forces};
 use super::operators::SurfaceOperators;
+use super::problem::{SurfaceProblem, vertical_forces};
 use super::search::Search;
 use super::solvers::SurfaceSolvers;
 use super::windows::{BREADTHS, LENGTHS, WINDOWS};

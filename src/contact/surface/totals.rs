@@ -2,8 +2,8 @@
 
 use super::bodies::Bodies;
 use super::fields::SurfaceFields;
-use super::mechanics::SurfaceProblem;
 use super::operators::SurfaceOperators;
+use super::problem::SurfaceProblem;
 use super::profile_wear;
 use crate::contact::engine::Engine;
 use crate::contact::integrals::{Integrals, NodeSums};

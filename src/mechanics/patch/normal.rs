@@ -5,6 +5,7 @@
 //! by conjugate gradients from the pressure of the step before, with the strips' own blocks as preconditioner; then cells that pull
 //! leave the set, cells that overlap join it, until none does.
 
+pub mod response;
 mod tangent;
 
 use super::contact::{Contact, work_of_product};
@@ -418,18 +419,23 @@ impl Normal {
         let load_given = matches!(problem.constraint, Constraint::Total(_));
         // What single precision leaves out is far below so large a tolerance.
         let in_single = problem.tolerance >= self.settings.single_tolerance;
-        self.ones[..n].fill(1.0);
-        problem
-            .normal_influence
-            .precondition(contact, &mut self.ones, &mut self.work);
-        let weight: f64 = self.ones[..n].iter().sum();
+        let mut weight = 0.0;
+        if load_given {
+            self.ones[..n].fill(1.0);
+            problem
+                .normal_influence
+                .precondition(contact, &mut self.ones, &mut self.work);
+            weight = self.ones[..n].iter().sum();
+        }
         let (mut last, mut level) = (0.0, 0.0);
         let mut error = 0.0;
         for iteration in 0..self.settings.normal_iterations {
-            self.corrected[..n].copy_from_slice(&self.residual[..n]);
-            problem
-                .normal_influence
-                .precondition(contact, &mut self.corrected, &mut self.work);
+            if load_given {
+                self.corrected[..n].copy_from_slice(&self.residual[..n]);
+                problem
+                    .normal_influence
+                    .precondition(contact, &mut self.corrected, &mut self.work);
+            }
             if load_given && n > 0 {
                 // The penetration takes what all cells have in common off the residual: kept in it, its round-off would grow into
                 // a change of the load.
@@ -447,6 +453,12 @@ impl Normal {
             }
             if error <= tolerance {
                 break;
+            }
+            if !load_given {
+                self.corrected[..n].copy_from_slice(&self.residual[..n]);
+                problem
+                    .normal_influence
+                    .precondition(contact, &mut self.corrected, &mut self.work);
             }
             let product = dot(&self.residual[..n], &self.corrected[..n]);
             let ratio = if iteration == 0 { 0.0 } else { product / last };

@@ -1,0 +1,85 @@
+//! Responses of the windows' pressures to the approach: the tangents of the pressures on the cells that carry anything, found once in a step. By them the pressures move
+//! with the approach before they are solved for, and the load's stiffness is known.
+
+use super::fields::SurfaceFields;
+use super::problem::{SurfaceProblem, sum_over_strips};
+use super::solvers::SurfaceSolvers;
+use crate::contact::patch::mechanics;
+use crate::mechanics::normal::normal_problem::Constraint;
+
+/// Error of a response, relative: what is left of a change of the approach is solved for at the next one.
+const RESPONSE_ERROR: f64 = 3e-2;
+/// Rounds over windows that displace each other.
+const RESPONSE_ROUNDS: usize = 2;
+
+/// Change of the load with the approach, `N/m`, the friction in proportion: by the responses of the windows' pressures. None where they show none.
+pub fn stiffness(problem: &SurfaceProblem, fields: &SurfaceFields, solvers: &mut SurfaceSolvers) -> Option<f64> {
+    if !std::mem::replace(&mut solvers.responded, true) {
+        respond(problem, fields, solvers);
+    }
+    let scale = problem.operators.shapes[0].scales.displacement;
+    let vertical = problem.pose().vertical();
+    let stiffnesses = fields.used().map(|(window, place)| {
+        let own = &solvers.windows[window];
+        let points = own.geometry.points();
+        let upward = |strip: usize| {
+            let normal = points[strip].normal;
+            vertical[0] * normal[0] + vertical[1] * normal[1]
+        };
+        let normal = sum_over_strips(problem.operators, &place, &own.response.pressure, upward);
+        (1.0 + own.friction_share) * normal / scale
+    });
+    let stiffness: f64 = stiffnesses.sum();
+    (stiffness.is_finite() && stiffness > 0.0).then_some(stiffness)
+}
+
+/// Finds the responses of the windows' pressures to the approach, their influence on one another included.
+fn respond(problem: &SurfaceProblem, fields: &SurfaceFields, solvers: &mut SurfaceSolvers) {
+    let operators = problem.operators;
+    solvers.apart_response.clear();
+    for (window, place) in fields.used() {
+        let own = &mut solvers.windows[window];
+        own.response.clear(&operators.of(&place).grid);
+        solvers.apart_response.displacement[window].fill(0.0);
+    }
+    let coupled = solvers.apart.is_coupled();
+    for _ in 0..if coupled { RESPONSE_ROUNDS } else { 1 } {
+        for (window, place) in fields.used() {
+            let patch = problem.of(&place);
+            let own = &mut solvers.windows[window];
+            let displaced = &solvers.apart_response.displacement[window];
+            for ((gap, rise), displaced) in own.patch.gap.iter_mut().zip(&own.geometry.rise).zip(displaced) {
+                *gap = displaced - rise;
+            }
+            let constraint = Constraint::Penetration(0.0);
+            let error = RESPONSE_ERROR / patch.operators.normal_influence.diagonal;
+            let change =
+                mechanics::normal_problem(&patch, constraint, error, &own.patch.gap, &own.patch.wear_compliance);
+            own.patch.normal.respond(&change, &own.patch.contact, &mut own.response);
+            if !coupled {
+                continue;
+            }
+            let pressure = &own.response.pressure;
+            solvers
+                .apart_response
+                .take_pressure(operators, pressure, window, &place);
+            for (other, place) in fields.used().filter(|(other, _)| *other != window) {
+                solvers.apart_response.displace(operators, other, &place);
+            }
+        }
+    }
+}
+
+/// Changes the pressures by their responses to a change of the approach, `m`.
+pub fn advance(problem: &SurfaceProblem, change: f64, fields: &mut SurfaceFields, solvers: &mut SurfaceSolvers) {
+    let operators = problem.operators;
+    for (window, place) in fields.used() {
+        let own = &mut solvers.windows[window];
+        let patch = operators.of(&place);
+        let change = change / patch.scales.displacement;
+        let pressure = &mut fields.windows[window].pressure;
+        own.patch.normal.advance(&patch.grid, &own.response, change, pressure);
+        solvers.apart.take(operators, fields, window, &place);
+        solvers.apart.add(&solvers.apart_response, change, window);
+    }
+}
