@@ -93,6 +93,30 @@ fn a_step_on_a_rough_track_takes_no_more_iterations() {
     }
 }
 
+/// Lateral displacement of the wheelset at which the tread carries alone, and at which the gauge corner carries as well, `m`.
+const PROFILES: [(&str, f64); 2] = [("tread", 0.0), ("two contacts", 5e-3)];
+
+/// Profiles under the same loads and speeds: a contact on the tread, and two, whose windows displace each other and share the load.
+#[test]
+fn profiles_take_no_more_iterations() {
+    let parameters = Parameters {
+        contact_model: ContactModel::Profiles,
+        ..patch(34, 21)
+    };
+    let recorded = [[5.2, 10.2, 1.26, 23.7, 3.61], [13.5, 38.5, 3.55, 121.0, 4.77]];
+    for ((name, lateral_displacement), recorded) in PROFILES.into_iter().zip(recorded) {
+        let inputs = |inputs: Inputs| Inputs {
+            lateral_displacement,
+            // The spin of the patch, less what the inclination of the tread makes of the speed.
+            yaw_rate: inputs.spin_rate - 0.1 * inputs.vehicle_speed,
+            spin_rate: 0.0,
+            ..inputs
+        };
+        let track: Vec<Inputs> = track(1.0).into_iter().map(inputs).collect();
+        takes_no_more(name, &parameters, &track, recorded);
+    }
+}
+
 /// Options of the model on 24 × 15 cells, a window for a larger load with cells as large, and a vehicle that moves off slowly.
 #[test]
 fn options_take_no_more_iterations() {
