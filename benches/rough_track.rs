@@ -39,6 +39,13 @@ fn main() {
         .skip(1)
         .filter(|name| !name.starts_with("--"))
         .collect();
+    for name in &asked {
+        assert!(
+            names.contains(name),
+            "no contact {name}: there are {}",
+            names.join(", ")
+        );
+    }
     let is_asked = |name: &String| asked.is_empty() || name == "line" || asked.contains(name);
     let (names, models): (Vec<_>, Vec<_>) = names.into_iter().zip(models).filter(|(name, _)| is_asked(name)).unzip();
     let runs = track::fastest(ROUNDS, &models, |(parameters, inputs)| Run::new(parameters, inputs));

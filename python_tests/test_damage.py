@@ -58,7 +58,8 @@ def test_the_index_falls_with_the_yield_stress_and_austenite_is_where_it_is_hot(
     names = [["surface_fatigue_index", "peak_pressure", "friction_coefficient", "austenite_depth", "peak_temperature"]]
     soft = outputs(archive, names, shear_yield_stress=0.0, friction_law="constant", austenite_temperature=310.0)
     hard = outputs(archive, names, friction_law="constant")
-    assert soft[0] == pytest.approx(0.45, rel=1e-9)
+    # A step's shear is found to 1e-6 of the largest pressure.
+    assert soft[0] == pytest.approx(0.45, rel=1e-6)
     # Where the pressure is largest the contact slips, too.
     assert hard[0] == pytest.approx(0.45 - 300e6 / hard[1], rel=1e-3)
     assert hard[4] > 310.0

@@ -18,7 +18,7 @@ from pathlib import Path
 
 REPOSITORY = Path(__file__).resolve().parent.parent
 # Runs of the torture in a round, of each contact model: half a minute or so.
-RUNS = {"line": 40, "patch": 8}
+RUNS = {"line": 40, "patch": 8, "profiles": 8, "new-profiles": 8}
 SEQUENCES = 200
 # Cases of each contact and law of friction: the share of a few that lies at corners scatters by more than the test
 # allows.
