@@ -106,7 +106,9 @@ impl Approaches {
         };
         self.approach = within;
         let [low, high] = self.bracket;
-        if low.is_finite() && high.is_finite() && !(low < self.approach && self.approach < high) {
+        // An approach that is far below the usual ones may be stiffer than what is allowed: from one side to the other, little would be gained.
+        let circles = slow && excess.abs() > SHOWS_STIFFNESS * error;
+        if low.is_finite() && high.is_finite() && (circles || !(low < self.approach && self.approach < high)) {
             self.approach = 0.5 * (low + high);
         }
     }
@@ -132,4 +134,23 @@ impl Approaches {
 fn clamped(stiffness: f64, approach: f64) -> f64 {
     let [least, most] = STIFFNESSES.map(|stiffness| stiffness / approach);
     stiffness.clamp(least, most)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Hertz's load at an approach far below those that the stiffness is limited for: the search halves the bracket in place of going to and fro.
+    #[test]
+    fn a_load_far_below_the_largest_is_found() {
+        let (load, scale) = (1.0, 1.0);
+        let sought = 8e-3 * LEAST_SIZE * scale;
+        let mut search = Approaches::of_load(load, 2.0 * sought, 0.0, scale);
+        for _ in 0..30 {
+            let excess = (search.approach.max(0.0) / sought).powf(1.5) - 1.0;
+            let stiffness = 1.5 * load * (search.approach.max(0.0) / sought).sqrt() / sought;
+            search.next(excess, 1e-9, Some(stiffness));
+        }
+        assert!((search.approach / sought - 1.0).abs() < 1e-4, "{}", search.approach);
+    }
 }
