@@ -65,8 +65,8 @@ pub struct SplitSettings {
     pub largest_mechanics_tolerance: f64,
     /// Tolerance of the mechanics relative to the last change of the split: their error must not hide its contraction.
     pub mechanics_tolerance: f64,
-    /// Change of the next iteration, in tolerances of the split, down to which the mechanics are solved for the change that the contraction lets expect;
-    /// infinite where they are solved for the last one.
+    /// Least change, in tolerances of the split, that the next iteration is taken to make where its mechanics are solved to a part of the change that is
+    /// foretold. Infinite where they are solved to a part of the last change.
     pub least_seen_change: f64,
     /// The smallest tolerance that is asked of the mechanics: round-off of the compliance's products.
     pub last_mechanics_tolerance: f64,

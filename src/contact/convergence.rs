@@ -48,8 +48,8 @@ impl ConvergenceTest {
             .clamp(last, (self.sharpened * largest).max(last))
     }
 
-    /// Change that an error of the mechanics must not hide: the last one, or the one that is to come if the iteration contracts as before, but not far below
-    /// the tolerance.
+    /// Change that the errors of the next mechanics must not hide. While the iteration contracts, it is the next change, foretold by the last contraction;
+    /// one that is foretold smaller than `least_seen_change` counts as that, as a smaller one ends the iteration anyway. Else it is the last change.
     fn seen_change(&self) -> f64 {
         let floor = self.settings.least_seen_change * self.settings.tolerance;
         if self.ratio < self.settings.trusted_contraction {

@@ -10,11 +10,10 @@ use super::solvers::{PatchSolvers, PathScratch};
 use crate::contact::interface::Interface;
 use crate::friction::path::PathLaw;
 use crate::mechanics::kinematics::SlipWeights;
-use crate::mechanics::normal::normal_problem::Constraint;
 use crate::mechanics::patch::contact::{CellRun, Contact};
 use crate::mechanics::patch::friction::{FrictionProblem, PathOfCells, SlipResponse};
 use crate::mechanics::patch::law::Vector;
-use crate::mechanics::patch::normal::{Normal, PatchNormalProblem};
+use crate::mechanics::patch::normal::Normal;
 use crate::numerics::dense::largest;
 
 /// Solution of a step at which its mechanics are linearised.
@@ -111,7 +110,7 @@ impl Linearisation {
                 gap[place] = solvers.undeformed.gap[place] + interface.gap()[index] - interface.displacement()[index];
             }
         }
-        let data = normal_problem(problem, gap, &solvers.wear_compliance, problem.constraint(), 0.0);
+        let data = problem.normal_problem(gap, &solvers.wear_compliance, problem.constraint());
         normal.separation_of(&data, &self.contact, &fields.pressure, fields.penetration);
         self.separation.copy_from_slice(&normal.separation);
     }
@@ -225,24 +224,4 @@ pub fn leading(problem: &PatchProblem) -> isize {
 pub fn leading_cell(problem: &PatchProblem, run: &CellRun) -> (usize, usize) {
     let last = if problem.is_forward() { run.cells - 1 } else { 0 };
     (run.offset + last, run.places(&problem.operators.grid).start + last)
-}
-
-/// Normal problem for a gap, or for a change of it.
-pub fn normal_problem<'a>(
-    problem: &PatchProblem<'a>,
-    gap: &'a [f64],
-    wear_compliance: &'a [f64],
-    constraint: Constraint,
-    tolerance: f64,
-) -> PatchNormalProblem<'a> {
-    PatchNormalProblem {
-        grid: &problem.operators.grid,
-        transform: &problem.operators.transform,
-        normal_influence: &problem.operators.normal_influence,
-        narrow: &[],
-        gap,
-        wear_compliance,
-        constraint,
-        tolerance,
-    }
 }

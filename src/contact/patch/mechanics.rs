@@ -120,33 +120,15 @@ pub fn solve_normal(
         }
     }
     std::mem::swap(&mut solvers.contact, &mut solvers.contact_before);
-    let normal_problem = normal_problem(problem, constraint, tolerance, &solvers.gap, &solvers.wear_compliance);
+    let normal_problem = PatchNormalProblem {
+        tolerance: tolerance.max(problem.settings.patch.least_tolerance),
+        ..problem.normal_problem(&solvers.gap, &solvers.wear_compliance, constraint)
+    };
     let solved = solvers
         .normal
         .solve(&normal_problem, &mut solvers.contact, &mut fields.pressure);
     fields.penetration = solved?;
     Ok(solvers.contact != solvers.contact_before)
-}
-
-/// Normal problem of a gap and a wear compliance on the grid.
-pub fn normal_problem<'a>(
-    problem: &PatchProblem<'a>,
-    constraint: Constraint,
-    tolerance: f64,
-    gap: &'a [f64],
-    wear_compliance: &'a [f64],
-) -> PatchNormalProblem<'a> {
-    let operators = problem.operators;
-    PatchNormalProblem {
-        grid: &operators.grid,
-        transform: &operators.transform,
-        normal_influence: &operators.normal_influence,
-        narrow: &operators.narrow_normal,
-        gap,
-        wear_compliance,
-        constraint,
-        tolerance: tolerance.max(problem.settings.patch.least_tolerance),
-    }
 }
 
 /// (10), (30) for given pressure, and the slip that follows.

@@ -6,6 +6,8 @@ use crate::friction::coulomb::{self, Sliding};
 use crate::heat::strips::StripHeatMarch;
 use crate::heat::surface::{SurfaceCondition, SurfaceExchange};
 use crate::mechanics::kinematics::SlipWeights;
+use crate::mechanics::normal::normal_problem::Constraint;
+use crate::mechanics::patch::normal::PatchNormalProblem;
 use crate::mechanics::transient::Transient;
 use crate::wear::law::Rubbing;
 use crate::wear::strips::StripWearMarch;
@@ -150,6 +152,25 @@ impl<'a> PatchProblem<'a> {
                 }
                 exchange.law.share *= gauge_face;
             }
+        }
+    }
+
+    /// Normal problem for a gap, or for a change of it, with a wear compliance, both on the grid; its tolerance is 0.
+    pub fn normal_problem(
+        &self,
+        gap: &'a [f64],
+        wear_compliance: &'a [f64],
+        constraint: Constraint,
+    ) -> PatchNormalProblem<'a> {
+        PatchNormalProblem {
+            grid: &self.operators.grid,
+            transform: &self.operators.transform,
+            normal_influence: &self.operators.normal_influence,
+            narrow: &self.operators.narrow_normal,
+            gap,
+            wear_compliance,
+            constraint,
+            tolerance: 0.0,
         }
     }
 

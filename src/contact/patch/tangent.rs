@@ -6,7 +6,7 @@
 use super::centroid;
 use super::expansion;
 use super::fields::PatchFields;
-use super::linearisation::{Linearisation, Solution, leading, leading_cell, normal_problem};
+use super::linearisation::{Linearisation, Solution, leading, leading_cell};
 use super::operators::PatchOperators;
 use super::problem::PatchProblem;
 use super::solvers::PatchSolvers;
@@ -20,7 +20,7 @@ use crate::heat::surface::{ExchangeTangent, SurfaceExchange};
 use crate::mechanics::normal::normal_problem::Constraint;
 use crate::mechanics::patch::friction::{Friction, FrictionChange, LEAST_CHANGE};
 use crate::mechanics::patch::law::Vector;
-use crate::mechanics::patch::normal::Normal;
+use crate::mechanics::patch::normal::{Normal, PatchNormalProblem};
 use crate::numerics::dense::{add_multiple, largest};
 use crate::settings::Settings;
 
@@ -149,13 +149,10 @@ impl PatchTangent {
             given.abs(),
         ];
         let size = size.into_iter().fold(LEAST_CHANGE, f64::max);
-        let data = normal_problem(
-            problem,
-            &self.gap,
-            &solvers.wear_compliance,
-            constraint,
-            tolerance * size,
-        );
+        let data = PatchNormalProblem {
+            tolerance: tolerance * size,
+            ..problem.normal_problem(&self.gap, &solvers.wear_compliance, constraint)
+        };
         tangent.penetration = self.normal.tangent(&data, &self.point.contact, &mut tangent.pressure)?;
         self.edges(problem, fields, direction, tangent);
         self.off_middle(problem, solvers, &tangent.pressure);

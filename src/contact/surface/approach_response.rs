@@ -1,11 +1,11 @@
-//! Responses of the windows' pressures to the approach: the tangents of the pressures on the cells that carry anything, found once in a step. By them the pressures move
-//! with the approach before they are solved for, and the load's stiffness is known.
+//! Responses of the windows' pressures to the approach: the changes of the pressures with it on the cells that carry anything, found once in a step. With them the pressures
+//! move with the approach before they are solved for, and the change of the load with the approach is known.
 
 use super::fields::SurfaceFields;
-use super::problem::{SurfaceProblem, sum_over_strips};
+use super::problem::{SurfaceProblem, component, sum_over_strips};
 use super::solvers::SurfaceSolvers;
-use crate::contact::patch::mechanics;
 use crate::mechanics::normal::normal_problem::Constraint;
+use crate::mechanics::patch::normal::PatchNormalProblem;
 
 /// Error of a response, relative: what is left of a change of the approach is solved for at the next one.
 const RESPONSE_ERROR: f64 = 3e-2;
@@ -22,10 +22,7 @@ pub fn stiffness(problem: &SurfaceProblem, fields: &SurfaceFields, solvers: &mut
     let stiffnesses = fields.used().map(|(window, place)| {
         let own = &solvers.windows[window];
         let points = own.geometry.points();
-        let upward = |strip: usize| {
-            let normal = points[strip].normal;
-            vertical[0] * normal[0] + vertical[1] * normal[1]
-        };
+        let upward = |strip: usize| component(points[strip].normal, vertical);
         let normal = sum_over_strips(problem.operators, &place, &own.response.pressure, upward);
         (1.0 + own.friction_share) * normal / scale
     });
@@ -51,10 +48,12 @@ fn respond(problem: &SurfaceProblem, fields: &SurfaceFields, solvers: &mut Surfa
             for ((gap, rise), displaced) in own.patch.gap.iter_mut().zip(&own.geometry.rise).zip(displaced) {
                 *gap = displaced - rise;
             }
-            let constraint = Constraint::Penetration(0.0);
+            let penetration = Constraint::Penetration(0.0);
             let error = RESPONSE_ERROR / patch.operators.normal_influence.diagonal;
-            let change =
-                mechanics::normal_problem(&patch, constraint, error, &own.patch.gap, &own.patch.wear_compliance);
+            let change = PatchNormalProblem {
+                tolerance: error.max(problem.settings.patch.least_tolerance),
+                ..patch.normal_problem(&own.patch.gap, &own.patch.wear_compliance, penetration)
+            };
             own.patch.normal.respond(&change, &own.patch.contact, &mut own.response);
             if !coupled {
                 continue;

@@ -83,7 +83,7 @@ impl Approaches {
                 self.stiffness *= SOFTER;
             }
         }
-        // A stiffness that has left so much is one of other cells.
+        // The last approach has left too much of the excess: the given stiffness belongs to cells that no longer carry the load alone.
         let slow = self.last.is_some_and(|[_, before]| excess.abs() > SLOW * before.abs());
         if let Some(stiffness) = stiffness.filter(|_| !slow) {
             self.stiffness = clamped(stiffness / load, self.approach.abs().max(self.size));
@@ -106,7 +106,8 @@ impl Approaches {
         };
         self.approach = within;
         let [low, high] = self.bracket;
-        // An approach that is far below the usual ones may be stiffer than what is allowed: from one side to the other, little would be gained.
+        // Far below the usual approaches the contact may be stiffer than the limit. The next approach would then jump from one end of the bracket to the other and
+        // hardly come closer: the middle of the bracket does.
         let circles = slow && excess.abs() > SHOWS_STIFFNESS * error;
         if low.is_finite() && high.is_finite() && (circles || !(low < self.approach && self.approach < high)) {
             self.approach = 0.5 * (low + high);

@@ -35,7 +35,8 @@ const PLAIN_BELOW: f64 = 0.3;
 /// Factor on a patch's tolerance of the tractions in the first sweep: the vertical force of the friction, which the pressure of the next one carries, is a
 /// guess as well.
 const FIRST_SLACK: f64 = 10.0;
-/// Change of a sweep to come, in tolerances, that the mechanics are solved for: with the last change in its place, two more sweeps saw the mechanics' errors alone.
+/// Least change of the interface, in tolerances, that the next sweep is taken to make. The mechanics are solved to a part of it. Solved to a part of the last change, which
+/// is larger, they left errors of their own that took two more sweeps.
 const LEAST_SEEN_CHANGE: f64 = 20.0;
 
 /// Fields before the step at the places of its windows.

@@ -219,13 +219,16 @@ fn foresee(
         return false;
     };
     let excess = (proportional_force(problem, fields, solvers) - load) / load;
-    let stiffness = stiffness(problem, fields, solvers).filter(|_| excess.abs() < RESPONDS);
-    if let Some(stiffness) = stiffness {
-        let before = search.approach;
-        search.foresee(excess, stiffness);
-        advance(problem, search.approach - before, fields, solvers);
+    if excess.abs() >= RESPONDS {
+        return false;
     }
-    stiffness.is_some()
+    let Some(stiffness) = stiffness(problem, fields, solvers) else {
+        return false;
+    };
+    let before = search.approach;
+    search.foresee(excess, stiffness);
+    advance(problem, search.approach - before, fields, solvers);
+    true
 }
 
 /// Moves on to the next approach by an excess of load with an error, relative, and the pressures with it where their responses tell how. Whether they do.

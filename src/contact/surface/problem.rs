@@ -80,13 +80,17 @@ pub fn vertical_forces(
     place: &Place,
     fields: &PatchFields,
 ) -> [f64; 2] {
-    let upward = |direction: [f64; 2]| vertical[0] * direction[0] + vertical[1] * direction[1];
     [
-        sum_over_strips(operators, place, &fields.pressure, |strip| upward(point(strip).normal)),
+        sum_over_strips(operators, place, &fields.pressure, |strip| component(point(strip).normal, vertical)),
         -sum_over_strips(operators, place, &fields.shear[1], |strip| {
-            upward(point(strip).tangent())
+            component(point(strip).tangent(), vertical)
         }),
     ]
+}
+
+/// Component of a vector of the track's cross-section along a direction.
+pub fn component(vector: [f64; 2], direction: [f64; 2]) -> f64 {
+    vector[0] * direction[0] + vector[1] * direction[1]
 }
 
 /// Force of tractions on the grid along a direction, `N`, whose component along theirs is given for each strip that is loaded.
@@ -94,7 +98,7 @@ pub fn sum_over_strips(
     operators: &SurfaceOperators,
     place: &Place,
     tractions: &[f64],
-    component: impl Fn(usize) -> f64,
+    of_strip: impl Fn(usize) -> f64,
 ) -> f64 {
     let window = operators.of(place);
     let grid = &window.grid;
@@ -102,7 +106,7 @@ pub fn sum_over_strips(
     for strip in 0..grid.strips {
         let sum: f64 = tractions[grid.row(strip)].iter().sum();
         if sum != 0.0 {
-            force += component(strip) * sum;
+            force += of_strip(strip) * sum;
         }
     }
     window.unit_force() * force

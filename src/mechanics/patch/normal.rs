@@ -430,13 +430,8 @@ impl Normal {
         let (mut last, mut level) = (0.0, 0.0);
         let mut error = 0.0;
         for iteration in 0..self.settings.normal_iterations {
-            if load_given {
-                self.corrected[..n].copy_from_slice(&self.residual[..n]);
-                problem
-                    .normal_influence
-                    .precondition(contact, &mut self.corrected, &mut self.work);
-            }
             if load_given && n > 0 {
+                self.correct(problem, contact);
                 // The penetration takes what all cells have in common off the residual: kept in it, its round-off would grow into
                 // a change of the load.
                 let common = self.corrected[..n].iter().sum::<f64>() / weight;
@@ -454,11 +449,9 @@ impl Normal {
             if error <= tolerance {
                 break;
             }
+            // Under a given penetration the residual needs no correction to be measured: the last one is left without, which saves one of the few there are.
             if !load_given {
-                self.corrected[..n].copy_from_slice(&self.residual[..n]);
-                problem
-                    .normal_influence
-                    .precondition(contact, &mut self.corrected, &mut self.work);
+                self.correct(problem, contact);
             }
             let product = dot(&self.residual[..n], &self.corrected[..n]);
             let ratio = if iteration == 0 { 0.0 } else { product / last };
@@ -508,6 +501,15 @@ impl Normal {
         contact.scatter(grid, &self.pressure, pressure);
         self.displaced_by.copy_from_slice(pressure);
         (if load_given { -level } else { given }, error)
+    }
+
+    /// Preconditions the residual of the cells.
+    fn correct(&mut self, problem: &PatchNormalProblem, contact: &Contact) {
+        let n = contact.cells();
+        self.corrected[..n].copy_from_slice(&self.residual[..n]);
+        problem
+            .normal_influence
+            .precondition(contact, &mut self.corrected, &mut self.work);
     }
 
     /// Cells that pull leave, cells that overlap join with a trace of pressure; in the order of `one_at_a_time` only the worst.
