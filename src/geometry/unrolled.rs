@@ -141,11 +141,13 @@ impl<'a> PlacedWheel<'a> {
         let gradient = found.gradient;
         let slope = dot(gradient, along);
         let slope = if slope.abs() < LEAST_SLOPE { -LEAST_SLOPE } else { slope };
+        // Along the wheel's surface over the rail's line: forward by dx, along the normal by dh.
         let forward = self.to_wheel([1.0, 0.0, 0.0]);
+        let [tx, ty, tz] = add(forward, along, -dot(gradient, forward) / slope);
         let [qx, _, qz] = found.place;
-        // Second derivative of f along x.
-        let across = (qz * forward[0] - qx * forward[2]) / found.radius;
-        let second = across * across / found.radius + found.second * forward[1] * forward[1];
+        // Second derivative of f in this direction.
+        let across = (qz * tx - qx * tz) / found.radius;
+        let second = across * across / found.radius + found.second * ty * ty;
         Distance {
             distance,
             arm: add(from, normal, distance),

@@ -1,6 +1,6 @@
 //! Position and motion of the wheelset over the rail, and what the cells of a window see of them.
 
-use super::interpolation::{Interpolation, NODES};
+use super::interpolation::{Interpolation, NODES, SPACING};
 use super::operators::SurfaceOperators;
 use super::windows::Place;
 use crate::body::grid::Grid;
@@ -12,6 +12,9 @@ use crate::signals::Inputs;
 
 /// Distance that is added where another window has the surface, and beyond the places where contacts are sought, `m`: far more than any approach.
 pub const ELSEWHERE: f64 = 1e-2;
+/// Largest curvature along the rail with which the wheel bulges towards it between two nodes, `1/m`: that of the smallest wheel is 3 or 4. A worn wheel may have grooves with steep
+/// walls, of which slope and curvature at a node say nothing of what lies between.
+const LARGEST_CURVATURE: f64 = 20.0;
 
 /// Position of the wheelset but for the height of its middle, and its motion, both relative to the rail; of one side.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -191,6 +194,7 @@ impl WindowGeometry {
         let (grid, scale) = (&window.grid, window.scales.displacement);
         let (middle, half) = (place.middle_along(grid), grid.half_length());
         let interpolation = &operators.along;
+        let bulge = LARGEST_CURVATURE * (half * SPACING).powi(2) / 8.0;
         let up = WheelsetPosition {
             height: 1.0,
             ..WheelsetPosition::default()
@@ -220,7 +224,7 @@ impl WindowGeometry {
             let cells = interpolation.cells.iter().zip(&interpolation.spans);
             for (at, (near, span)) in grid.row(strip).zip(cells) {
                 self.rise[at] = near.of(&rises);
-                undeformed.gap[at] = (span.of(&jets) + elsewhere) / scale;
+                undeformed.gap[at] = (span.of(&jets, bulge) + elsewhere) / scale;
             }
             self.slips[strip] = slips_of(tangent, &found.map(|at| wheel.velocity(&at, motion)));
             let still = WheelsetMotion::default();

@@ -3,6 +3,8 @@
 
 /// Number of places along each strip at which the wheel is looked at.
 pub const NODES: usize = 9;
+/// Distance of these places, in halves of the window's length.
+pub const SPACING: f64 = 2.0 / (NODES - 1) as f64;
 /// Places that a value is interpolated between.
 const NEAR: usize = 4;
 
@@ -39,7 +41,7 @@ pub struct Span {
 impl Interpolation {
     /// Interpolation for so many cells.
     pub fn new(cells: usize) -> Interpolation {
-        let nodes: [f64; NODES] = std::array::from_fn(|node| 2.0 * node as f64 / (NODES - 1) as f64 - 1.0);
+        let nodes: [f64; NODES] = std::array::from_fn(|node| SPACING * node as f64 - 1.0);
         let middle = |cell: usize| (2 * cell + 1) as f64 / cells as f64 - 1.0;
         let end = |end: usize| 2.0 * end as f64 / cells as f64 - 1.0;
         Interpolation {
@@ -102,14 +104,12 @@ impl Span {
         }
     }
 
-    /// Value from value, slope and second derivative at the nodes.
-    pub fn of(&self, jets: &[[f64; 3]; NODES]) -> f64 {
-        let ends = jets[self.first].iter().chain(&jets[self.first + 1]);
-        self.weights
-            .iter()
-            .zip(ends)
-            .map(|(weight, value)| weight * value)
-            .sum()
+    /// Value from value, slope and second derivative at the nodes. It is at most by `bulge` less than the smaller one at both.
+    pub fn of(&self, jets: &[[f64; 3]; NODES], bulge: f64) -> f64 {
+        let [near, far] = [&jets[self.first], &jets[self.first + 1]];
+        let terms = self.weights.iter().zip(near.iter().chain(far));
+        let value: f64 = terms.map(|(weight, value)| weight * value).sum();
+        value.max(near[0].min(far[0]) - bulge)
     }
 }
 
@@ -133,7 +133,7 @@ mod tests {
         for cell in 0..34 {
             let place = (2 * cell + 1) as f64 / 34.0 - 1.0;
             assert!((interpolation.cells[cell].of(&values) - cubic(place)).abs() < 1e-14);
-            assert!((interpolation.spans[cell].of(&jets) - quintic(place)[0]).abs() < 1e-14);
+            assert!((interpolation.spans[cell].of(&jets, f64::INFINITY) - quintic(place)[0]).abs() < 1e-14);
         }
         for (number, local) in interpolation.ends.iter().enumerate() {
             let place = 2.0 * (number + 1) as f64 / 34.0 - 1.0;

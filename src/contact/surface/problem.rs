@@ -81,7 +81,9 @@ pub fn vertical_forces(
     fields: &PatchFields,
 ) -> [f64; 2] {
     [
-        sum_over_strips(operators, place, &fields.pressure, |strip| component(point(strip).normal, vertical)),
+        sum_over_strips(operators, place, &fields.pressure, |strip| {
+            component(point(strip).normal, vertical)
+        }),
         -sum_over_strips(operators, place, &fields.shear[1], |strip| {
             component(point(strip).tangent(), vertical)
         }),

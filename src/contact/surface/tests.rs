@@ -3,10 +3,13 @@ use super::bodies::{RAIL, WHEEL};
 use super::geometry::{Pose, WindowGeometry};
 use super::operators::SurfaceOperators;
 use super::transfer::Transfer;
+use super::windows::Place;
+use super::worn_bodies::WornBodies;
 use crate::contact::ContactState;
 use crate::contact::fields::Fields;
 use crate::contact::patch::undeformed::Undeformed;
 use crate::contact::surface::fields::SurfaceFields;
+use crate::geometry::rail::PlacedRail;
 use crate::geometry::unrolled::PlacedWheel;
 use crate::parameters::{ContactModel, Control, Parameters, ProfileWear, Side, SlipSource};
 use crate::signals::{INPUTS, Inputs};
@@ -63,6 +66,14 @@ fn fields(state: &State) -> &SurfaceFields {
     &own.fields
 }
 
+/// What the cells of a window see of the undeformed bodies.
+fn seen(operators: &SurfaceOperators, bodies: (&PlacedRail, &PlacedWheel), place: &Place, pose: &Pose) -> Undeformed {
+    let mut undeformed = Undeformed::none(&operators.of(place).grid);
+    let everywhere = [f64::NEG_INFINITY, f64::INFINITY];
+    WindowGeometry::new(operators).set(operators, bodies, place, &pose.motion, everywhere, &mut undeformed);
+    undeformed
+}
+
 /// Gap and rigid slip of every cell change with each input as their differences do.
 #[test]
 fn the_change_of_the_geometry_is_its_difference() {
@@ -73,21 +84,10 @@ fn the_change_of_the_geometry_is_its_difference() {
         let state = run(&parameters, &inputs, 0);
         for (_, place) in fields(&state).used() {
             let grid = &operators.of(&place).grid;
-            let mut geometry = WindowGeometry::new(&operators);
-            let mut undeformed = |inputs: &Inputs| {
+            let undeformed = |inputs: &Inputs| {
                 let pose = Pose::new(&operators, inputs, parameters.wheel_radius);
                 let wheel = PlacedWheel::new(&operators.bodies.wheel, &pose.position);
-                let mut undeformed = Undeformed::none(grid);
-                let everywhere = [f64::NEG_INFINITY, f64::INFINITY];
-                geometry.set(
-                    &operators,
-                    (&operators.bodies.rail, &wheel),
-                    &place,
-                    &pose.motion,
-                    everywhere,
-                    &mut undeformed,
-                );
-                undeformed
+                seen(&operators, (&operators.bodies.rail, &wheel), &place, &pose)
             };
             let here = undeformed(&inputs);
             for signal in INPUTS {
@@ -138,6 +138,85 @@ fn the_change_of_the_geometry_is_its_difference() {
             }
         }
     }
+}
+
+/// The gap of the cells is interpolated between the places along each strip at which the wheel is looked at, to 1e-9 of the approach: what is left are the
+/// jumps of the profile's curvature, which a yawed wheel passes by.
+#[test]
+fn the_gap_is_that_of_the_wheel_over_each_cell() {
+    let parameters = parameters(Control::Height);
+    let operators = SurfaceOperators::build(&parameters).unwrap();
+    let (mut cells, mut largest) = (0, 0f64);
+    for lateral in [1e-3, 5e-3] {
+        let inputs = displaced(lateral);
+        let state = run(&parameters, &inputs, 0);
+        let pose = Pose::new(&operators, &inputs, parameters.wheel_radius);
+        let wheel = PlacedWheel::new(&operators.bodies.wheel, &pose.position);
+        for (_, place) in fields(&state).used() {
+            let window = operators.of(&place);
+            let (grid, scale) = (&window.grid, window.scales.displacement);
+            let rail = &operators.bodies.rail;
+            let undeformed = seen(&operators, (rail, &wheel), &place, &pose);
+            for strip in 0..grid.strips {
+                let point = rail.at(place.arc(grid, strip));
+                for (cell, at) in grid.row(strip).enumerate() {
+                    let gap = undeformed.gap[at];
+                    if gap.abs() < 1.0 {
+                        let along = place.middle_along(grid) + grid.x(cell);
+                        let distance = wheel.distance(along, &point, 0.0).distance;
+                        largest = largest.max((gap - distance / scale).abs());
+                        cells += 1;
+                    }
+                }
+            }
+        }
+    }
+    assert!(cells > 100);
+    assert!(largest < 1e-9, "{largest:e}");
+}
+
+/// A yawed wheel at the height at which it touched as new, worn since to grooves with steep walls: nothing of it is in the rail. What the cells see of it is less deep than a
+/// fifth of the grooves, as a line along the rail's normal may miss the place where it meets a wall; between the places, without its limit, the interpolation
+/// sees it five times as deep as the grooves.
+#[test]
+fn steep_walls_of_a_worn_wheel_do_not_reach_into_the_rail() {
+    const DEPTH: f64 = 5e-3;
+    let parameters = Parameters {
+        wheel_profile_wear: ProfileWear::On,
+        ..parameters(Control::Load)
+    };
+    let operators = SurfaceOperators::build(&parameters).unwrap();
+    let mut worn = WornBodies::new(&operators);
+    let mut depths = [WHEEL, RAIL].map(|body| vec![0.0; operators.wear_cells(body)]);
+    let grid = operators.grids[WHEEL];
+    for (cell, depth) in depths[WHEEL].iter_mut().enumerate() {
+        let position = operators.profiles[WHEEL].at(grid.middle(cell)).place[0];
+        *depth = if (2e-3..12e-3).contains(&position) && cell % 4 < 2 {
+            DEPTH
+        } else {
+            0.0
+        };
+    }
+    worn.set(&operators, &depths).unwrap();
+    let bodies = worn.of(&operators);
+    let mut walls = 0;
+    let inputs = Inputs {
+        yaw_angle: 0.02,
+        normal_load: 60e3,
+        ..displaced(1e-3)
+    };
+    let state = run(&parameters, &inputs, 0);
+    let pose = Pose::new(&operators, &inputs, parameters.wheel_radius);
+    let wheel = PlacedWheel::new(&bodies.wheel, &pose.at_height(fields(&state).touch));
+    for (_, place) in fields(&state).used() {
+        let scale = operators.of(&place).scales.displacement;
+        let undeformed = seen(&operators, (&bodies.rail, &wheel), &place, &pose);
+        let depth = DEPTH / scale;
+        walls += undeformed.gap.iter().filter(|&&gap| gap > 0.5 * depth).count();
+        let deepest = undeformed.gap.iter().copied().fold(f64::INFINITY, f64::min);
+        assert!(deepest > -0.2 * depth, "{deepest}");
+    }
+    assert!(walls > 0);
 }
 
 /// The displacement of one window by the pressure of another is the sum over its cells as point forces, to the second order in the size of a block over
