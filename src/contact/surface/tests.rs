@@ -66,7 +66,7 @@ fn fields(state: &State) -> &SurfaceFields {
     &own.fields
 }
 
-/// What the cells of a window see of the undeformed bodies.
+/// Gap and rigid slip that the cells of a window see.
 fn seen(operators: &SurfaceOperators, bodies: (&PlacedRail, &PlacedWheel), place: &Place, pose: &Pose) -> Undeformed {
     let mut undeformed = Undeformed::none(&operators.of(place).grid);
     let everywhere = [f64::NEG_INFINITY, f64::INFINITY];
