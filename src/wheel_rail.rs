@@ -37,7 +37,7 @@ pub struct Model {
 
 /// Scratch of a step. What a step leaves in it changes no result of another one.
 pub struct Workspace {
-    contact: ContactWorkspace,
+    pub(crate) contact: ContactWorkspace,
 }
 
 impl Workspace {

@@ -60,6 +60,11 @@ fn begin_windows(
     } = solvers;
     let before = before.map(|before| at_places(*moved, carried, before));
     *responded = false;
+    // The work of a window that is used no longer is not of this step.
+    for own in windows.iter_mut() {
+        own.patch.normal.start_step();
+        own.patch.friction.start_step();
+    }
     for (window, place) in now.used() {
         let (patch, own) = (problem.of(&place), &mut now.windows[window]);
         own.relaxation_length = begin::relaxation_length_of(&patch, &problem.operators.pair, &own.pressure);

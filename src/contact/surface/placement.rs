@@ -16,6 +16,8 @@ use crate::mechanics::patch::normal::is_free;
 const AHEAD: f64 = 1.03;
 /// Approach after a contact has outgrown its window, over the one of the step before, above which windows are placed for the overlap of the bodies.
 const FAR_DEEPER: f64 = 3.0;
+/// Least approach under a load for which windows are placed by the overlap of the bodies, over that of Hertz's ellipses.
+const LEAST_OVERLAP: f64 = 0.5;
 /// Distance of two regions, over their mean breadth, below which they share a window that resolves both.
 const NEAR: f64 = 0.5;
 /// Distance, over the mean breadth, below which they share one in any case: regions are larger than their contacts, and those of contacts that
@@ -67,7 +69,7 @@ pub fn place(
     }
     let wanted = merged(&operators.sizes, &solvers.wanted);
     let mut own = assign(problem, &wanted.0[..wanted.1], now);
-    if approach > 0.0 && !holds_first(problem, solvers, now) {
+    if approach > 0.0 && !holds_first(problem, solvers, now, &own) {
         // Of contacts far apart that were taken for one, a window may have left out the one that carries.
         want_overlaps(problem, approach, solvers);
         let wanted = merged(&operators.sizes, &solvers.wanted);
@@ -191,10 +193,17 @@ fn want(problem: &SurfaceProblem, source: Option<&SurfaceFields>, approach: f64,
     }
 }
 
-/// Lists the overlaps of the bodies as the regions to place windows for.
+/// Lists the overlaps of the bodies as the regions to place windows for. A hot rail may have carried the load at next to no approach; where the bodies touch
+/// elsewhere now, they overlap by more.
 fn want_overlaps(problem: &SurfaceProblem, approach: f64, solvers: &mut SurfaceSolvers) {
     let SurfaceSolvers { search, wanted, .. } = solvers;
     wanted.clear();
+    let approach = if problem.is_height_given() {
+        approach
+    } else {
+        let of_ellipses = search.approach(problem.vertical_load(), problem.parameters.contact_modulus());
+        approach.max(LEAST_OVERLAP * of_ellipses)
+    };
     // The overlaps come from the field side to the gauge side.
     let overlaps = search.overlaps(approach * AHEAD * problem.conditions.room).iter().rev();
     wanted.extend(overlaps.map(|overlap| Wanted {
@@ -203,14 +212,22 @@ fn want_overlaps(problem: &SurfaceProblem, approach: f64, solvers: &mut SurfaceS
     }));
 }
 
-/// Whether a window holds the place where the bodies touch first.
-fn holds_first(problem: &SurfaceProblem, solvers: &SurfaceSolvers, now: &SurfaceFields) -> bool {
+/// Whether a window that has a part of the surface to itself holds the place where the bodies touch first.
+fn holds_first(
+    problem: &SurfaceProblem,
+    solvers: &SurfaceSolvers,
+    now: &SurfaceFields,
+    own: &[[f64; 2]; WINDOWS],
+) -> bool {
     let Some((point, along)) = solvers.search.first() else {
         return true;
     };
     let first = [along, problem.operators.bodies.scan[point].0];
     let sizes = &problem.operators.sizes;
-    let mut windows = now.used();
+    let mut windows = now.used().filter(|(window, _)| {
+        let [from, to] = own[*window];
+        (from..to).contains(&first[1])
+    });
     windows.any(|(_, place)| place.region(&sizes.grid(place.length, place.breadth)).holds(first))
 }
 

@@ -41,9 +41,8 @@ const RESPONSE_SHARE: f64 = 0.1;
 const STALE: f64 = 0.2;
 /// Limit of the approach in units of that under the largest load. A search that goes farther is given up: no height carries the load.
 const FARTHEST: f64 = 50.0;
-/// Least ratio of a window's vertical force by friction to that by pressure in a staggered step that finds no height otherwise. At -0.5 the pressure carries
-/// twice the load at most.
-const LEAST_FRICTION_SHARE: f64 = -0.5;
+/// Least ratio of a window's vertical force by friction to that by pressure in a staggered step: the pressure carries four times the load at most.
+const LEAST_FRICTION_SHARE: f64 = -0.75;
 /// Limit of the rounds over windows that displace each other.
 const ROUNDS: usize = 60;
 /// Limit of these rounds in a staggered step, whose work is bounded.
@@ -90,7 +89,7 @@ pub fn least_load_error(problem: &SurfaceProblem, load: f64) -> f64 {
     problem.settings.patch.least_tolerance * force / load
 }
 
-/// Solves the pressure of all windows, at the approach that carries the load or at the given one.
+/// Solves the pressure of all windows, with the friction in proportion to it, at the approach that carries the load or at the given one.
 ///
 /// On a steep flank, friction may pull the wheel down by more than the pressure lifts it. In proportion to the pressure, no approach
 /// carries the load then, although other shear may; a staggered step takes the friction for smaller, and its residual shows it.
@@ -100,30 +99,12 @@ pub fn press(
     solvers: &mut SurfaceSolvers,
     tolerance: f64,
 ) -> Result<()> {
-    let (approach, stiffness) = (fields.approach[0], fields.stiffness);
-    let outcome = press_with_friction(problem, fields, solvers, tolerance);
-    let mut limited = false;
-    if problem.conditions.coupling == Coupling::Staggered && matches!(outcome, Err(Error::NormalNotConverged { .. })) {
+    if problem.conditions.coupling == Coupling::Staggered {
         for (window, _) in fields.used() {
             let share = &mut solvers.windows[window].friction_share;
-            limited |= *share < LEAST_FRICTION_SHARE;
             *share = share.max(LEAST_FRICTION_SHARE);
         }
     }
-    if !limited {
-        return outcome;
-    }
-    (fields.approach[0], fields.stiffness) = (approach, stiffness);
-    press_with_friction(problem, fields, solvers, tolerance)
-}
-
-/// Solves the pressure of all windows, with the friction in proportion to it.
-fn press_with_friction(
-    problem: &SurfaceProblem,
-    fields: &mut SurfaceFields,
-    solvers: &mut SurfaceSolvers,
-    tolerance: f64,
-) -> Result<()> {
     let scale = problem.operators.shapes[0].scales.displacement;
     let mut search = if problem.is_height_given() {
         Approaches::given(solvers.reference)

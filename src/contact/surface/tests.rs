@@ -5,15 +5,16 @@ use super::operators::SurfaceOperators;
 use super::transfer::Transfer;
 use super::windows::Place;
 use super::worn_bodies::WornBodies;
-use crate::contact::ContactState;
+use crate::contact::engine::Engine;
 use crate::contact::fields::Fields;
 use crate::contact::patch::undeformed::Undeformed;
 use crate::contact::surface::fields::SurfaceFields;
+use crate::contact::{ContactState, ContactWorkspace};
 use crate::geometry::rail::PlacedRail;
 use crate::geometry::unrolled::PlacedWheel;
 use crate::parameters::{ContactModel, Control, Parameters, ProfileWear, Side, SlipSource};
 use crate::signals::{INPUTS, Inputs};
-use crate::wheel_rail::{Model, State};
+use crate::wheel_rail::{Model, State, Workspace};
 
 fn parameters(control: Control) -> Parameters {
     Parameters {
@@ -354,4 +355,39 @@ fn the_volume_of_the_cells_is_that_of_the_law() {
             "{found} {expected}"
         );
     }
+}
+
+/// The work of a step is that of its own windows: of a wheel that has left its second contact, not what was done in that one before.
+#[test]
+fn work_is_of_the_windows_of_the_step() {
+    let parameters = Parameters {
+        contact_model: ContactModel::Profiles,
+        slip_source: SlipSource::VehicleSpeed,
+        ..Parameters::default()
+    };
+    let model = Model::new(parameters.clone()).unwrap();
+    let work = |workspace: &mut Workspace, lateral: f64| {
+        let inputs = Inputs {
+            vehicle_speed: 20.0,
+            wheel_speed: 20.1 / parameters.wheel_radius,
+            normal_load: 80e3,
+            lateral_displacement: lateral,
+            ..Inputs::default()
+        };
+        let mut state = run(&parameters, &inputs, 0);
+        model.step(workspace, &mut state, &inputs, &Inputs::ZERO, 1e-3).unwrap();
+        let ContactWorkspace::Surface(own) = &workspace.contact else {
+            panic!("another contact model");
+        };
+        (
+            fields(&state).used().count(),
+            SurfaceOperators::mechanics_work(&own.solvers),
+        )
+    };
+    let mut workspace = model.workspace();
+    let (windows, _) = work(&mut workspace, 5e-3);
+    assert_eq!(windows, 2);
+    let of_one = work(&mut workspace, 0.0);
+    assert_eq!(of_one, work(&mut model.workspace(), 0.0));
+    assert_eq!(of_one.0, 1);
 }
