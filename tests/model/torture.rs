@@ -53,7 +53,7 @@ fn friction_with_a_memory_has_corners() {
 }
 
 /// Runs of wheelsets on profiles that once failed, and steps until the failure.
-const WHEELSETS: [(Engines, u64, u64, usize); 11] = [
+const WHEELSETS: [(Engines, u64, u64, usize); 13] = [
     // First states in which the law of friction, with a memory and on a layer, has no solution that is found.
     (Engines::NewProfiles, 3, 89, 2),
     (Engines::NewProfiles, 11, 167, 2),
@@ -74,6 +74,10 @@ const WHEELSETS: [(Engines, u64, u64, usize); 11] = [
     (Engines::Profiles, 44, 50, 15),
     // Wear eight thousand times as fast as in truth, which folds a rail's profile: the step that does is refused, not the one after it.
     (Engines::Profiles, 44, 41, 7),
+    // Hot rail that has carried the load at next to no approach, and a wheel that comes down elsewhere.
+    (Engines::Profiles, 6001, 299, 149),
+    // The budget of a step spent on the work that a window had taken in another one.
+    (Engines::Profiles, 6001, 90, 132),
 ];
 
 #[test]
