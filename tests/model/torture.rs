@@ -53,7 +53,7 @@ fn friction_with_a_memory_has_corners() {
 }
 
 /// Runs of wheelsets on profiles that once failed, and steps until the failure.
-const WHEELSETS: [(Engines, u64, u64, usize); 13] = [
+const WHEELSETS: [(Engines, u64, u64, usize); 14] = [
     // First states in which the law of friction, with a memory and on a layer, has no solution that is found.
     (Engines::NewProfiles, 3, 89, 2),
     (Engines::NewProfiles, 11, 167, 2),
@@ -78,6 +78,8 @@ const WHEELSETS: [(Engines, u64, u64, usize); 13] = [
     (Engines::Profiles, 6001, 299, 149),
     // The budget of a step spent on the work that a window had taken in another one.
     (Engines::Profiles, 6001, 90, 132),
+    // A window so broad that lines along the rail's normal at its side miss the wheel, from where the next ones did not find it.
+    (Engines::Profiles, 6002, 256, 39),
 ];
 
 #[test]

@@ -67,13 +67,20 @@ pub fn place(
     if known.is_some() {
         forget(now);
     }
+    let places = now.places;
     let wanted = merged(&operators.sizes, &solvers.wanted);
     let mut own = assign(problem, &wanted.0[..wanted.1], now);
     if approach > 0.0 && !holds_first(problem, solvers, now, &own) {
         // Of contacts far apart that were taken for one, a window may have left out the one that carries.
         want_overlaps(problem, approach, solvers);
-        let wanted = merged(&operators.sizes, &solvers.wanted);
-        own = assign(problem, &wanted.0[..wanted.1], now);
+        let overlaps = merged(&operators.sizes, &solvers.wanted);
+        now.places = places;
+        own = assign(problem, &overlaps.0[..overlaps.1], now);
+        if !holds_first(problem, solvers, now, &own) {
+            // There are more overlaps than windows: the contacts that have carried are as good as any.
+            now.places = places;
+            own = assign(problem, &wanted.0[..wanted.1], now);
+        }
     }
     solvers.moved = before.is_some_and(|before| before.places != now.places);
     if let Some(before) = before
