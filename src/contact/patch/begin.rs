@@ -30,8 +30,7 @@ pub fn begin(
     if let Some(before) = before {
         memory::begin(problem, before, now);
     }
-    solvers.normal.start_step();
-    solvers.friction.start_step();
+    solvers.start_step();
     solvers.wear_compliance.fill(0.0);
     let grid = &problem.operators.grid;
     solvers.contact.list(grid, |place| now.pressure[place] > 0.0);

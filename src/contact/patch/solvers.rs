@@ -118,4 +118,10 @@ impl PatchSolvers {
             path: PathScratch::new(cells),
         }
     }
+
+    /// Forgets what was computed in another step, and its work: a step follows from its state alone.
+    pub fn start_step(&mut self) {
+        self.normal.start_step();
+        self.friction.start_step();
+    }
 }

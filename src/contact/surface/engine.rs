@@ -62,8 +62,7 @@ fn begin_windows(
     *responded = false;
     // The work of a window that is used no longer is not of this step.
     for own in windows.iter_mut() {
-        own.patch.normal.start_step();
-        own.patch.friction.start_step();
+        own.patch.start_step();
     }
     for (window, place) in now.used() {
         let (patch, own) = (problem.of(&place), &mut now.windows[window]);

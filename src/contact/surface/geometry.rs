@@ -214,10 +214,10 @@ impl WindowGeometry {
             let mut guess = first_guess;
             let found = interpolation.nodes.map(|node| {
                 let at = wheel.distance(middle + half * node, &point, guess);
-                guess = near(at.distance);
+                guess = as_guess(at.distance);
                 at
             });
-            first_guess = near(found[0].distance);
+            first_guess = as_guess(found[0].distance);
             let rises = found.map(|at| wheel.distance_change(&at, &up));
             // dh/dx = −g_x/(g·n).
             let jets = found.map(|at| [at.distance, -half * at.gradient[0], half * half * at.curvature_along]);
@@ -303,7 +303,7 @@ fn slips_of(tangent: [f64; 2], velocities: &[[f64; 3]; NODES]) -> NodeSlips {
 
 /// A distance as the guess of the next one, unless it is large. Where a line along the normal misses the wheel, what is found lies anywhere, and from there the wheel over the
 /// next strip would not be found either.
-fn near(distance: f64) -> f64 {
+fn as_guess(distance: f64) -> f64 {
     if distance.abs() < ELSEWHERE { distance } else { 0.0 }
 }
 

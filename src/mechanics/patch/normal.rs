@@ -449,7 +449,7 @@ impl Normal {
             if error <= tolerance {
                 break;
             }
-            // Under a given penetration the residual needs no correction to be measured: the last one is left without, which saves one of the few there are.
+            // Under a given penetration the error is known without preconditioning: that of the last residual is saved.
             if !load_given {
                 self.correct(problem, contact);
             }
