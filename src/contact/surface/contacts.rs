@@ -26,7 +26,7 @@ const ELLIPSE: f64 = 1.2;
 /// the approach.
 const LEAST_DEPTH: f64 = 0.02;
 /// Depth that a contact which carries counts with where the shallowest are left out, `m`: more than any overlap.
-const CARRIES: f64 = 1.0;
+pub const CARRIES: f64 = 1.0;
 
 /// Region for a window, with the depth of the overlap.
 #[derive(Debug, Clone, Copy, Default)]

@@ -1,9 +1,10 @@
 //! Placement of the windows at the beginning of a step: about the contacts of the step before, and those that begin.
 
-use super::contacts::{self, BESIDE, CONTACTS, Expected, Wanted};
+use super::contacts::{self, BESIDE, CARRIES, CONTACTS, Expected, Wanted};
 use super::fields::SurfaceFields;
 use super::operators::SurfaceOperators;
 use super::problem::SurfaceProblem;
+use super::search::Search;
 use super::solvers::SurfaceSolvers;
 use super::windows::{Place, Region, Sizes, WINDOWS};
 use crate::contact::fields::Fields;
@@ -16,6 +17,8 @@ use crate::mechanics::patch::normal::is_free;
 const AHEAD: f64 = 1.03;
 /// Approach after a contact has outgrown its window, over the one of the step before, above which windows are placed for the overlap of the bodies.
 const FAR_DEEPER: f64 = 3.0;
+/// Approach over that of the step before from which on that of ellipses limits it.
+const MUCH_DEEPER: f64 = 2.0;
 /// Least approach under a load for which windows are placed by the overlap of the bodies, over that of Hertz's ellipses.
 const LEAST_OVERLAP: f64 = 0.5;
 /// Distance of two regions, over their mean breadth, below which they share a window that resolves both.
@@ -67,20 +70,13 @@ pub fn place(
     if known.is_some() {
         forget(now);
     }
-    let places = now.places;
     let wanted = merged(&operators.sizes, &solvers.wanted);
     let mut own = assign(problem, &wanted.0[..wanted.1], now);
     if approach > 0.0 && !holds_first(problem, solvers, now, &own) {
         // Of contacts far apart that were taken for one, a window may have left out the one that carries.
         want_overlaps(problem, approach, solvers);
         let overlaps = merged(&operators.sizes, &solvers.wanted);
-        now.places = places;
         own = assign(problem, &overlaps.0[..overlaps.1], now);
-        if !holds_first(problem, solvers, now, &own) {
-            // There are more overlaps than windows: the contacts that have carried are as good as any.
-            now.places = places;
-            own = assign(problem, &wanted.0[..wanted.1], now);
-        }
     }
     solvers.moved = before.is_some_and(|before| before.places != now.places);
     if let Some(before) = before
@@ -156,9 +152,20 @@ fn expected_approach(
     if load == 0.0 {
         return 0.0;
     }
+    let mut of_ellipses = || solvers.search.approach(load, problem.parameters.contact_modulus());
     match before.filter(|before| before.load > 0.0 && before.approach[0] > 0.0) {
-        Some(before) => before.approach[0] * (load / before.load).cbrt().powi(2),
-        None => solvers.search.approach(load, problem.parameters.contact_modulus()),
+        Some(before) => {
+            let last = before.approach[0];
+            let scaled = last * (load / before.load).cbrt().powi(2);
+            // On a rough profile a small load has an approach from the height of the first touch, which is known to tens of micrometres: it does not grow with
+            // the load.
+            if scaled <= MUCH_DEEPER * last {
+                scaled
+            } else {
+                scaled.min(last + of_ellipses())
+            }
+        }
+        None => of_ellipses(),
     }
 }
 
@@ -211,12 +218,28 @@ fn want_overlaps(problem: &SurfaceProblem, approach: f64, solvers: &mut SurfaceS
         let of_ellipses = search.approach(problem.vertical_load(), problem.parameters.contact_modulus());
         approach.max(LEAST_OVERLAP * of_ellipses)
     };
+    let approach = approach * AHEAD * problem.conditions.room;
     // The overlaps come from the field side to the gauge side.
-    let overlaps = search.overlaps(approach * AHEAD * problem.conditions.room).iter().rev();
+    let overlaps = search.overlaps(approach).iter().rev();
     wanted.extend(overlaps.map(|overlap| Wanted {
         region: overlap.region,
         depth: overlap.depth,
     }));
+    want_first(search, approach, wanted);
+}
+
+/// Sees to it that a region holds the place where the bodies touch first, and is not left out: it carries. On a rough profile that place lies between
+/// points of the search, none of which need overlap.
+fn want_first(search: &Search, approach: f64, wanted: &mut Vec<Wanted>) {
+    let Some((place, region)) = search.about_first(approach) else {
+        return;
+    };
+    if let Some(own) = wanted.iter_mut().find(|wanted| wanted.region.holds(place)) {
+        own.depth = CARRIES;
+        return;
+    }
+    let before = wanted.partition_point(|wanted| wanted.region.across[0] < region.across[0]);
+    wanted.insert(before, Wanted { region, depth: CARRIES });
 }
 
 /// Whether a window that has a part of the surface to itself holds the place where the bodies touch first.

@@ -154,6 +154,21 @@ impl Search {
         least.map(|(number, point)| (number, point.along))
     }
 
+    /// Place along the rail and arc length, `m`, at which the bodies touch first, and the region about it that a wheel lower by `approach` `m` may press on; none
+    /// where they do not touch.
+    pub fn about_first(&self, approach: f64) -> Option<([f64; 2], Region)> {
+        let (number, along) = self.first()?;
+        let point = &self.points[number];
+        let half = REGION_SHARE * half_length(point, approach * point.rise);
+        let spacing = self.points[0].arc - self.points[1].arc;
+        let region = Region {
+            along: [along - half, along + half],
+            across: [point.arc - spacing, point.arc + spacing],
+            narrowest: 2.0 * spacing,
+        };
+        Some(([along, point.arc], region))
+    }
+
     /// Change of the height at which the bodies touch first, with a change of the position at an unchanged height, `m`. The points are those at the
     /// position, at that height: the least room of the parabola through three of them stays 0.
     pub fn touch_change(&self, bodies: &Bodies, position: &WheelsetPosition, change: &WheelsetPosition) -> f64 {

@@ -516,7 +516,14 @@ impl Normal {
     /// Whether any did.
     fn exchange(&self, problem: &PatchNormalProblem, pressure: &mut [f64], one_at_a_time: bool) -> bool {
         let grid = problem.grid;
-        let trace = self.settings.trace * pressure.iter().fold(0.0, |m: f64, p| p.max(m));
+        let largest = pressure.iter().fold(0.0, |m: f64, p| p.max(m));
+        // Where every cell pulls, that of a cell which presses its overlap away.
+        let of_overlap = || {
+            let places = (0..grid.strips).flat_map(|strip| grid.row(strip));
+            let least = places.fold(0.0, |m: f64, place| m.min(self.separation[place]));
+            -least / problem.normal_influence.diagonal
+        };
+        let trace = self.settings.trace * if largest > 0.0 { largest } else { of_overlap() };
         let mut worst = (0.0, None);
         let mut changed = false;
         for place in (0..grid.strips).flat_map(|strip| grid.row(strip)) {
