@@ -14,7 +14,7 @@ use crate::contact::problem::{Coupling, StepConditions, Task};
 use crate::contact::{ContactState, ContactWorkspace, Operators};
 use crate::error::{Error, Result};
 use crate::geometry::profile::Profile;
-use crate::parameters::Parameters;
+use crate::parameters::{ContactModel, Control, Parameters};
 use crate::settings::Settings;
 use crate::signals::{Inputs, OUTPUTS, Outputs, Totals};
 use division::{Division, SubStep};
@@ -252,7 +252,10 @@ impl Model {
         } else {
             f64::INFINITY
         };
-        let mut division = Division::new(settings, duration, planned, first);
+        // At a height that is given, the pressure is that of the height.
+        let may_hold =
+            self.parameters.contact_model == ContactModel::Profiles && self.parameters.control != Control::Height;
+        let mut division = Division::new(settings, duration, [planned, first], may_hold);
         let mut convergence = Convergence::default();
         while let Some(part) = division.next() {
             let at_end = self.inputs_at(inputs, rates, part.end);

@@ -188,7 +188,7 @@ impl Operators {
         ) -> Result<(Convergence, Integrals)> {
             let convergence = match problem.conditions.coupling {
                 Coupling::Implicit => step::solve(problem, state, last_duration, workspace)?,
-                Coupling::Staggered => step::solve_staggered(problem, state, workspace)?,
+                Coupling::Staggered | Coupling::Held => step::solve_staggered(problem, state, workspace)?,
             };
             let integrals = E::integrals(problem, workspace.solution(), &workspace.solvers);
             Ok((convergence, integrals))

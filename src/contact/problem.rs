@@ -69,6 +69,16 @@ pub enum Coupling {
     /// The mechanics see temperature and wear at its beginning. Where friction has no solution that is found, they take the one for the
     /// least regularisation that has one.
     Staggered,
+    /// As staggered, with the pressure of the step before, in proportion to the load: for contacts of profiles whose pressure is not found, as between
+    /// surfaces that are worn to grooves narrower than the cells.
+    Held,
+}
+
+impl Coupling {
+    /// Whether the mechanics see temperature and wear at the beginning of the step.
+    pub fn is_staggered(self) -> bool {
+        self != Coupling::Implicit
+    }
 }
 
 /// Problem of one implicit step of a contact model.
@@ -99,7 +109,7 @@ impl<'a, E> Problem<'a, E> {
         match self.conditions.coupling {
             _ if !self.conditions.duration.is_finite() => u64::MAX,
             Coupling::Implicit => self.settings.step.work,
-            Coupling::Staggered => self.settings.step.staggered_work,
+            Coupling::Staggered | Coupling::Held => self.settings.step.staggered_work,
         }
     }
 

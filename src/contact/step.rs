@@ -8,7 +8,7 @@ use super::engine::Engine;
 use super::fields::{EngineState, Fields};
 use super::interface::Interface;
 use super::newton::{self, Newton, Sweeps};
-use super::problem::{Convergence, Coupling, Problem};
+use super::problem::{Convergence, Problem};
 use super::rail_and_rim;
 use super::work::Work;
 use crate::error::{Error, Result};
@@ -275,7 +275,7 @@ fn finish<E: Engine>(
         iterations,
         residual,
         fills_window,
-        staggered: problem.conditions.coupling == Coupling::Staggered,
+        staggered: problem.conditions.coupling.is_staggered(),
         profile_change: E::profile_change(solvers),
     })
 }
@@ -304,7 +304,7 @@ fn initial_state_in_room<E: Engine>(
     E::set_wheel_temperature(&mut now, problem.conditions.inputs.ambient_temperature);
     now.memories_mut().for_each(Memory::start_steady);
     E::begin(problem, None, &mut now, solvers)?;
-    let staggered = problem.conditions.coupling == Coupling::Staggered;
+    let staggered = problem.conditions.coupling.is_staggered();
     let mut tractions = TractionChange::NONE;
     let limit = if staggered {
         settings.iterations.min(problem.settings.interface.mechanics_sweeps)

@@ -95,6 +95,13 @@ const STEPS: usize = 12;
 const TOLERANCE: f64 = 2e-16;
 /// Longest step, `m`: less than the radii of a flange.
 const LONGEST_STEP: f64 = 3e-3;
+/// Value of f, `m`, above which Newton's method has not found the wheel.
+const LARGEST_ERROR: f64 = 1e-8;
+/// Distance from the guess within which the wheel is then looked for in steps, and their length, `m`: worn grooves are broader.
+const FARTHEST: f64 = 5e-3;
+const GROOVE: f64 = 1e-4;
+/// Halvings of such a step: to round-off of a radius.
+const HALVINGS: usize = 40;
 /// Least slope of f along the normal in a step: the wheel's surface may be seen from the side.
 const LEAST_SLOPE: f64 = 0.05;
 
@@ -127,15 +134,26 @@ impl<'a> PlacedWheel<'a> {
         let (base, along) = (self.to_wheel(from), self.to_wheel(normal));
         let mut distance = guess;
         let mut found = self.at(base, along, distance);
+        let mut leapt = false;
         for _ in 0..STEPS {
             let slope = found.gradient[0] * along[0] + found.gradient[1] * along[1] + found.gradient[2] * along[2];
             let slope = if slope.abs() < LEAST_SLOPE { -LEAST_SLOPE } else { slope };
             let step = (found.outside / slope).clamp(-LONGEST_STEP, LONGEST_STEP);
+            leapt |= step.abs() == LONGEST_STEP;
             distance -= step;
             found = self.at(base, along, distance);
             // The error after a step is that before, squared, over a radius of at least some millimetres.
             if step.abs() <= 1e-8 || found.outside.abs() <= TOLERANCE {
                 break;
+            }
+        }
+        // The wheel begins where f falls along the normal. Between the steep walls of a groove Newton's method goes to and fro, leaps over another wall, or
+        // finds where the normal leaves the wheel.
+        let missed = leapt || found.outside.abs() > LARGEST_ERROR || dot(found.gradient, along) >= 0.0;
+        if missed && (distance - guess).abs() < FARTHEST {
+            if let Some(nearest) = self.nearest_crossing(base, along, guess) {
+                distance = nearest;
+                found = self.at(base, along, distance);
             }
         }
         let gradient = found.gradient;
@@ -154,6 +172,37 @@ impl<'a> PlacedWheel<'a> {
             gradient: self.to_track(gradient).map(|part| part / slope),
             curvature_along: -second / slope,
         }
+    }
+
+    /// Distance at which the wheel begins along the normal that is nearest to a guess of it, `m`; none where it begins nowhere near.
+    #[cold]
+    fn nearest_crossing(&self, base: [f64; 3], along: [f64; 3], guess: f64) -> Option<f64> {
+        let outside = |distance: f64| self.at(base, along, distance).outside;
+        let (mut below, mut above) = (outside(guess), outside(guess));
+        for step in 1..=(FARTHEST / GROOVE) as usize {
+            let way = step as f64 * GROOVE;
+            let (next_below, next_above) = (outside(guess - way), outside(guess + way));
+            let ends = if above > 0.0 && next_above <= 0.0 {
+                Some([guess + way - GROOVE, guess + way])
+            } else if next_below > 0.0 && below <= 0.0 {
+                Some([guess - way, guess - way + GROOVE])
+            } else {
+                None
+            };
+            if let Some([mut from, mut to]) = ends {
+                for _ in 0..HALVINGS {
+                    let middle = 0.5 * (from + to);
+                    if outside(middle) > 0.0 {
+                        from = middle;
+                    } else {
+                        to = middle;
+                    }
+                }
+                return Some(to);
+            }
+            (below, above) = (next_below, next_above);
+        }
+        None
     }
 
     /// Change of the distance with that of the position.

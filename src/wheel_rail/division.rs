@@ -22,6 +22,9 @@ pub(super) struct Division<'a> {
     at_limit: usize,
     /// Failure for which the rest of the step is taken staggered.
     failure: Option<Error>,
+    /// Whether the pressure may be held where that fails as well, and whether it is.
+    may_hold: bool,
+    holds: bool,
 }
 
 /// Part of a step.
@@ -36,8 +39,14 @@ pub(super) struct SubStep {
 }
 
 impl<'a> Division<'a> {
-    /// Division of a step into sub-steps of `planned` `s`, the first of which takes at most `first` `s`.
-    pub fn new(settings: &'a StepSettings, duration: f64, planned: f64, first: f64) -> Division<'a> {
+    /// Division of a step into sub-steps of `planned` `s`, the first of which takes at most `first` `s`. With `may_hold` the contact can go on with the pressure
+    /// that it has.
+    pub fn new(
+        settings: &'a StepSettings,
+        duration: f64,
+        [planned, first]: [f64; 2],
+        may_hold: bool,
+    ) -> Division<'a> {
         Division {
             settings,
             duration,
@@ -49,6 +58,8 @@ impl<'a> Division<'a> {
             staggered_retries: 0,
             at_limit: 0,
             failure: None,
+            may_hold,
+            holds: false,
         }
     }
 
@@ -76,6 +87,7 @@ impl<'a> Division<'a> {
                 },
                 coupling: match self.failure {
                     None => Coupling::Implicit,
+                    Some(_) if self.holds => Coupling::Held,
                     Some(_) => Coupling::Staggered,
                 },
             }
@@ -126,8 +138,16 @@ impl<'a> Division<'a> {
             ..
         } = *self.settings;
         if let Some(first) = &self.failure {
+            // Shorter sub-steps of as much work each are not tried more than once.
+            let is_long = matches!(error, Error::TooMuchWork { .. }) && self.staggered_retries > 0;
+            if self.may_hold && !self.holds && (is_long || self.staggered_retries == staggered_retries) {
+                self.holds = true;
+                self.substep = self.remaining() / staggered_substeps as f64;
+                self.largest = self.substep;
+                return Ok(());
+            }
             // Of two failures the first says why.
-            if self.staggered_retries == staggered_retries {
+            if self.holds || self.staggered_retries == staggered_retries {
                 return Err(first.clone());
             }
             self.staggered_retries += 1;

@@ -89,8 +89,9 @@ struct Summary {
     slowest: Vec<StepTime>,
     /// Failures by their kind, with run and step.
     failures: BTreeMap<String, Vec<(u64, usize, RunFailure)>>,
-    /// Steps that were taken staggered.
+    /// Steps that were taken staggered, and those of them that have a residual of 1 or more.
     staggered: usize,
+    far_off: usize,
     /// Rails that were too hot.
     replaced: usize,
     /// Outermost contact in units of the half-length at `largest_load`.
@@ -173,6 +174,7 @@ impl Summary {
         self.slowest.sort_by(|a, b| b.time.total_cmp(&a.time));
         self.slowest.truncate(slowest);
         self.staggered += run.steps.iter().filter(|step| step.staggered).count();
+        self.far_off += run.steps.iter().filter(|step| step.residual >= 1.0).count();
         self.replaced += run.replaced;
         let reaches = run.reach.iter().map(|reach| reach.outermost);
         self.outermost = reaches.fold(self.outermost, f64::max);
@@ -198,8 +200,8 @@ impl Summary {
         }
         writeln!(
             out,
-            "{} steps taken staggered, as their coupled equations were not solved",
-            self.staggered
+            "{} steps taken staggered, as their coupled equations were not solved; {} with a residual of 1 or more",
+            self.staggered, self.far_off
         )?;
         writeln!(
             out,

@@ -142,7 +142,7 @@ pub fn update_wear_compliance(problem: &LineProblem, now: &LineFields, solvers: 
     let (wear_coefficient, slip) = match (problem.conditions.coupling, &law) {
         (Coupling::Implicit, None) => (problem.parameters.wear_coefficient, &now.slip),
         (Coupling::Implicit, Some(_)) => (1.0, &solvers.wear_rate),
-        (Coupling::Staggered, _) => (0.0, &now.slip),
+        (Coupling::Staggered | Coupling::Held, _) => (0.0, &now.slip),
     };
     let (operators, transport) = (problem.operators, problem.upwind());
     let changed = solvers.wear_compliance.update(

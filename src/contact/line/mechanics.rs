@@ -6,7 +6,6 @@ use super::solvers::LineSolvers;
 use super::solvers::MechanicsData;
 use crate::contact::engine::Engine;
 use crate::contact::interface::Interface;
-use crate::contact::problem::Coupling;
 use crate::error::Result;
 use crate::mechanics::normal_tangential::TractionChange;
 use crate::mechanics::traction_problem::{TractionProblem, Tractions};
@@ -146,7 +145,7 @@ pub fn mechanics_problem<'s>(
         transient: problem.transient(fields.relaxation_length),
         near_field: operators.near_field,
         regularisation: problem.parameters.slip_regularisation,
-        accepts_regularised: problem.conditions.coupling == Coupling::Staggered,
+        accepts_regularised: problem.conditions.coupling.is_staggered(),
     };
     let tractions = tractions!(fields);
     (mechanics, tractions)

@@ -239,7 +239,7 @@ fn solve_friction(
             tolerance: peak * tolerance.max(problem.settings.patch.least_tolerance),
             accepted: match problem.conditions.coupling {
                 Coupling::Implicit => 0.0,
-                Coupling::Staggered => peak * problem.settings.patch.staggered_residual,
+                Coupling::Staggered | Coupling::Held => peak * problem.settings.patch.staggered_residual,
             },
             work: problem.mechanics_budget(),
         };

@@ -9,11 +9,12 @@
 //! is found in [`super::pressure`].
 
 use super::fields::SurfaceFields;
-use super::pressure::{least_load_error, press};
+use super::pressure::{hold, least_load_error, press};
 use super::problem::SurfaceProblem;
 use super::solvers::SurfaceSolvers;
 use crate::contact::interface::Interface;
 use crate::contact::patch::mechanics;
+use crate::contact::problem::Coupling;
 use crate::error::Result;
 use crate::mechanics::normal_tangential::TractionChange;
 
@@ -47,7 +48,12 @@ pub fn solve(
         }
         return Ok(TractionChange::NONE);
     }
-    let pressed = press(problem, fields, solvers, tolerance);
+    let held = problem.conditions.coupling == Coupling::Held;
+    let pressed = if held {
+        hold(problem, fields, solvers)
+    } else {
+        press(problem, fields, solvers, tolerance)
+    };
     if pressed.is_err() {
         // Friction must not go on with what it has of the cells that were under pressure before.
         for own in &mut solvers.windows {
@@ -57,7 +63,11 @@ pub fn solve(
     pressed?;
     let motion = problem.pose().motion;
     let lowered = fields.approach[0] - solvers.reference;
-    let mut change = TractionChange::NONE;
+    let mut change = TractionChange {
+        // A pressure that is held solves nothing, and the residual of the step says so.
+        shear_change: if held { 1.0 } else { 0.0 },
+        set_changed: held,
+    };
     for (window, place) in fields.used() {
         let own = &mut solvers.windows[window];
         if !problem.is_height_given() {

@@ -9,6 +9,7 @@ use super::solvers::SurfaceSolvers;
 use super::windows::{Place, Region, Sizes, WINDOWS};
 use crate::contact::fields::Fields;
 use crate::contact::patch::fields::PatchFields;
+use crate::contact::problem::Coupling;
 use crate::error::{Error, Result};
 use crate::geometry::unrolled::{PlacedWheel, WheelsetPosition};
 use crate::mechanics::patch::normal::is_free;
@@ -66,6 +67,11 @@ pub fn place(
         check_on_rail(problem, solvers, &pose.at_height(now.touch))?;
     }
     let source = before.or(known.map(|_| &*now));
+    if problem.conditions.coupling == Coupling::Held {
+        solvers.moved = false;
+        see(problem, now, solvers, &[[f64::NEG_INFINITY, f64::INFINITY]; WINDOWS]);
+        return Ok(());
+    }
     want(problem, source, approach, solvers);
     if known.is_some() {
         forget(now);
@@ -100,8 +106,15 @@ pub fn place(
         carried.worn.copy_from(&now.worn);
         now.guess_from(carried);
     }
+    see(problem, now, solvers, &own);
+    Ok(())
+}
+
+/// Sets what the cells of the windows see of wheel and rail, at the reference approach; of the surface between the arc lengths that each has to itself.
+fn see(problem: &SurfaceProblem, now: &SurfaceFields, solvers: &mut SurfaceSolvers, own: &[[f64; 2]; WINDOWS]) {
+    let (operators, pose) = (problem.operators, problem.pose());
     let bodies = solvers.worn.of(operators);
-    let wheel = PlacedWheel::new(&bodies.wheel, &pose.at_height(now.touch - approach));
+    let wheel = PlacedWheel::new(&bodies.wheel, &pose.at_height(now.touch - solvers.reference));
     for (window, place) in now.used() {
         let own_solvers = &mut solvers.windows[window];
         own_solvers.prepare(place.length);
@@ -115,7 +128,6 @@ pub fn place(
         );
         own_solvers.gap.copy_from_slice(&own_solvers.patch.undeformed.gap);
     }
-    Ok(())
 }
 
 /// Refuses a wheel that has climbed onto its flange's tip, or is not over the rail.

@@ -102,11 +102,8 @@ pub fn press(
     solvers: &mut SurfaceSolvers,
     tolerance: f64,
 ) -> Result<()> {
-    if problem.conditions.coupling == Coupling::Staggered {
-        for (window, _) in fields.used() {
-            let share = &mut solvers.windows[window].friction_share;
-            *share = share.max(LEAST_FRICTION_SHARE);
-        }
+    if problem.conditions.coupling.is_staggered() {
+        limit_friction(fields, solvers);
     }
     let scale = problem.operators.shapes[0].scales.displacement;
     let mut search = if problem.is_height_given() {
@@ -137,7 +134,7 @@ pub fn press(
     let budget = problem.mechanics_budget();
     // Error of the load that is accepted; the work after which a search ends with it, and the work after which it is given up.
     let (accepted, enough, limit) = match problem.conditions.coupling {
-        Coupling::Staggered if budget < u64::MAX => (
+        Coupling::Staggered | Coupling::Held if budget < u64::MAX => (
             problem.settings.patch.staggered_residual,
             budget,
             STAGGERED_SEARCH * problem.settings.step.work,
@@ -164,7 +161,7 @@ pub fn press(
             return check_room(problem, fields, solvers);
         }
         if work > limit {
-            if problem.conditions.coupling == Coupling::Staggered && left <= LARGEST_MISSING {
+            if problem.conditions.coupling.is_staggered() && left <= LARGEST_MISSING {
                 search.end(fields);
                 return check_room(problem, fields, solvers);
             }
@@ -193,6 +190,40 @@ pub fn press(
         residual: left,
         tolerance: tolerance_of_load,
     })
+}
+
+/// Takes the pressure that there is, of the step before, in proportion to the load that is carried with the friction.
+///
+/// # Errors
+/// [`Error::NormalNotConverged`] where there is none, or friction pulls the wheel down by more than the pressure lifts it.
+pub fn hold(problem: &SurfaceProblem, fields: &mut SurfaceFields, solvers: &mut SurfaceSolvers) -> Result<()> {
+    limit_friction(fields, solvers);
+    let carried = proportional_force(problem, fields, solvers);
+    if carried <= 0.0 {
+        return Err(Error::NormalNotConverged {
+            solver: "pressure of the step before",
+            iterations: 0,
+            residual: 1.0,
+            tolerance: LARGEST_MISSING,
+        });
+    }
+    let ratio = problem.vertical_load() / carried;
+    for (window, place) in fields.used() {
+        let grid = &problem.operators.of(&place).grid;
+        let pressure = &mut fields.windows[window].pressure;
+        pressure.iter_mut().for_each(|pressure| *pressure *= ratio);
+        let contact = &mut solvers.windows[window].patch.contact;
+        contact.list(grid, |at| pressure[at] > 0.0);
+    }
+    Ok(())
+}
+
+/// Limits the friction of steep flanks in proportion to the pressure.
+fn limit_friction(fields: &SurfaceFields, solvers: &mut SurfaceSolvers) {
+    for (window, _) in fields.used() {
+        let share = &mut solvers.windows[window].friction_share;
+        *share = share.max(LEAST_FRICTION_SHARE);
+    }
 }
 
 /// Moves approach and pressures before the first pressure of a sweep is solved, if the responses are known: the friction has become another one since the
@@ -253,7 +284,7 @@ fn press_at(
     let operators = problem.operators;
     let rounds = match problem.conditions.coupling {
         Coupling::Implicit => ROUNDS,
-        Coupling::Staggered => STAGGERED_ROUNDS,
+        Coupling::Staggered | Coupling::Held => STAGGERED_ROUNDS,
     };
     let coupled = COUPLED_SHARE * tolerance;
     // Change of what the others do to a window since it was solved, over the approach.
