@@ -69,7 +69,7 @@ pub enum Coupling {
     /// The mechanics see temperature and wear at its beginning. Where friction has no solution that is found, they take the one for the
     /// least regularisation that has one.
     Staggered,
-    /// As staggered, with the pressure of the step before, in proportion to the load: for contacts of profiles whose pressure is not found, as between
+    /// Staggered, with the pressure of the step before, in proportion to the load: for contacts of profiles whose pressure is not found, as between
     /// surfaces that are worn to grooves narrower than the cells.
     Held,
 }

@@ -150,11 +150,12 @@ impl<'a> PlacedWheel<'a> {
         // The wheel begins where f falls along the normal. Between the steep walls of a groove Newton's method goes to and fro, leaps over another wall, or
         // finds where the normal leaves the wheel.
         let missed = leapt || found.outside.abs() > LARGEST_ERROR || dot(found.gradient, along) >= 0.0;
-        if missed && (distance - guess).abs() < FARTHEST {
-            if let Some(nearest) = self.nearest_crossing(base, along, guess) {
-                distance = nearest;
-                found = self.at(base, along, distance);
-            }
+        if missed
+            && (distance - guess).abs() < FARTHEST
+            && let Some(nearest) = self.nearest_crossing(base, along, guess)
+        {
+            distance = nearest;
+            found = self.at(base, along, distance);
         }
         let gradient = found.gradient;
         let slope = dot(gradient, along);

@@ -256,9 +256,8 @@ impl Torture {
                 if !stays {
                     return Err(RunFailure::Changed);
                 }
-                let excused = is_refused(model, error)
-                    || is_worn_too_fast(model, error)
-                    || is_too_hot(model, &before, &step);
+                let excused =
+                    is_refused(model, error) || is_worn_too_fast(model, error) || is_too_hot(model, &before, &step);
                 if !excused {
                     return Err(RunFailure::Model(error.clone()));
                 }

@@ -41,12 +41,7 @@ pub(super) struct SubStep {
 impl<'a> Division<'a> {
     /// Division of a step into sub-steps of `planned` `s`, the first of which takes at most `first` `s`. With `may_hold` the contact can go on with the pressure
     /// that it has.
-    pub fn new(
-        settings: &'a StepSettings,
-        duration: f64,
-        [planned, first]: [f64; 2],
-        may_hold: bool,
-    ) -> Division<'a> {
+    pub fn new(settings: &'a StepSettings, duration: f64, [planned, first]: [f64; 2], may_hold: bool) -> Division<'a> {
         Division {
             settings,
             duration,

@@ -208,7 +208,8 @@ fn compare_where_it_rests(case: &Case, mismatches: &mut Vec<Mismatch>) -> Tally 
                 let settled = settle(&model, &mut model.workspace(), inputs, *step);
                 let settled = settled.unwrap_or_else(|error| panic!("{error}, at {case:?}"));
                 staggered = settled.convergence.staggered;
-                let unlike = parameters.wheel == Wheel::Rigid || parameters.wheel_shear_modulus != parameters.shear_modulus;
+                let unlike =
+                    parameters.wheel == Wheel::Rigid || parameters.wheel_shear_modulus != parameters.shear_modulus;
                 let may_be = unlike && parameters.friction_memory_distance > 0.0;
                 assert!(may_be || !staggered, "{error}, at {case:?}");
             }

@@ -1,6 +1,6 @@
 //! Some of the runs of `wheelrail torture`.
 
-use wheelrail::torture::{Engines, Torture};
+use wheelrail::torture::{Engines, StepTime, Torture};
 
 /// Runs of a contact model: models, of four runs each, steps of a run, and how many of the steps are taken at least, not on rails that
 /// were too hot.
@@ -53,7 +53,7 @@ fn friction_with_a_memory_has_corners() {
 }
 
 /// Runs of wheelsets on profiles that once failed, and steps until the failure.
-const WHEELSETS: [(Engines, u64, u64, usize); 14] = [
+const WHEELSETS: [(Engines, u64, u64, usize); 15] = [
     // First states in which the law of friction, with a memory and on a layer, has no solution that is found.
     (Engines::NewProfiles, 3, 89, 2),
     (Engines::NewProfiles, 11, 167, 2),
@@ -80,15 +80,40 @@ const WHEELSETS: [(Engines, u64, u64, usize); 14] = [
     (Engines::Profiles, 6001, 90, 132),
     // A window so broad that lines along the rail's normal at its side miss the wheel, from where the next ones did not find it.
     (Engines::Profiles, 6002, 256, 39),
+    // A load that grows to three hundred times what it was, and an approach that does not.
+    (Engines::Profiles, 6001, 90, 121),
 ];
+
+/// Runs whose last step was refused for want of a pressure, and is solved.
+const FOUND: [(Engines, u64, u64, usize); 3] = [
+    // Rough wheels that touch first between points of the search, none of which overlaps.
+    (Engines::Profiles, 6002, 46, 28),
+    (Engines::Profiles, 6003, 189, 14),
+    // A load of next to nothing, whose cells all pulled.
+    (Engines::Profiles, 6003, 248, 139),
+];
+
+/// Runs with a step for which no pressure is found, so that the one of the step before is held.
+const HELD: [(Engines, u64, u64, usize); 1] = [(Engines::Profiles, 6004, 72, 104)];
 
 #[test]
 fn wheelsets_that_jump_find_their_contacts() {
     replay(&WHEELSETS);
+    for last in replay(&FOUND) {
+        assert!(!last.staggered, "{last:?}");
+    }
 }
 
-/// Runs end after all their steps.
-fn replay(runs: &[(Engines, u64, u64, usize)]) {
+#[test]
+fn a_pressure_that_is_not_found_is_held() {
+    for last in replay(&HELD) {
+        assert!(last.staggered && last.residual >= 1.0, "{last:?}");
+    }
+}
+
+/// Runs end after all their steps. Their last steps.
+fn replay(runs: &[(Engines, u64, u64, usize)]) -> Vec<StepTime> {
+    let mut last = Vec::new();
     for &(engines, seed, number, steps) in runs {
         let torture = Torture {
             seed,
@@ -103,7 +128,9 @@ fn replay(runs: &[(Engines, u64, u64, usize)]) {
             run.length
         );
         assert_eq!(run.length, steps);
+        last.extend(run.steps.last());
     }
+    last
 }
 
 /// A run follows from its seed and number, alone or with those that share its model.
@@ -121,7 +148,7 @@ fn a_run_is_replayed_with_the_same_bits() {
         let alone = torture.runs(run.number..run.number + 1).pop().unwrap();
         assert_eq!(alone.reach, run.reach);
         assert_eq!((alone.length, alone.failure), (run.length, run.failure.clone()));
-        let iterations = |steps: &[wheelrail::torture::StepTime]| steps.iter().map(|s| s.iterations).sum::<usize>();
+        let iterations = |steps: &[StepTime]| steps.iter().map(|s| s.iterations).sum::<usize>();
         assert_eq!(iterations(&alone.steps), iterations(&run.steps));
     }
     // And another seed is another drive.

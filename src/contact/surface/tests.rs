@@ -183,9 +183,9 @@ fn the_gap_is_that_of_the_wheel_over_each_cell() {
     assert!(largest < 1e-9, "{largest:e}");
 }
 
-/// A yawed wheel at the height at which it touched as new, worn since to grooves with steep walls: nothing of it is in the rail. What the cells see of it is less deep than a
-/// fifth of the grooves, as a line along the rail's normal may miss the place where it meets a wall; between the places, without its limit, the interpolation
-/// sees it five times as deep as the grooves.
+/// A yawed wheel at the height at which it touched as new, worn since to grooves with steep walls: nothing of it is in the rail. Between the places at which the
+/// cells look at it, the interpolation may see it deeper by what it may bulge, which is a hundredth of the grooves; without that limit it sees it five times as deep as
+/// they are, and Newton's method alone, to and fro between the walls, by a tenth.
 #[test]
 fn steep_walls_of_a_worn_wheel_do_not_reach_into_the_rail() {
     const DEPTH: f64 = 5e-3;
@@ -222,7 +222,7 @@ fn steep_walls_of_a_worn_wheel_do_not_reach_into_the_rail() {
         let depth = DEPTH / scale;
         walls += undeformed.gap.iter().filter(|&&gap| gap > 0.5 * depth).count();
         let deepest = undeformed.gap.iter().copied().fold(f64::INFINITY, f64::min);
-        assert!(deepest > -0.2 * depth, "{deepest}");
+        assert!(deepest > -0.01 * depth, "{deepest}");
     }
     assert!(walls > 0);
 }
