@@ -104,7 +104,7 @@ impl Default for PatchSettings {
             single_round_off: 1e-5,
             single_tolerance: 1e-6,
             staggered_residual: 1e-2,
-            renewal: 6.0,
+            renewal: 4.5,
             halvings: 12,
             continuation: 12,
             continuation_step: 0.2,
