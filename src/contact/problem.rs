@@ -44,7 +44,7 @@ pub struct Convergence {
     /// as the window.
     pub fills_window: bool,
     /// Whether a part of the step was taken staggered: the mechanics for temperature and wear before it, because neither method found
-    /// the solution of the coupled equations within the budget of work.
+    /// the solution of the coupled equations within the budget of work. The residual is 1 or more where the pressure was held besides.
     pub staggered: bool,
     /// Largest depth that a sub-step has worn off a profile, `m`.
     pub profile_change: f64,

@@ -149,9 +149,8 @@ impl<'a> PlacedWheel<'a> {
         }
         // The wheel begins where f falls along the normal. Between the steep walls of a groove Newton's method goes to and fro, leaps over another wall, or
         // finds where the normal leaves the wheel.
-        let missed = leapt || found.outside.abs() > LARGEST_ERROR || dot(found.gradient, along) >= 0.0;
-        if missed
-            && (distance - guess).abs() < FARTHEST
+        let missed = found.outside.abs() > LARGEST_ERROR || dot(found.gradient, along) >= 0.0;
+        if (missed || leapt && (distance - guess).abs() < FARTHEST)
             && let Some(nearest) = self.nearest_crossing(base, along, guess)
         {
             distance = nearest;
@@ -179,7 +178,8 @@ impl<'a> PlacedWheel<'a> {
     #[cold]
     fn nearest_crossing(&self, base: [f64; 3], along: [f64; 3], guess: f64) -> Option<f64> {
         let outside = |distance: f64| self.at(base, along, distance).outside;
-        let (mut below, mut above) = (outside(guess), outside(guess));
+        let here = outside(guess);
+        let (mut below, mut above) = (here, here);
         for step in 1..=(FARTHEST / GROOVE) as usize {
             let way = step as f64 * GROOVE;
             let (next_below, next_above) = (outside(guess - way), outside(guess + way));

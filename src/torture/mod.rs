@@ -302,8 +302,7 @@ fn is_too_hot(model: &Model, before: &State, step: &DriveStep) -> bool {
     outcome.is_ok() && is_hot(&state)
 }
 
-/// Whether a step has worn a profile away because the wear is accelerated: until then it has been cut to ribbons, which a step as fast as in truth would wear
-/// away as well.
+/// Whether a step has worn a profile away whose wear is accelerated. The acceleration has made the profile that the step began with, too.
 fn is_worn_too_fast(model: &Model, error: &Error) -> bool {
     matches!(error, Error::WornAway { .. }) && model.parameters().wear_acceleration > 1.0
 }

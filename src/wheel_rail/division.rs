@@ -113,7 +113,7 @@ impl<'a> Division<'a> {
         self.retries == 0 && self.failure.is_none()
     }
 
-    /// Chooses what follows a sub-step that fails: a shorter one, or the rest of the step staggered.
+    /// Chooses what follows a sub-step that fails: a shorter one, or the rest of the step staggered, or with the pressure held.
     ///
     /// # Errors
     /// The failure that ends the step.
@@ -135,7 +135,12 @@ impl<'a> Division<'a> {
         if let Some(first) = &self.failure {
             // Shorter sub-steps of as much work each are not tried more than once.
             let is_long = matches!(error, Error::TooMuchWork { .. }) && self.staggered_retries > 0;
-            if self.may_hold && !self.holds && (is_long || self.staggered_retries == staggered_retries) {
+            let is_of_pressure = matches!(error, Error::TooMuchWork { .. } | Error::NormalNotConverged { .. });
+            if self.may_hold
+                && is_of_pressure
+                && !self.holds
+                && (is_long || self.staggered_retries == staggered_retries)
+            {
                 self.holds = true;
                 self.substep = self.remaining() / staggered_substeps as f64;
                 self.largest = self.substep;

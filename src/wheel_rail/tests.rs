@@ -1,7 +1,7 @@
 //! Steps that are hard: the state and the workspace that they leave, and the way that they are taken.
 
 use super::*;
-use crate::parameters::{ContactModel, NormalSolver, Wheel, WheelHeating};
+use crate::parameters::{ContactModel, NormalSolver, SlipSource, Wheel, WheelHeating};
 use crate::settings::limits::{LIMITS, PATCH_LIMITS};
 
 /// A small model of a rigid wheel, whose normal and tangential problem are coupled, that is heated, and a state from which
@@ -208,6 +208,57 @@ fn a_step_that_is_not_solved_is_taken_staggered() {
             assert!(error > 0.0 && error < 1e-3, "{steps}: {error}");
         }
     }
+}
+
+/// A step without work to find the pressure of profiles at another place holds the one that there is, in proportion to the load, and says so; it is the same step in a
+/// workspace that has been used. Under a load that is many times as large it is refused, and changes nothing.
+#[test]
+fn a_pressure_that_is_not_found_is_held() {
+    let parameters = Parameters {
+        contact_model: ContactModel::Profiles,
+        slip_source: SlipSource::VehicleSpeed,
+        patch_nodes: 16,
+        patch_strips: 9,
+        ..Parameters::default()
+    };
+    let sound = Model::new(parameters.clone()).unwrap();
+    let mut settings = Settings::default();
+    (settings.step.work, settings.step.staggered_work) = (10, 10);
+    let idle = Model::with_settings(parameters, settings).unwrap();
+    let displaced = |normal_load, lateral_displacement| Inputs {
+        normal_load,
+        lateral_displacement,
+        ..Inputs::default()
+    };
+    let first = |load| {
+        let inputs = displaced(load, 0.0);
+        sound.initial_state(&mut sound.workspace(), &inputs).unwrap()
+    };
+    let moved = displaced(80e3, 5e-3);
+    let mut workspace = idle.workspace();
+    let hold = |workspace: &mut Workspace| {
+        let mut state = first(60e3);
+        let taken = idle.step(workspace, &mut state, &moved, &Inputs::ZERO, 1e-3);
+        taken.unwrap();
+        state
+    };
+    let held = hold(&mut workspace);
+    assert!(held.convergence.staggered && held.convergence.residual >= 1.0);
+    assert!(idle.accepts(&held));
+    let ratio = held.outputs.peak_pressure / first(60e3).outputs.peak_pressure;
+    assert!((ratio * 60.0 / 80.0 - 1.0).abs() < 0.02, "{ratio}");
+    assert!(hold(&mut workspace) == held);
+
+    let light = first(5e3);
+    let mut state = light.clone();
+    let refused = idle.step(&mut workspace, &mut state, &moved, &Inputs::ZERO, 1e-3);
+    let interrupted = refused.unwrap_err();
+    assert!(
+        matches!(interrupted.error, Error::TooMuchWork { .. }),
+        "{}",
+        interrupted.error
+    );
+    assert!(state == light);
 }
 
 /// A sub-step that fails is tried again in quarters, which start closer to their solution: among many limits of the split

@@ -48,8 +48,7 @@ pub fn solve(
         }
         return Ok(TractionChange::NONE);
     }
-    let held = problem.conditions.coupling == Coupling::Held;
-    let pressed = if held {
+    let pressed = if problem.conditions.coupling == Coupling::Held {
         hold(problem, fields, solvers)
     } else {
         press(problem, fields, solvers, tolerance)
@@ -63,11 +62,7 @@ pub fn solve(
     pressed?;
     let motion = problem.pose().motion;
     let lowered = fields.approach[0] - solvers.reference;
-    let mut change = TractionChange {
-        // A pressure that is held solves nothing, and the residual of the step says so.
-        shear_change: if held { 1.0 } else { 0.0 },
-        set_changed: held,
-    };
+    let mut change = TractionChange::NONE;
     for (window, place) in fields.used() {
         let own = &mut solvers.windows[window];
         if !problem.is_height_given() {

@@ -76,12 +76,14 @@ pub fn place(
     if known.is_some() {
         forget(now);
     }
+    let places = now.places;
     let wanted = merged(&operators.sizes, &solvers.wanted);
     let mut own = assign(problem, &wanted.0[..wanted.1], now);
     if approach > 0.0 && !holds_first(problem, solvers, now, &own) {
         // Of contacts far apart that were taken for one, a window may have left out the one that carries.
         want_overlaps(problem, approach, solvers);
         let overlaps = merged(&operators.sizes, &solvers.wanted);
+        now.places = places;
         own = assign(problem, &overlaps.0[..overlaps.1], now);
     }
     solvers.moved = before.is_some_and(|before| before.places != now.places);
@@ -169,8 +171,7 @@ fn expected_approach(
         Some(before) => {
             let last = before.approach[0];
             let scaled = last * (load / before.load).cbrt().powi(2);
-            // On a rough profile a small load has an approach from the height of the first touch, which is known to tens of micrometres: it does not grow with
-            // the load.
+            // A rough profile carries little until it is tens of micrometres below the height of the first touch, and that way does not grow with the load.
             if scaled <= MUCH_DEEPER * last {
                 scaled
             } else {
@@ -246,7 +247,18 @@ fn want_first(search: &Search, approach: f64, wanted: &mut Vec<Wanted>) {
     let Some((place, region)) = search.about_first(approach) else {
         return;
     };
-    if let Some(own) = wanted.iter_mut().find(|wanted| wanted.region.holds(place)) {
+    // One beside it may be narrower than the distance of the points, and stays as narrow where the place is added to it.
+    let holds = wanted.iter().position(|wanted| wanted.region.holds(place));
+    let meets = || wanted.iter().position(|wanted| wanted.region.meets(&region));
+    if let Some(own) = holds.or_else(meets) {
+        let own = &mut wanted[own];
+        let narrowest = own.region.narrowest;
+        if !own.region.holds(place) {
+            own.region = Region {
+                narrowest,
+                ..own.region.union(&region)
+            };
+        }
         own.depth = CARRIES;
         return;
     }

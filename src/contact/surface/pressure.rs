@@ -54,11 +54,13 @@ const SETTLING_ROUNDS: usize = 4;
 /// Least change of a displacement in such a round over the approach, and over the change in the round before.
 const UNSETTLED: [f64; 2] = [0.1, 0.9];
 /// Work of the search for the height of the wheel in a staggered sub-step, in budgets of a step, after which it is given up. It is above a sub-step's own
-/// budget, because a step without a height is refused.
+/// budget, because a pressure that is held is farther off.
 const STAGGERED_SEARCH: u64 = 4;
 /// Error of the load, relative, with which such a search ends rather than be given up: contacts that displace each other may spend all work on two or
 /// three heights. The residual of the step shows it.
 const LARGEST_MISSING: f64 = 0.1;
+/// Load over that of the step before up to which its pressure may be held.
+const LARGEST_GROWTH: f64 = 10.0;
 /// Error of the pressure, relative, at which the cells under pressure are found.
 const FINE_TOLERANCE: f64 = 1e-7;
 /// Error of the load, relative, for the approach that windows are placed for.
@@ -134,7 +136,7 @@ pub fn press(
     let budget = problem.mechanics_budget();
     // Error of the load that is accepted; the work after which a search ends with it, and the work after which it is given up.
     let (accepted, enough, limit) = match problem.conditions.coupling {
-        Coupling::Staggered | Coupling::Held if budget < u64::MAX => (
+        coupling if coupling.is_staggered() && budget < u64::MAX => (
             problem.settings.patch.staggered_residual,
             budget,
             STAGGERED_SEARCH * problem.settings.step.work,
@@ -162,8 +164,9 @@ pub fn press(
         }
         if work > limit {
             if problem.conditions.coupling.is_staggered() && left <= LARGEST_MISSING {
+                // In larger windows, as much work would be spent again.
                 search.end(fields);
-                return check_room(problem, fields, solvers);
+                return Ok(());
             }
             return Err(Error::TooMuchWork { work, limit });
         }
@@ -195,25 +198,27 @@ pub fn press(
 /// Takes the pressure that there is, of the step before, in proportion to the load that is carried with the friction.
 ///
 /// # Errors
-/// [`Error::NormalNotConverged`] where there is none, or friction pulls the wheel down by more than the pressure lifts it.
+/// [`Error::NormalNotConverged`] where there is none to speak of, or friction pulls the wheel down by more than it lifts it.
 pub fn hold(problem: &SurfaceProblem, fields: &mut SurfaceFields, solvers: &mut SurfaceSolvers) -> Result<()> {
     limit_friction(fields, solvers);
-    let carried = proportional_force(problem, fields, solvers);
-    if carried <= 0.0 {
+    let (load, carried) = (problem.vertical_load(), proportional_force(problem, fields, solvers));
+    if load > LARGEST_GROWTH * carried {
         return Err(Error::NormalNotConverged {
             solver: "pressure of the step before",
             iterations: 0,
             residual: 1.0,
-            tolerance: LARGEST_MISSING,
+            tolerance: 0.0,
         });
     }
-    let ratio = problem.vertical_load() / carried;
+    let ratio = load / carried;
     for (window, place) in fields.used() {
         let grid = &problem.operators.of(&place).grid;
         let pressure = &mut fields.windows[window].pressure;
         pressure.iter_mut().for_each(|pressure| *pressure *= ratio);
-        let contact = &mut solvers.windows[window].patch.contact;
-        contact.list(grid, |at| pressure[at] > 0.0);
+        let own = &mut solvers.windows[window].patch;
+        own.contact.list(grid, |at| pressure[at] > 0.0);
+        // How far the surfaces are apart ahead of the cells is not known.
+        own.normal.separation.fill(0.0);
     }
     Ok(())
 }
@@ -284,7 +289,7 @@ fn press_at(
     let operators = problem.operators;
     let rounds = match problem.conditions.coupling {
         Coupling::Implicit => ROUNDS,
-        Coupling::Staggered | Coupling::Held => STAGGERED_ROUNDS,
+        _ => STAGGERED_ROUNDS,
     };
     let coupled = COUPLED_SHARE * tolerance;
     // Change of what the others do to a window since it was solved, over the approach.

@@ -517,7 +517,7 @@ impl Normal {
     fn exchange(&self, problem: &PatchNormalProblem, pressure: &mut [f64], one_at_a_time: bool) -> bool {
         let grid = problem.grid;
         let largest = pressure.iter().fold(0.0, |m: f64, p| p.max(m));
-        // Where every cell pulls, that of a cell which presses its overlap away.
+        // Where every cell pulls: the pressure by which one cell presses the deepest overlap away.
         let of_overlap = || {
             let places = (0..grid.strips).flat_map(|strip| grid.row(strip));
             let least = places.fold(0.0, |m: f64, place| m.min(self.separation[place]));
