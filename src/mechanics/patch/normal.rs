@@ -631,6 +631,41 @@ mod tests {
         }
     }
 
+    /// A pressure to begin with where the bodies are apart, all of whose cells pull at once, and an overlap elsewhere.
+    #[test]
+    fn a_patch_whose_cells_all_pull_finds_the_overlap() {
+        let parameters = Parameters {
+            contact_model: ContactModel::Patch,
+            ..Parameters::default()
+        };
+        let rail = PatchOperators::build(&parameters).unwrap();
+        let grid = &rail.grid;
+        let (apart, overlap) = (
+            grid.place(grid.strips / 2, 5),
+            grid.place(grid.strips / 2, grid.cells - 6),
+        );
+        let mut gap = vec![1.0; grid.len()];
+        gap[overlap] = -1.0;
+        let problem = PatchNormalProblem {
+            grid,
+            transform: &rail.transform,
+            normal_influence: &rail.normal_influence,
+            narrow: &[],
+            gap: &gap,
+            wear_compliance: &vec![0.0; grid.len()],
+            constraint: Constraint::Penetration(0.0),
+            tolerance: 1e-9,
+        };
+        let mut pressure = vec![0.0; grid.len()];
+        pressure[apart] = 1.0;
+        let mut normal = Normal::new(grid, &rail.transform, Settings::default().patch);
+        normal.solve(&problem, &mut Contact::new(grid), &mut pressure).unwrap();
+        // The only cell that carries presses its own overlap away.
+        let alone = 1.0 / rail.normal_influence.diagonal;
+        assert!((pressure[overlap] / alone - 1.0).abs() < 1e-6, "{}", pressure[overlap]);
+        assert!(pressure[apart] == 0.0);
+    }
+
     #[test]
     fn a_limit_of_no_passes_is_an_error() {
         let parameters = Parameters {
