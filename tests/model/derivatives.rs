@@ -137,11 +137,17 @@ pub fn nominal(model: &Model, inputs: &Inputs, input: usize) -> f64 {
 }
 
 /// Size of an output in a step, that deviations are measured by. A total is judged by what the step adds to it: of its nominal value, that of a
-/// whole run, a step is so small a part that a corner of its rate would not show.
+/// whole run, a step is so small a part that a corner of its rate would not show. Or by what it added at the rate of the step before: where the slip all but ends, what is left of it
+/// is a difference of displacements, with their error.
 fn size(output: &OutputSignal, before: &State, after: &State) -> f64 {
     let value = (output.get)(&after.outputs);
     match output.kind {
-        OutputKind::Total => (value - (output.get)(&before.outputs)).abs(),
+        OutputKind::Total => {
+            let in_the_step_before = (output.get)(&before.output_rates) * after.duration;
+            (value - (output.get)(&before.outputs))
+                .abs()
+                .max(in_the_step_before.abs())
+        }
         OutputKind::Instantaneous | OutputKind::Counted | OutputKind::Kept => output.nominal.max(value.abs()),
     }
 }

@@ -1,7 +1,7 @@
 //! Steps at which `make soak` found a derivative and its difference apart: they stay as named tests.
 
 use crate::random_sensitivity::check_where_it_rests;
-use crate::setups::{Falling, line, patch};
+use crate::setups::{Falling, Layer, line, patch, rolling};
 use wheelrail::parameters::{FrictionLaw, Parameters, SlipSource, Wheel, WheelHeating};
 use wheelrail::signals::Inputs;
 
@@ -205,4 +205,30 @@ fn a_creeping_line_whose_pressure_hardly_moves() {
         }),
         1e-3,
     );
+}
+
+/// Surfaces that slide in the step before and all but stick in this one: the friction energy that is left hangs on the friction by nothing but the error of the slip.
+#[test]
+fn a_patch_on_a_layer_that_all_but_sticks() {
+    let layer = Layer {
+        strength: 239539171.44679347,
+        hardening: 952446895265.727,
+        compliance: 0.0,
+        falls: false,
+    };
+    let parameters = Parameters {
+        friction_law: FrictionLaw::Constant,
+        wheel_shear_modulus: 4e10,
+        wheel_heating: WheelHeating::Off,
+        ..patch(SlipSource::VehicleSpeed, Wheel::Elastic)
+    };
+    let creepages = [-0.0011396084120291756, 0.0014116958229563625, -0.46517103865598186];
+    let inputs = Inputs {
+        wheel_speed: 0.05293997372344336,
+        normal_load: 20414.850788514817,
+        friction_scale: 0.3489397999381116,
+        incoming_temperature: 291.86115798061104,
+        ..rolling(0.024380171761610198, creepages)
+    };
+    check(layer.on(parameters), inputs, 1e-3);
 }
