@@ -101,9 +101,14 @@ impl Component {
             return;
         };
         let (time, residual) = (self.time, state.convergence.residual);
+        let held = if residual >= 1.0 {
+            ", far from solved, perhaps with the pressure of the step before"
+        } else {
+            ""
+        };
         self.journal.failure(Blame::Remark, || {
             format!(
-                "t = {time} s: mechanics, heat and wear of the step were not solved together within its budget of work, but one after the other (residual {residual:e}); a shorter step may be solved"
+                "t = {time} s: mechanics, heat and wear of the step were not solved together within its budget of work, but one after the other{held} (residual {residual:e}); a shorter step may be solved"
             )
         });
     }

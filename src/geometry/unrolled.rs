@@ -12,6 +12,7 @@
 //! of the wheelset's position by dC and a turn dΘ changes it by dh = g·(dC + dΘ × (Q − C))/(g·n), with the gradient g of f.
 
 use super::profile::HeightFunction;
+use crate::numerics::root::crossing;
 
 /// Point of the rail's surface and its normal, across the track.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -100,8 +101,6 @@ const LARGEST_ERROR: f64 = 1e-8;
 /// Distance from the guess within which the wheel is then looked for in steps, and their length, `m`: worn grooves are broader.
 const FARTHEST: f64 = 5e-3;
 const GROOVE: f64 = 1e-4;
-/// Halvings of such a step: to round-off of a radius.
-const HALVINGS: usize = 40;
 /// Least slope of f along the normal in a step: the wheel's surface may be seen from the side.
 const LEAST_SLOPE: f64 = 0.05;
 
@@ -178,30 +177,18 @@ impl<'a> PlacedWheel<'a> {
     #[cold]
     fn nearest_crossing(&self, base: [f64; 3], along: [f64; 3], guess: f64) -> Option<f64> {
         let outside = |distance: f64| self.at(base, along, distance).outside;
-        let here = outside(guess);
-        let (mut below, mut above) = (here, here);
+        // The values of f at the ends of the stretch that has been searched, which grows by a step on either side.
+        let [mut low, mut high] = [outside(guess); 2];
         for step in 1..=(FARTHEST / GROOVE) as usize {
             let way = step as f64 * GROOVE;
-            let (next_below, next_above) = (outside(guess - way), outside(guess + way));
-            let ends = if above > 0.0 && next_above <= 0.0 {
-                Some([guess + way - GROOVE, guess + way])
-            } else if next_below > 0.0 && below <= 0.0 {
-                Some([guess - way, guess - way + GROOVE])
-            } else {
-                None
-            };
-            if let Some([mut from, mut to]) = ends {
-                for _ in 0..HALVINGS {
-                    let middle = 0.5 * (from + to);
-                    if outside(middle) > 0.0 {
-                        from = middle;
-                    } else {
-                        to = middle;
-                    }
-                }
-                return Some(to);
+            let (lower, higher) = (outside(guess - way), outside(guess + way));
+            if high > 0.0 && higher <= 0.0 {
+                return Some(crossing([guess + way - GROOVE, guess + way], outside));
             }
-            (below, above) = (next_below, next_above);
+            if lower > 0.0 && low <= 0.0 {
+                return Some(crossing([guess - way, guess - way + GROOVE], outside));
+            }
+            (low, high) = (lower, higher);
         }
         None
     }

@@ -12,4 +12,5 @@ pub mod fourier;
 pub mod gmres;
 pub mod interpolation;
 pub mod real;
+pub mod root;
 pub mod single;

@@ -20,11 +20,12 @@ pub(super) struct Division<'a> {
     staggered_retries: usize,
     /// Sub-steps at the limit that a failure has set, since it was set.
     at_limit: usize,
-    /// Failure for which the rest of the step is taken staggered.
+    /// Coupling of the sub-steps that follow.
+    coupling: Coupling,
+    /// Failure for which the rest of the step is not taken implicitly.
     failure: Option<Error>,
-    /// Whether the pressure may be held where that fails as well, and whether it is.
+    /// Whether the pressure may be held where a staggered sub-step fails as well.
     may_hold: bool,
-    holds: bool,
 }
 
 /// Part of a step.
@@ -52,9 +53,9 @@ impl<'a> Division<'a> {
             retries: 0,
             staggered_retries: 0,
             at_limit: 0,
+            coupling: Coupling::Implicit,
             failure: None,
             may_hold,
-            holds: false,
         }
     }
 
@@ -80,11 +81,7 @@ impl<'a> Division<'a> {
                 } else {
                     self.committed + length
                 },
-                coupling: match self.failure {
-                    None => Coupling::Implicit,
-                    Some(_) if self.holds => Coupling::Held,
-                    Some(_) => Coupling::Staggered,
-                },
+                coupling: self.coupling,
             }
         })
     }
@@ -133,21 +130,19 @@ impl<'a> Division<'a> {
             ..
         } = *self.settings;
         if let Some(first) = &self.failure {
-            // Shorter sub-steps of as much work each are not tried more than once.
-            let is_long = matches!(error, Error::TooMuchWork { .. }) && self.staggered_retries > 0;
-            let is_of_pressure = matches!(error, Error::TooMuchWork { .. } | Error::NormalNotConverged { .. });
-            if self.may_hold
-                && is_of_pressure
-                && !self.holds
-                && (is_long || self.staggered_retries == staggered_retries)
-            {
-                self.holds = true;
-                self.substep = self.remaining() / staggered_substeps as f64;
-                self.largest = self.substep;
+            let tried = self.staggered_retries;
+            let gives_up = match error {
+                // Shorter sub-steps take as much work each: one is tried.
+                Error::TooMuchWork { .. } => tried >= staggered_retries.min(1),
+                Error::NormalNotConverged { .. } => tried == staggered_retries,
+                _ => false,
+            };
+            if self.may_hold && gives_up && self.coupling == Coupling::Staggered {
+                self.go_on(Coupling::Held);
                 return Ok(());
             }
             // Of two failures the first says why.
-            if self.holds || self.staggered_retries == staggered_retries {
+            if self.coupling == Coupling::Held || tried == staggered_retries {
                 return Err(first.clone());
             }
             self.staggered_retries += 1;
@@ -159,12 +154,18 @@ impl<'a> Division<'a> {
             self.substep = 0.25 * part.length;
             self.largest = self.largest.min(0.5 * part.length);
         } else if staggered_substeps > 0 {
-            self.substep = self.remaining() / staggered_substeps as f64;
-            self.largest = self.substep;
+            self.go_on(Coupling::Staggered);
             self.failure = Some(error);
         } else {
             return Err(error);
         }
         Ok(())
+    }
+
+    /// Takes the rest of the step with another coupling, in as many sub-steps as are taken staggered.
+    fn go_on(&mut self, coupling: Coupling) {
+        self.coupling = coupling;
+        self.substep = self.remaining() / self.settings.staggered_substeps as f64;
+        self.largest = self.substep;
     }
 }

@@ -236,18 +236,24 @@ fn a_pressure_that_is_not_found_is_held() {
     };
     let moved = displaced(80e3, 5e-3);
     let mut workspace = idle.workspace();
-    let hold = |workspace: &mut Workspace| {
+    let step = |workspace: &mut Workspace, inputs: &Inputs| {
         let mut state = first(60e3);
-        let taken = idle.step(workspace, &mut state, &moved, &Inputs::ZERO, 1e-3);
-        taken.unwrap();
+        idle.step(workspace, &mut state, inputs, &Inputs::ZERO, 1e-3).unwrap();
         state
     };
-    let held = hold(&mut workspace);
+    // A little beside, the first height is found to carry the load but for some per cent, which the residual shows.
+    let near = step(&mut workspace, &displaced(60e3, 5e-4));
+    let missing = near.convergence.residual;
+    assert!(
+        near.convergence.staggered && missing > 0.01 && missing < 0.1,
+        "{missing}"
+    );
+    let held = step(&mut workspace, &moved);
     assert!(held.convergence.staggered && held.convergence.residual >= 1.0);
     assert!(idle.accepts(&held));
     let ratio = held.outputs.peak_pressure / first(60e3).outputs.peak_pressure;
     assert!((ratio * 60.0 / 80.0 - 1.0).abs() < 0.02, "{ratio}");
-    assert!(hold(&mut workspace) == held);
+    assert!(step(&mut workspace, &moved) == held);
 
     let light = first(5e3);
     let mut state = light.clone();

@@ -89,12 +89,7 @@ pub fn find(
             last = f64::NAN;
             continue;
         }
-        let half = 0.5 * overlap.spacing;
-        let region = Region {
-            along: [along - overlap.half_length, along + overlap.half_length],
-            across: [across - half, across + half],
-            narrowest: overlap.spacing,
-        };
+        let region = overlap.region(0.5 * overlap.spacing);
         // Places beside each other are one contact.
         let goes_on = (last - across).abs() < 1.5 * overlap.spacing;
         last = across;

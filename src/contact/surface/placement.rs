@@ -18,7 +18,7 @@ use crate::mechanics::patch::normal::is_free;
 const AHEAD: f64 = 1.03;
 /// Approach after a contact has outgrown its window, over the one of the step before, above which windows are placed for the overlap of the bodies.
 const FAR_DEEPER: f64 = 3.0;
-/// Approach over that of the step before from which on that of ellipses limits it.
+/// Approach over that of the step before above which the approach of ellipses under the load limits it.
 const MUCH_DEEPER: f64 = 2.0;
 /// Least approach under a load for which windows are placed by the overlap of the bodies, over that of Hertz's ellipses.
 const LEAST_OVERLAP: f64 = 0.5;
@@ -207,11 +207,8 @@ fn want(problem: &SurfaceProblem, source: Option<&SurfaceFields>, approach: f64,
         };
         contacts::find(problem.operators, source, expected, search, apart, wanted);
         // A wheelset that has jumped touches elsewhere: the contacts of the step before say nothing then.
-        let covers = |(point, along): (usize, f64)| {
-            let place = [along, problem.operators.bodies.scan[point].0];
-            wanted.iter().any(|wanted| wanted.region.grown(BESIDE).holds(place))
-        };
-        if !search.first().is_some_and(covers) {
+        let covers = |place| wanted.iter().any(|wanted| wanted.region.grown(BESIDE).holds(place));
+        if !search.first_place().is_some_and(covers) {
             wanted.clear();
         }
     }
@@ -241,29 +238,25 @@ fn want_overlaps(problem: &SurfaceProblem, approach: f64, solvers: &mut SurfaceS
     want_first(search, approach, wanted);
 }
 
-/// Sees to it that a region holds the place where the bodies touch first, and is not left out: it carries. On a rough profile that place lies between
-/// points of the search, none of which need overlap.
+/// Sees to it that a region holds the place where the bodies touch first, and is not left out: it carries. On a rough profile they touch between points of the search,
+/// of which none need overlap.
 fn want_first(search: &Search, approach: f64, wanted: &mut Vec<Wanted>) {
-    let Some((place, region)) = search.about_first(approach) else {
+    let (Some(place), Some(region)) = (search.first_place(), search.about_first(approach)) else {
         return;
     };
-    // One beside it may be narrower than the distance of the points, and stays as narrow where the place is added to it.
-    let holds = wanted.iter().position(|wanted| wanted.region.holds(place));
-    let meets = || wanted.iter().position(|wanted| wanted.region.meets(&region));
-    if let Some(own) = holds.or_else(meets) {
-        let own = &mut wanted[own];
-        let narrowest = own.region.narrowest;
-        if !own.region.holds(place) {
-            own.region = Region {
-                narrowest,
-                ..own.region.union(&region)
-            };
-        }
+    if let Some(own) = wanted.iter_mut().find(|wanted| wanted.region.holds(place)) {
         own.depth = CARRIES;
-        return;
+    } else if let Some(beside) = wanted.iter_mut().find(|wanted| wanted.region.meets(&region)) {
+        beside.depth = CARRIES;
+        // The contact in it may be narrower than the distance of the points, and counts as no broader for the place that is added.
+        beside.region = Region {
+            narrowest: beside.region.narrowest,
+            ..beside.region.union(&region)
+        };
+    } else {
+        let before = wanted.partition_point(|wanted| wanted.region.across[0] < region.across[0]);
+        wanted.insert(before, Wanted { region, depth: CARRIES });
     }
-    let before = wanted.partition_point(|wanted| wanted.region.across[0] < region.across[0]);
-    wanted.insert(before, Wanted { region, depth: CARRIES });
 }
 
 /// Whether a window that has a part of the surface to itself holds the place where the bodies touch first.
@@ -273,10 +266,9 @@ fn holds_first(
     now: &SurfaceFields,
     own: &[[f64; 2]; WINDOWS],
 ) -> bool {
-    let Some((point, along)) = solvers.search.first() else {
+    let Some(first) = solvers.search.first_place() else {
         return true;
     };
-    let first = [along, problem.operators.bodies.scan[point].0];
     let sizes = &problem.operators.sizes;
     let mut windows = now.used().filter(|(window, _)| {
         let [from, to] = own[*window];

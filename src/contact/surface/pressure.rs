@@ -54,7 +54,7 @@ const SETTLING_ROUNDS: usize = 4;
 /// Least change of a displacement in such a round over the approach, and over the change in the round before.
 const UNSETTLED: [f64; 2] = [0.1, 0.9];
 /// Work of the search for the height of the wheel in a staggered sub-step, in budgets of a step, after which it is given up. It is above a sub-step's own
-/// budget, because a pressure that is held is farther off.
+/// budget: where no height is found, the pressure of the step before is held, which is worth avoiding.
 const STAGGERED_SEARCH: u64 = 4;
 /// Error of the load, relative, with which such a search ends rather than be given up: contacts that displace each other may spend all work on two or
 /// three heights. The residual of the step shows it.

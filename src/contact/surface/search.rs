@@ -60,6 +60,18 @@ pub struct Deepest {
     pub spacing: f64,
 }
 
+impl Deepest {
+    /// Region about it, to a distance across, `m`.
+    pub fn region(&self, half_breadth: f64) -> Region {
+        let [along, across] = self.place;
+        Region {
+            along: [along - self.half_length, along + self.half_length],
+            across: [across - half_breadth, across + half_breadth],
+            narrowest: 2.0 * half_breadth,
+        }
+    }
+}
+
 /// Buffers of a search, and what the last one has found.
 pub struct Search {
     points: Vec<Closest>,
@@ -154,19 +166,16 @@ impl Search {
         least.map(|(number, point)| (number, point.along))
     }
 
-    /// Place along the rail and arc length, `m`, at which the bodies touch first, and the region about it that a wheel lower by `approach` `m` may press on; none
-    /// where they do not touch.
-    pub fn about_first(&self, approach: f64) -> Option<([f64; 2], Region)> {
-        let (number, along) = self.first()?;
-        let point = &self.points[number];
-        let half = REGION_SHARE * half_length(point, approach * point.rise);
-        let spacing = self.points[0].arc - self.points[1].arc;
-        let region = Region {
-            along: [along - half, along + half],
-            across: [point.arc - spacing, point.arc + spacing],
-            narrowest: 2.0 * spacing,
-        };
-        Some(([along, point.arc], region))
+    /// Place along the rail and arc length, `m`, of the point at which the bodies touch first; none where they do not.
+    pub fn first_place(&self) -> Option<[f64; 2]> {
+        self.first().map(|(number, along)| [along, self.points[number].arc])
+    }
+
+    /// Region about the point at which the bodies touch first, to the ones beside it, that a wheel lower by `approach` `m` may press on.
+    pub fn about_first(&self, approach: f64) -> Option<Region> {
+        let point = &self.points[self.first()?.0];
+        let deepest = self.deepest_over(point, approach * point.rise);
+        Some(deepest.region(deepest.spacing))
     }
 
     /// Change of the height at which the bodies touch first, with a change of the position at an unchanged height, `m`. The points are those at the
@@ -261,21 +270,30 @@ impl Search {
     /// Overlap at each point where there is one, of a wheel that is lower by `approach` `m` than the height at which the points are; from the
     /// field side to the gauge side.
     pub fn deepest(&self, approach: f64) -> impl Iterator<Item = Deepest> + '_ {
-        let spacing = self.points[0].arc - self.points[1].arc;
         self.points.iter().filter_map(move |point| {
             let depth = approach * point.rise - point.distance;
-            (depth > 0.0).then(|| Deepest {
-                place: [point.along, point.arc],
-                depth,
-                half_length: REGION_SHARE * half_length(point, depth),
-                spacing,
-            })
+            (depth > 0.0).then(|| self.deepest_over(point, depth))
         })
+    }
+
+    /// Overlap of the given depth, `m`, over a point.
+    fn deepest_over(&self, point: &Closest, depth: f64) -> Deepest {
+        Deepest {
+            place: [point.along, point.arc],
+            depth,
+            half_length: REGION_SHARE * half_length(point, depth),
+            spacing: self.spacing(),
+        }
+    }
+
+    /// Distance of two points, `m`: they go from the field side to the gauge side.
+    fn spacing(&self) -> f64 {
+        self.points[0].arc - self.points[1].arc
     }
 
     /// Whether the bodies overlap anywhere between two arc lengths, of a wheel that is lower by `approach` `m` than the height at which the points are.
     pub fn is_near(&self, across: [f64; 2], approach: f64) -> bool {
-        let spacing = self.points[0].arc - self.points[1].arc;
+        let spacing = self.spacing();
         let between = |arc: f64| across[0] - spacing <= arc && arc <= across[1] + spacing;
         let mut points = self.points.iter();
         points.any(|point| between(point.arc) && approach * point.rise > point.distance)

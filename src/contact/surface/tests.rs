@@ -2,18 +2,23 @@ use super::apart::Apart;
 use super::bodies::{RAIL, WHEEL};
 use super::geometry::{Pose, WindowGeometry};
 use super::operators::SurfaceOperators;
+use super::placement::place;
+use super::problem::SurfaceProblem;
 use super::transfer::Transfer;
 use super::windows::Place;
 use super::worn_bodies::WornBodies;
 use crate::contact::engine::Engine;
 use crate::contact::fields::Fields;
 use crate::contact::patch::undeformed::Undeformed;
+use crate::contact::problem::{Coupling, Problem, StepConditions, Task};
 use crate::contact::surface::fields::SurfaceFields;
 use crate::contact::{ContactState, ContactWorkspace};
 use crate::geometry::rail::PlacedRail;
 use crate::geometry::unrolled::PlacedWheel;
 use crate::parameters::{ContactModel, Control, Parameters, ProfileWear, Side, SlipSource};
+use crate::settings::Settings;
 use crate::signals::{INPUTS, Inputs};
+use crate::torture::random::Random;
 use crate::wheel_rail::{Model, State, Workspace};
 
 fn parameters(control: Control) -> Parameters {
@@ -225,6 +230,92 @@ fn steep_walls_of_a_worn_wheel_do_not_reach_into_the_rail() {
         assert!(deepest > -0.01 * depth, "{deepest}");
     }
     assert!(walls > 0);
+}
+
+/// Problem of a step under the given inputs.
+fn problem<'a>(
+    operators: &'a SurfaceOperators,
+    (parameters, settings): (&'a Parameters, &'a Settings),
+    inputs: Inputs,
+) -> SurfaceProblem<'a> {
+    let conditions = StepConditions {
+        inputs,
+        motion: inputs.motion(parameters),
+        duration: 1e-3,
+        coupling: Coupling::Implicit,
+        room: 1.0,
+    };
+    let task = Task {
+        parameters,
+        settings,
+        conditions,
+    };
+    Problem::new(operators, &task)
+}
+
+/// A wheel worn as roughly as its cells are wide touches the rail between the points at which contacts are sought, and under a small load no point overlaps: the place has a window all the same.
+#[test]
+fn rough_bodies_have_a_window_where_they_touch_first() {
+    const LOAD: f64 = 100.0;
+    let parameters = Parameters {
+        wheel_profile_wear: ProfileWear::On,
+        ..parameters(Control::Load)
+    };
+    let settings = Settings::default();
+    let operators = SurfaceOperators::build(&parameters).unwrap();
+    let mut solvers = operators.solvers(&settings);
+    let mut random = Random::new(1, 0);
+    let mut depths = [WHEEL, RAIL].map(|body| vec![0.0; operators.wear_cells(body)]);
+    let grid = operators.grids[WHEEL];
+    for (cell, depth) in depths[WHEEL].iter_mut().enumerate() {
+        let position = operators.profiles[WHEEL].at(grid.middle(cell)).place[0];
+        *depth = if position.abs() < 30e-3 {
+            random.between(0.0, 3e-4)
+        } else {
+            0.0
+        };
+    }
+    solvers.worn.set(&operators, &depths).unwrap();
+    // The load was carried at next to no approach, and elsewhere.
+    let mut before = SurfaceFields::new(&operators);
+    (before.load, before.approach[0]) = (LOAD, 1e-6);
+    for step in 0..40 {
+        let inputs = Inputs {
+            normal_load: LOAD,
+            ..displaced(1e-4 * f64::from(step))
+        };
+        let problem = problem(&operators, (&parameters, &settings), inputs);
+        let mut now = SurfaceFields::new(&operators);
+        place(&problem, Some(&before), None, &mut now, &mut solvers).unwrap();
+        let first = solvers.search.first_place().unwrap();
+        let grid = |place: &Place| operators.sizes.grid(place.length, place.breadth);
+        let holds = |place: &Place| place.region(&grid(place)).holds(first);
+        assert!(now.used().any(|(_, place)| holds(&place)), "{step}: {first:?}");
+    }
+}
+
+/// A load that grows a ten thousandfold, from an approach that little of it has made: windows are placed for no more than that and the approach of ellipses.
+#[test]
+fn the_approach_of_a_small_load_does_not_grow_with_it() {
+    let parameters = parameters(Control::Load);
+    let settings = Settings::default();
+    let operators = SurfaceOperators::build(&parameters).unwrap();
+    let mut solvers = operators.solvers(&settings);
+    let inputs = displaced(1e-3);
+    let mut before = SurfaceFields::new(&operators);
+    before.copy_from(fields(&run(&parameters, &inputs, 0)));
+    let usual = before.approach[0];
+    (before.load, before.approach[0]) = (before.load * 1e-4, 1e-4);
+    let problem = problem(&operators, (&parameters, &settings), inputs);
+    let mut now = SurfaceFields::new(&operators);
+    now.guess_from(&before);
+    place(&problem, Some(&before), None, &mut now, &mut solvers).unwrap();
+    // Ellipses in place of the contacts are near what they carry.
+    assert!(
+        solvers.reference > 1e-4 && solvers.reference < 1e-4 + 1.5 * usual,
+        "{:e}",
+        solvers.reference
+    );
 }
 
 /// The displacement of one window by the pressure of another is the sum over its cells as point forces, to the second order in the size of a block over

@@ -586,6 +586,34 @@ mod tests {
     use crate::parameters::{ContactModel, Parameters};
     use crate::settings::Settings;
 
+    /// The rail of a patch with default parameters.
+    fn rail() -> PatchOperators {
+        let parameters = Parameters {
+            contact_model: ContactModel::Patch,
+            ..Parameters::default()
+        };
+        PatchOperators::build(&parameters).unwrap()
+    }
+
+    /// Problem of a rail that does not wear, over all of its grid.
+    fn problem<'a>(
+        rail: &'a PatchOperators,
+        gap: &'a [f64],
+        wear_compliance: &'a [f64],
+        constraint: Constraint,
+    ) -> PatchNormalProblem<'a> {
+        PatchNormalProblem {
+            grid: &rail.grid,
+            transform: &rail.transform,
+            normal_influence: &rail.normal_influence,
+            narrow: &[],
+            gap,
+            wear_compliance,
+            constraint,
+            tolerance: 1e-9,
+        }
+    }
+
     /// Hertz's ellipse (Johnson, 4.24–4.26), from nothing and from a smaller load.
     #[test]
     fn the_pressure_is_that_of_hertz() {
@@ -593,22 +621,14 @@ mod tests {
             contact_model: ContactModel::Patch,
             ..Parameters::default()
         };
-        let rail = PatchOperators::build(&parameters).unwrap();
+        let rail = rail();
         let grid = &rail.grid;
         let mut normal = Normal::new(grid, &rail.transform, Settings::default().patch);
         let mut contact = Contact::new(grid);
         let mut pressure = vec![0.0; grid.len()];
+        let unworn = vec![0.0; grid.len()];
         for load in [80e3, 60e3, 95e3] {
-            let problem = PatchNormalProblem {
-                grid,
-                transform: &rail.transform,
-                normal_influence: &rail.normal_influence,
-                narrow: &[],
-                gap: &rail.gap,
-                wear_compliance: &vec![0.0; grid.len()],
-                constraint: Constraint::Total(load / rail.unit_force()),
-                tolerance: 1e-9,
-            };
+            let problem = problem(&rail, &rail.gap, &unworn, Constraint::Total(load / rail.unit_force()));
             let penetration = normal.solve(&problem, &mut contact, &mut pressure).unwrap();
             let ellipse = parameters.hertz_ellipse(load);
             let peak = dense::largest(&pressure) * rail.scales.pressure;
@@ -634,11 +654,7 @@ mod tests {
     /// A pressure to begin with where the bodies are apart, all of whose cells pull at once, and an overlap elsewhere.
     #[test]
     fn a_patch_whose_cells_all_pull_finds_the_overlap() {
-        let parameters = Parameters {
-            contact_model: ContactModel::Patch,
-            ..Parameters::default()
-        };
-        let rail = PatchOperators::build(&parameters).unwrap();
+        let rail = rail();
         let grid = &rail.grid;
         let (apart, overlap) = (
             grid.place(grid.strips / 2, 5),
@@ -646,16 +662,8 @@ mod tests {
         );
         let mut gap = vec![1.0; grid.len()];
         gap[overlap] = -1.0;
-        let problem = PatchNormalProblem {
-            grid,
-            transform: &rail.transform,
-            normal_influence: &rail.normal_influence,
-            narrow: &[],
-            gap: &gap,
-            wear_compliance: &vec![0.0; grid.len()],
-            constraint: Constraint::Penetration(0.0),
-            tolerance: 1e-9,
-        };
+        let unworn = vec![0.0; grid.len()];
+        let problem = problem(&rail, &gap, &unworn, Constraint::Penetration(0.0));
         let mut pressure = vec![0.0; grid.len()];
         pressure[apart] = 1.0;
         let mut normal = Normal::new(grid, &rail.transform, Settings::default().patch);
@@ -668,24 +676,12 @@ mod tests {
 
     #[test]
     fn a_limit_of_no_passes_is_an_error() {
-        let parameters = Parameters {
-            contact_model: ContactModel::Patch,
-            ..Parameters::default()
-        };
-        let rail = PatchOperators::build(&parameters).unwrap();
+        let rail = rail();
         let grid = &rail.grid;
         let mut settings = Settings::default().patch;
         settings.normal_passes = 0;
-        let problem = PatchNormalProblem {
-            grid,
-            transform: &rail.transform,
-            normal_influence: &rail.normal_influence,
-            narrow: &[],
-            gap: &rail.gap,
-            wear_compliance: &vec![0.0; grid.len()],
-            constraint: Constraint::Total(1.0),
-            tolerance: 1e-9,
-        };
+        let unworn = vec![0.0; grid.len()];
+        let problem = problem(&rail, &rail.gap, &unworn, Constraint::Total(1.0));
         let solved = Normal::new(grid, &rail.transform, settings).solve(
             &problem,
             &mut Contact::new(grid),
