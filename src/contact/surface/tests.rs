@@ -3,6 +3,7 @@ use super::bodies::{RAIL, WHEEL};
 use super::geometry::{Pose, WindowGeometry};
 use super::operators::SurfaceOperators;
 use super::placement::place;
+use super::pressure::hold;
 use super::problem::SurfaceProblem;
 use super::transfer::Transfer;
 use super::windows::Place;
@@ -14,12 +15,13 @@ use crate::contact::problem::{Coupling, Problem, StepConditions, Task};
 use crate::contact::surface::fields::SurfaceFields;
 use crate::contact::{ContactState, ContactWorkspace};
 use crate::geometry::rail::PlacedRail;
-use crate::geometry::unrolled::PlacedWheel;
+use crate::geometry::unrolled::{PlacedWheel, RailPoint, WheelsetPosition};
 use crate::parameters::{ContactModel, Control, Parameters, ProfileWear, Side, SlipSource};
 use crate::settings::Settings;
 use crate::signals::{INPUTS, Inputs};
 use crate::torture::random::Random;
 use crate::wheel_rail::{Model, State, Workspace};
+use std::ops::Range;
 
 fn parameters(control: Control) -> Parameters {
     Parameters {
@@ -188,6 +190,58 @@ fn the_gap_is_that_of_the_wheel_over_each_cell() {
     assert!(largest < 1e-9, "{largest:e}");
 }
 
+/// A wheel that is worn, cell by cell, between two positions on its profile, `m`.
+fn worn_wheel(operators: &SurfaceOperators, between: Range<f64>, mut depth_of: impl FnMut(usize) -> f64) -> WornBodies {
+    let mut worn = WornBodies::new(operators);
+    let mut depths = [WHEEL, RAIL].map(|body| vec![0.0; operators.wear_cells(body)]);
+    let grid = operators.grids[WHEEL];
+    for (cell, depth) in depths[WHEEL].iter_mut().enumerate() {
+        let position = operators.profiles[WHEEL].at(grid.middle(cell)).place[0];
+        if between.contains(&position) {
+            *depth = depth_of(cell);
+        }
+    }
+    worn.set(operators, &depths).unwrap();
+    worn
+}
+
+/// The wheel with worn grooves, along lines that cross them and from guesses on either side: a point on its surface is found where the line goes into it.
+#[test]
+fn the_wheel_is_found_between_the_walls_of_its_grooves() {
+    let parameters = Parameters {
+        wheel_profile_wear: ProfileWear::On,
+        ..parameters(Control::Load)
+    };
+    let operators = SurfaceOperators::build(&parameters).unwrap();
+    let worn = worn_wheel(&operators, 2e-3..12e-3, |cell| if cell % 4 < 2 { 2e-3 } else { 0.0 });
+    let bodies = worn.of(&operators);
+    let wheel = PlacedWheel::new(
+        &bodies.wheel,
+        &WheelsetPosition {
+            height: parameters.wheel_radius,
+            ..WheelsetPosition::default()
+        },
+    );
+    for step in 0..400 {
+        let position = 3e-3 + 8e-3 * f64::from(step) / 400.0;
+        for angle in [-0.6, -0.3, 0.0, 0.3, 0.6_f64] {
+            let point = RailPoint {
+                place: [bodies.wheel.offset + position, -1e-3],
+                normal: [angle.sin(), angle.cos()],
+            };
+            for guess in [-1e-3, 0.0, 1e-3, 2e-3, 3e-3, 4e-3] {
+                let at = wheel.distance(1e-3, &point, guess);
+                let [x, y, z] = at.arm;
+                let [height, slope, _] = bodies.wheel.profile.value_slope_curvature(y - bodies.wheel.offset);
+                let outside = x.hypot(z) - bodies.wheel.radius + height;
+                assert!(outside.abs() < 1e-8, "{point:?}, {guess}: {outside:e}");
+                let inward = slope * point.normal[0] + z / x.hypot(z) * point.normal[1];
+                assert!(inward < 0.0, "{point:?}, {guess}: out of the wheel");
+            }
+        }
+    }
+}
+
 /// A yawed wheel at the height at which it touched as new, worn since to grooves with steep walls: nothing of it is in the rail. Between the places at which the
 /// cells look at it, the interpolation may see it deeper by what it may bulge, which is a hundredth of the grooves; without that limit it sees it five times as deep as
 /// they are, and Newton's method alone, to and fro between the walls, by a tenth.
@@ -199,18 +253,7 @@ fn steep_walls_of_a_worn_wheel_do_not_reach_into_the_rail() {
         ..parameters(Control::Load)
     };
     let operators = SurfaceOperators::build(&parameters).unwrap();
-    let mut worn = WornBodies::new(&operators);
-    let mut depths = [WHEEL, RAIL].map(|body| vec![0.0; operators.wear_cells(body)]);
-    let grid = operators.grids[WHEEL];
-    for (cell, depth) in depths[WHEEL].iter_mut().enumerate() {
-        let position = operators.profiles[WHEEL].at(grid.middle(cell)).place[0];
-        *depth = if (2e-3..12e-3).contains(&position) && cell % 4 < 2 {
-            DEPTH
-        } else {
-            0.0
-        };
-    }
-    worn.set(&operators, &depths).unwrap();
+    let worn = worn_wheel(&operators, 2e-3..12e-3, |cell| if cell % 4 < 2 { DEPTH } else { 0.0 });
     let bodies = worn.of(&operators);
     let mut walls = 0;
     let inputs = Inputs {
@@ -265,17 +308,7 @@ fn rough_bodies_have_a_window_where_they_touch_first() {
     let operators = SurfaceOperators::build(&parameters).unwrap();
     let mut solvers = operators.solvers(&settings);
     let mut random = Random::new(1, 0);
-    let mut depths = [WHEEL, RAIL].map(|body| vec![0.0; operators.wear_cells(body)]);
-    let grid = operators.grids[WHEEL];
-    for (cell, depth) in depths[WHEEL].iter_mut().enumerate() {
-        let position = operators.profiles[WHEEL].at(grid.middle(cell)).place[0];
-        *depth = if position.abs() < 30e-3 {
-            random.between(0.0, 3e-4)
-        } else {
-            0.0
-        };
-    }
-    solvers.worn.set(&operators, &depths).unwrap();
+    solvers.worn = worn_wheel(&operators, -30e-3..30e-3, |_| random.between(0.0, 3e-4));
     // The load was carried at next to no approach, and elsewhere.
     let mut before = SurfaceFields::new(&operators);
     (before.load, before.approach[0]) = (LOAD, 1e-6);
@@ -316,6 +349,30 @@ fn the_approach_of_a_small_load_does_not_grow_with_it() {
         "{:e}",
         solvers.reference
     );
+}
+
+/// The separation of an attempt that has failed, in windows that lay elsewhere, is not that of a pressure that is held.
+#[test]
+fn a_pressure_that_is_held_knows_no_separation() {
+    let parameters = parameters(Control::Load);
+    let settings = Settings::default();
+    let operators = SurfaceOperators::build(&parameters).unwrap();
+    let mut solvers = operators.solvers(&settings);
+    let inputs = displaced(1e-3);
+    let problem = problem(&operators, (&parameters, &settings), inputs);
+    let state = run(&parameters, &inputs, 0);
+    let mut held = SurfaceFields::new(&operators);
+    held.guess_from(fields(&state));
+    place(&problem, Some(fields(&state)), None, &mut held, &mut solvers).unwrap();
+    for own in &mut solvers.windows {
+        own.patch.normal.separation.fill(1.0);
+    }
+    hold(&problem, &mut held, &mut solvers).unwrap();
+    for (window, _) in held.used() {
+        let own = &solvers.windows[window].patch;
+        assert!(own.contact.cells() > 0);
+        assert!(own.normal.separation.iter().all(|&separation| separation == 0.0));
+    }
 }
 
 /// The displacement of one window by the pressure of another is the sum over its cells as point forces, to the second order in the size of a block over
