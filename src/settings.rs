@@ -179,6 +179,9 @@ pub struct WearComplianceSettings {
     pub explicit: f64,
     /// Relative change of the wear compliance from which on it is computed anew.
     pub renewal: f64,
+    /// Sweeps of a step in which it follows the slip. Later it stays as it is: Anderson's method, which compares gaps without the wear that it takes, diverges where
+    /// it changes with a wear law that jumps.
+    pub sweeps: usize,
 }
 
 /// The surface condition of a column, and the wheel's rim.
@@ -315,6 +318,7 @@ impl Default for WearComplianceSettings {
         WearComplianceSettings {
             explicit: 0.05,
             renewal: 0.1,
+            sweeps: 3,
         }
     }
 }

@@ -80,6 +80,11 @@ impl<E: Engine> Newton<E> {
     /// Forgets the step before.
     pub fn restart(&mut self) {
         (self.halved, self.idle) = (f64::INFINITY, 0);
+        self.forget_closest();
+    }
+
+    /// Forgets the closest iterate so far.
+    pub fn forget_closest(&mut self) {
         self.closest.change = f64::INFINITY;
     }
 

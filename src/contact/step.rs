@@ -127,8 +127,8 @@ fn solve_in_room<E: Engine>(
         let tractions = tractions?;
         E::march_wear(problem, before, now, solvers);
         rail_and_rim::march_heat(problem, before, iterate, now, solvers)?;
-        // An iterate that is to end the step is one for the wear compliance that there is.
-        if !ends {
+        let renewals = problem.settings.wear_compliance.sweeps;
+        if iterations <= renewals {
             E::update_wear_compliance(problem, now, solvers);
         }
         // The first sweep does not end the step: the mechanics have not seen yet what it changed.
@@ -155,6 +155,10 @@ fn solve_in_room<E: Engine>(
             E::map_displacement(problem, now, solvers);
             E::read(problem, now, solvers, image);
             test.amend(iterate.change_to(image, settings.least_temperature));
+        }
+        if iterations <= renewals + 1 {
+            // The gap of those before is one beside another wear compliance.
+            newton.forget_closest();
         }
         let idle = newton.keep(iterate, test.change());
         let hard = idle >= settings.idle_iterations || iterations >= settings.fixed_point_iterations;

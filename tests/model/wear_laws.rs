@@ -281,3 +281,32 @@ fn thresholds_ascend() {
         assert_eq!(unused.validate(), Ok(()));
     }
 }
+
+/// Long steps of a patch in which some cells wear mildly and others seven times as fast, up to twelve times as much as rail steel: what the pressure sees of the
+/// wear jumps with the slip of a cell, and the steps are solved all the same.
+#[test]
+fn long_steps_under_a_law_that_jumps_are_solved() {
+    for (amount, grid) in [(1.0, [10, 7]), (4.0, [16, 9]), (12.0, [10, 7]), (12.0, [16, 9])] {
+        let [patch_nodes, patch_strips] = grid;
+        let contact = patch(SlipSource::VehicleSpeed, Wheel::Rigid);
+        let model = Model::new(Parameters {
+            wear_blend: 0.1,
+            patch_nodes,
+            patch_strips,
+            friction_law: FrictionLaw::Constant,
+            ..within(contact, WearLaw::ArchardMap, 0.2, 0.01, amount)
+        })
+        .unwrap();
+        let mut workspace = model.workspace();
+        for creepage in [0.0, 2e-3, 6e-3, 10e-3, 14e-3] {
+            for spin in [0.0, 0.4, 0.8, 1.2] {
+                let inputs = rolling(20.0, [creepage, 1e-3, spin]);
+                let mut state = model.initial_state(&mut workspace, &inputs).unwrap();
+                for _ in 0..3 {
+                    state = step_from(&model, &mut workspace, &state, &inputs, 0.5).unwrap();
+                    assert!(!state.convergence.staggered, "{amount} {grid:?} {creepage} {spin}");
+                }
+            }
+        }
+    }
+}
