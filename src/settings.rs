@@ -179,8 +179,8 @@ pub struct WearComplianceSettings {
     pub explicit: f64,
     /// Relative change of the wear compliance from which on it is computed anew.
     pub renewal: f64,
-    /// Sweeps of a step in which it follows the slip. Later it stays as it is: Anderson's method, which compares gaps without the wear that it takes, diverges where
-    /// it changes with a wear law that jumps.
+    /// First sweeps of a step, in which it follows the slip; then it stays. The interface vector holds the wear that it does not take, so that vectors beside different
+    /// ones do not compare: under a wear law that jumps Anderson's method would diverge.
     pub sweeps: usize,
 }
 

@@ -157,7 +157,7 @@ fn solve_in_room<E: Engine>(
             test.amend(iterate.change_to(image, settings.least_temperature));
         }
         if iterations <= renewals + 1 {
-            // The gap of those before is one beside another wear compliance.
+            // Earlier iterates hold the wear beside another wear compliance: swept again, they would have other images.
             newton.forget_closest();
         }
         let idle = newton.keep(iterate, test.change());

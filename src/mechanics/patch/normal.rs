@@ -586,8 +586,11 @@ mod tests {
     use crate::parameters::{ContactModel, Parameters};
     use crate::settings::Settings;
 
+    /// Tolerance of the pressures.
+    pub const TOLERANCE: f64 = 1e-10;
+
     /// The rail of a patch with default parameters.
-    fn rail() -> PatchOperators {
+    pub fn rail() -> PatchOperators {
         let parameters = Parameters {
             contact_model: ContactModel::Patch,
             ..Parameters::default()
@@ -596,7 +599,7 @@ mod tests {
     }
 
     /// Problem of a rail that does not wear, over all of its grid.
-    fn problem<'a>(
+    pub fn problem<'a>(
         rail: &'a PatchOperators,
         gap: &'a [f64],
         wear_compliance: &'a [f64],
@@ -610,7 +613,7 @@ mod tests {
             gap,
             wear_compliance,
             constraint,
-            tolerance: 1e-9,
+            tolerance: TOLERANCE,
         }
     }
 

@@ -89,11 +89,10 @@ mod tests {
     use super::*;
     use crate::contact::patch::operators::PatchOperators;
     use crate::mechanics::normal::normal_problem::Constraint;
+    use crate::mechanics::patch::normal::tests::{TOLERANCE, problem, rail};
     use crate::numerics::dense::{largest, largest_change};
-    use crate::parameters::{ContactModel, Parameters};
     use crate::settings::Settings;
 
-    const TOLERANCE: f64 = 1e-10;
     /// Difference of two pressures by their residuals, which the smoothest pressure magnifies by the number of cells across.
     const RESIDUALS: f64 = 50.0 * TOLERANCE;
 
@@ -109,11 +108,7 @@ mod tests {
 
     impl Pressing {
         fn new() -> Pressing {
-            let rail = PatchOperators::build(&Parameters {
-                contact_model: ContactModel::Patch,
-                ..Parameters::default()
-            })
-            .unwrap();
+            let rail = rail();
             let (grid, settings) = (rail.grid, Settings::default().patch);
             Pressing {
                 normal: Normal::new(&grid, &rail.transform, settings),
@@ -146,24 +141,6 @@ mod tests {
         fn advance(&mut self, change: f64) {
             self.normal
                 .advance(&self.rail.grid, &self.response, change, &mut self.pressure);
-        }
-    }
-
-    fn problem<'a>(
-        rail: &'a PatchOperators,
-        gap: &'a [f64],
-        nothing: &'a [f64],
-        constraint: Constraint,
-    ) -> PatchNormalProblem<'a> {
-        PatchNormalProblem {
-            grid: &rail.grid,
-            transform: &rail.transform,
-            normal_influence: &rail.normal_influence,
-            narrow: &[],
-            gap,
-            wear_compliance: nothing,
-            constraint,
-            tolerance: TOLERANCE,
         }
     }
 
