@@ -310,3 +310,29 @@ fn long_steps_under_a_law_that_jumps_are_solved() {
         }
     }
 }
+
+/// A wheel that spins on the spot and wears thirty times as much as by default: the contact yields to the wear of a step as much as to the load, and the steps are
+/// solved as the normal problem takes that wear.
+#[test]
+fn steps_of_a_wheel_that_digs_are_solved() {
+    for contact in [
+        line(SlipSource::VehicleSpeed, Wheel::Rigid),
+        patch(SlipSource::VehicleSpeed, Wheel::Rigid),
+    ] {
+        let model = Model::new(Parameters {
+            friction_law: FrictionLaw::Constant,
+            wear_coefficient: 30.0 * contact.wear_coefficient,
+            ..contact
+        })
+        .unwrap();
+        let mut workspace = model.workspace();
+        for creepage in [5.0, 10.0, 20.0, 40.0] {
+            let inputs = rolling_straight(0.05, creepage);
+            let mut state = model.initial_state(&mut workspace, &inputs).unwrap();
+            for _ in 0..3 {
+                state = step_from(&model, &mut workspace, &state, &inputs, 1e-3).unwrap();
+                assert!(!state.convergence.staggered, "{creepage}");
+            }
+        }
+    }
+}
