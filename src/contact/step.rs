@@ -156,7 +156,7 @@ fn solve_in_room<E: Engine>(
             E::read(problem, now, solvers, image);
             test.amend(iterate.change_to(image, settings.least_temperature));
         }
-        if iterations <= renewals + 1 {
+        if iterations - 1 <= renewals {
             // Earlier iterates hold the wear beside another wear compliance: swept again, they would have other images.
             newton.forget_closest();
         }
