@@ -77,40 +77,53 @@ impl<T: Real> Fourier<T> {
         self.size
     }
 
-    /// Transforms `rows`, each `width` long, a multiple of [`super::real::BLOCK`]; `scratch` is as large.
+    /// Transforms `rows`, each `width` long, a multiple of [`super::real::BLOCK`], of which the second half is 0: it fills up a convolution. `scratch` is as large.
     #[inline(always)]
     pub fn forward<S: Simd>(&self, simd: S, width: usize, rows: &mut Rows<T>, scratch: &mut Rows<T>) {
         let (re, im) = (&mut rows.re, &mut rows.im);
-        self.transform(simd, width, (re, im), (&mut scratch.re, &mut scratch.im));
+        self.transform(simd, width, Half::Zero, (re, im), (&mut scratch.re, &mut scratch.im));
     }
 
-    /// The inverse times P.
+    /// The first half of the rows of the inverse times P, of three rows the first two: the others of a convolution are of no use, and are not computed.
     #[inline(always)]
     pub fn backward<S: Simd>(&self, simd: S, width: usize, rows: &mut Rows<T>, scratch: &mut Rows<T>) {
         let (re, im) = (&mut rows.re, &mut rows.im);
-        self.transform(simd, width, (im, re), (&mut scratch.im, &mut scratch.re));
+        self.transform(simd, width, Half::Unused, (im, re), (&mut scratch.im, &mut scratch.re));
     }
 
     #[inline(always)]
-    fn transform<'a, S: Simd>(&self, simd: S, width: usize, mut from: Parts<'a, T>, mut to: Parts<'a, T>) {
+    fn transform<'a, S: Simd>(&self, simd: S, width: usize, half: Half, mut from: Parts<'a, T>, mut to: Parts<'a, T>) {
+        let vectors = width / T::lanes::<S>();
+        if vectors == 0 {
+            // The transform of an empty window.
+            return;
+        }
         let (mut length, mut stride) = (self.size, 1);
         for &factor in &self.factors {
+            let parts = length / factor;
             let pass = Pass {
-                parts: length / factor,
+                parts,
                 stride,
-                vectors: width / T::lanes::<S>(),
+                length: stride * vectors,
             };
+            // Half of the rows are the first of two parts, within the first two of three, the first two of four.
+            let zero = half == Half::Zero && stride == 1 && factor == 4;
+            let unused = half == Half::Unused && parts == 1;
             {
                 let from = (T::vectors::<S>(from.0), T::vectors::<S>(from.1));
                 let to = (T::vectors_mut::<S>(to.0), T::vectors_mut::<S>(to.1));
-                match factor {
-                    2 => self.pass::<S, 2>(simd, &pass, from, to),
-                    3 => self.pass::<S, 3>(simd, &pass, from, to),
-                    _ => self.pass::<S, 4>(simd, &pass, from, to),
+                match (factor, zero, unused) {
+                    (2, _, false) => self.pass::<S, 2, 2, 2>(simd, &pass, from, to),
+                    (2, _, true) => self.pass::<S, 2, 2, 1>(simd, &pass, from, to),
+                    (3, _, false) => self.pass::<S, 3, 3, 3>(simd, &pass, from, to),
+                    (3, _, true) => self.pass::<S, 3, 3, 2>(simd, &pass, from, to),
+                    (_, true, _) => self.pass::<S, 4, 2, 4>(simd, &pass, from, to),
+                    (_, _, false) => self.pass::<S, 4, 4, 4>(simd, &pass, from, to),
+                    (_, _, true) => self.pass::<S, 4, 4, 2>(simd, &pass, from, to),
                 }
             }
             std::mem::swap(&mut from, &mut to);
-            length /= factor;
+            length = parts;
             stride *= factor;
         }
         // After an odd number of passes the result stands in the scratch.
@@ -120,39 +133,47 @@ impl<T: Real> Fourier<T> {
         }
     }
 
+    /// A pass for a factor R, of which the first `READ` rows are not 0 and the first `WRITTEN` are needed.
     #[inline(always)]
-    fn pass<S: Simd, const R: usize>(
+    fn pass<S: Simd, const R: usize, const READ: usize, const WRITTEN: usize>(
         &self,
         simd: S,
         pass: &Pass,
-        (from_re, from_im): Source<T, S>,
+        from: Source<T, S>,
         (to_re, to_im): Target<T, S>,
     ) {
-        let Pass { parts, stride, vectors } = *pass;
-        for part in 0..parts {
-            let twiddles: [Complex<T, S>; R] = std::array::from_fn(|k| {
-                let (re, im) = self.roots[part * stride * k % self.size];
-                (T::splat(simd, re), T::splat(simd, im))
-            });
-            for place in 0..stride {
-                for vector in 0..vectors {
-                    let values: [Complex<T, S>; R] = std::array::from_fn(|j| {
-                        let source = (place + stride * (part + parts * j)) * vectors + vector;
-                        (from_re[source], from_im[source])
-                    });
-                    let sums = butterfly::<T, S, R>(simd, values);
-                    for k in 0..R {
-                        let target = (place + stride * (R * part + k)) * vectors + vector;
-                        (to_re[target], to_im[target]) = if k == 0 {
-                            sums[k]
-                        } else {
-                            product::<T, S>(simd, sums[k], twiddles[k])
-                        };
-                    }
+        let length = pass.length;
+        let blocks = to_re
+            .chunks_exact_mut(R * length)
+            .zip(to_im.chunks_exact_mut(R * length));
+        for (part, to) in blocks.take(pass.parts).enumerate() {
+            let rows = Butterflies {
+                length,
+                first: part * length,
+                apart: pass.parts * length,
+            };
+            if part == 0 {
+                // All roots are 1.
+                combine::<T, S, R, READ, WRITTEN, false>(simd, &rows, &[], from, to);
+            } else {
+                let mut roots = [(T::splat(simd, T::default()), T::splat(simd, T::default())); R];
+                for (k, root) in roots.iter_mut().enumerate() {
+                    let (re, im) = self.roots[part * pass.stride * k % self.size];
+                    *root = (T::splat(simd, re), T::splat(simd, im));
                 }
+                combine::<T, S, R, READ, WRITTEN, true>(simd, &rows, &roots, from, to);
             }
         }
     }
+}
+
+/// What is known of the second half of the rows.
+#[derive(Clone, Copy, PartialEq)]
+enum Half {
+    /// It is 0 before the transform.
+    Zero,
+    /// It is not needed after the transform.
+    Unused,
 }
 
 /// Real and imaginary parts of rows.
@@ -167,12 +188,66 @@ type Target<'a, T, S> = (&'a mut [<T as Real>::Vector<S>], &'a mut [<T as Real>:
 /// Complex numbers side by side, real and imaginary parts.
 type Complex<T, S> = (<T as Real>::Vector<S>, <T as Real>::Vector<S>);
 
-/// One pass: `parts` butterflies on rows that are `stride` times `parts` apart, each for the `stride` rows that earlier passes have
-/// combined; a row is `vectors` registers long.
+/// One pass: `parts` butterflies on rows that are `parts` times `stride` apart, each for the `stride` rows that earlier passes have
+/// combined, which are `length` registers in all.
 struct Pass {
     parts: usize,
     stride: usize,
-    vectors: usize,
+    length: usize,
+}
+
+/// Butterflies of one part: from rows of `length` registers, of which the first begins at `first` and the others are `apart`.
+struct Butterflies {
+    length: usize,
+    first: usize,
+    apart: usize,
+}
+
+/// Combines R rows into R rows that follow each other, times the roots if they are not 1. Slices as long as the loop need no test in it.
+#[inline(always)]
+fn combine<T: Real, S: Simd, const R: usize, const READ: usize, const WRITTEN: usize, const TURNED: bool>(
+    simd: S,
+    rows: &Butterflies,
+    roots: &[Complex<T, S>],
+    (from_re, from_im): Source<T, S>,
+    (to_re, to_im): Target<T, S>,
+) {
+    let length = rows.length;
+    let mut from: [Source<T, S>; R] = [(&[], &[]); R];
+    for (j, from) in from.iter_mut().enumerate().take(READ) {
+        let first = rows.first + j * rows.apart;
+        *from = (&from_re[first..first + length], &from_im[first..first + length]);
+    }
+    let (to_re, to_im) = (split::<_, R>(to_re, length), split::<_, R>(to_im, length));
+    let zero = T::splat(simd, T::default());
+    for i in 0..length {
+        let mut values = [(zero, zero); R];
+        for j in 0..READ {
+            values[j] = (from[j].0[i], from[j].1[i]);
+        }
+        let sums = butterfly::<T, S, R, READ>(simd, values);
+        for k in 0..WRITTEN {
+            (to_re[k][i], to_im[k][i]) = if TURNED && k > 0 {
+                product::<T, S>(simd, sums[k], roots[k])
+            } else {
+                sums[k]
+            };
+        }
+    }
+}
+
+/// Splits R parts of a length.
+#[inline(always)]
+fn split<V, const R: usize>(values: &mut [V], length: usize) -> [&mut [V]; 4] {
+    let (first, rest) = values.split_at_mut(length);
+    let (second, rest) = rest.split_at_mut(if R > 1 { length } else { 0 });
+    let (third, rest) = rest.split_at_mut(if R > 2 { length } else { 0 });
+    [
+        first,
+        second,
+        third,
+        rest.split_at_mut(if R > 3 { length } else { 0 }).0,
+    ]
 }
 
 #[inline(always)]
@@ -203,16 +278,25 @@ fn turn_and_add<T: Real, S: Simd>(simd: S, u: Complex<T, S>, factor: T, v: Compl
     )
 }
 
-/// The transform of 2, 3 or 4 numbers.
+/// The transform of 2, 3 or 4 numbers; of 4 perhaps with two that are not 0.
 #[inline(always)]
-fn butterfly<T: Real, S: Simd, const R: usize>(simd: S, v: [Complex<T, S>; R]) -> [Complex<T, S>; R] {
+fn butterfly<T: Real, S: Simd, const R: usize, const READ: usize>(
+    simd: S,
+    v: [Complex<T, S>; R],
+) -> [Complex<T, S>; R] {
     let mut out = v;
-    match R {
-        2 => {
+    match (R, READ) {
+        (4, 2) => {
+            out[0] = add::<T, S>(simd, v[0], v[1]);
+            out[1] = turn_and_add::<T, S>(simd, v[0], T::new(1.0), v[1]);
+            out[2] = subtract::<T, S>(simd, v[0], v[1]);
+            out[3] = turn_and_add::<T, S>(simd, v[0], T::new(-1.0), v[1]);
+        }
+        (2, _) => {
             out[0] = add::<T, S>(simd, v[0], v[1]);
             out[1] = subtract::<T, S>(simd, v[0], v[1]);
         }
-        3 => {
+        (3, _) => {
             let sum = add::<T, S>(simd, v[1], v[2]);
             let difference = subtract::<T, S>(simd, v[1], v[2]);
             let half = T::splat(simd, T::new(0.5));
@@ -248,7 +332,9 @@ mod tests {
             assert_eq!(good_size(size), size);
             let fourier = Fourier::<f64>::new(size);
             let mut rows = Rows::new(size, width);
-            for (i, (re, im)) in rows.re.iter_mut().zip(&mut rows.im).enumerate() {
+            // The first half, of three rows the first two.
+            let filled = size.div_ceil(2) * width;
+            for (i, (re, im)) in rows.re.iter_mut().zip(&mut rows.im).enumerate().take(filled) {
                 (*re, *im) = ((1.7 * i as f64).sin(), (0.3 * (i * i) as f64).cos());
             }
             let given = rows.clone();
@@ -270,7 +356,12 @@ mod tests {
                 }
             }
             fourier.backward(pulp::Scalar, width, &mut rows, &mut scratch);
-            for (now, given) in rows.re.iter().zip(&given.re).chain(rows.im.iter().zip(&given.im)) {
+            let filled = |values: &[f64]| values[..filled].to_vec();
+            let (now, given) = (
+                [&rows.re, &rows.im].map(|v| filled(v)),
+                [&given.re, &given.im].map(|v| filled(v)),
+            );
+            for (now, given) in now.iter().flatten().zip(given.iter().flatten()) {
                 assert!((now / size as f64 - given).abs() < 1e-14 * size as f64);
             }
         }
