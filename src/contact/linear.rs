@@ -76,26 +76,22 @@ impl<E: Engine> LinearSystem<E> {
             }
             let asked = (tolerance * size / left).max(settings.krylov_tolerance) as f32;
             let mut failed = None;
-            gmres.solve(
-                correction,
-                asked,
-                |values, product| {
-                    for (along, value) in along.values_mut().iter_mut().zip(values) {
-                        *along = f64::from(*value);
-                    }
-                    *products += 1;
-                    if let Err(error) = sweep_tangent(at, &Direction::NONE, along, change, image) {
-                        failed = Some(error);
-                    }
-                    for ((product, value), image) in product.iter_mut().zip(values).zip(image.values()) {
-                        *product = (f64::from(*value) - image) as f32;
-                    }
-                },
-                |_| {},
-            );
+            gmres.solve(correction, asked, |values, product| {
+                for (along, value) in along.values_mut().iter_mut().zip(values) {
+                    *along = f64::from(*value);
+                }
+                *products += 1;
+                if let Err(error) = sweep_tangent(at, &Direction::NONE, along, change, image) {
+                    failed = Some(error);
+                }
+                for ((product, value), image) in product.iter_mut().zip(values).zip(image.values()) {
+                    *product = (f64::from(*value) - image) as f32;
+                }
+            });
             if let Some(error) = failed {
                 return Err(error);
             }
+            gmres.solution(correction);
             for (along, correction) in along.values_mut().iter_mut().zip(&*correction) {
                 *along = f64::from(*correction);
             }

@@ -1,5 +1,8 @@
-//! The generalised method of minimal residuals (Saad and Schultz 1986) with a preconditioner from the right, in single
-//! precision: for the corrections of Newton's method, whose residual is computed in double precision.
+//! The generalised method of minimal residuals (Saad and Schultz 1986) in single precision: for the corrections of Newton's method,
+//! whose residual is computed in double precision.
+//!
+//! A preconditioner M from the right is its caller's: with products A M⁻¹ v the method solves for y = M x, and x is the sum of the M⁻¹ v, which the
+//! caller may have kept, with the same shares as y is of the directions v.
 
 use super::single;
 
@@ -13,8 +16,10 @@ pub struct Gmres {
     /// Upper triangle of the rotated Hessenberg matrix, column by column, `iterations` each.
     triangle: Vec<f32>,
     rotations: Vec<(f32, f32)>,
+    /// Rotated right-hand side; after a solve the shares of the directions in the solution.
     rhs: Vec<f32>,
-    work: Vec<f32>,
+    /// Directions of the last solve.
+    done: usize,
 }
 
 /// Result of a solve.
@@ -35,21 +40,15 @@ impl Gmres {
             triangle: vec![0.0; iterations * iterations],
             rotations: vec![(1.0, 0.0); iterations],
             rhs: vec![0.0; iterations + 1],
-            work: vec![0.0; unknowns],
+            done: 0,
         }
     }
 
-    /// Solves to a residual of `tolerance` relative to `values`, the right-hand side, which becomes the solution. `multiply` writes the
-    /// product with a vector, `precondition` solves approximately, in place.
-    pub fn solve(
-        &mut self,
-        values: &mut [f32],
-        tolerance: f32,
-        mut multiply: impl FnMut(&[f32], &mut [f32]),
-        mut precondition: impl FnMut(&mut [f32]),
-    ) -> Solved {
-        let n = values.len();
-        let size = single::norm(values);
+    /// Solves to a residual of `tolerance` relative to the right-hand side `rhs`. `multiply` writes the product with a vector.
+    pub fn solve(&mut self, rhs: &[f32], tolerance: f32, mut multiply: impl FnMut(&[f32], &mut [f32])) -> Solved {
+        let n = rhs.len();
+        self.done = 0;
+        let size = single::norm(rhs);
         if size == 0.0 || !size.is_finite() {
             return Solved {
                 iterations: 0,
@@ -57,7 +56,7 @@ impl Gmres {
             };
         }
         let limit = self.iterations;
-        for (direction, value) in self.basis[..n].iter_mut().zip(values.iter()) {
+        for (direction, value) in self.basis[..n].iter_mut().zip(rhs) {
             *direction = value / size;
         }
         self.rhs[0] = size;
@@ -65,10 +64,7 @@ impl Gmres {
         while done < limit && residual > tolerance * size {
             let (known, new) = self.basis.split_at_mut((done + 1) * n);
             let new = &mut new[..n];
-            let work = &mut self.work[..n];
-            work.copy_from_slice(&known[done * n..]);
-            precondition(work);
-            multiply(work, new);
+            multiply(&known[done * n..], new);
             let column = &mut self.triangle[done * limit..][..limit];
             for (entry, direction) in column.iter_mut().zip(known.chunks_exact(n)) {
                 *entry = single::dot(direction, new);
@@ -98,7 +94,6 @@ impl Gmres {
                 break;
             }
         }
-        // Back substitution; the solution is a sum of preconditioned directions, the preconditioner a linear map of their sum.
         for k in (0..done).rev() {
             let mut value = self.rhs[k];
             for later in k + 1..done {
@@ -106,14 +101,23 @@ impl Gmres {
             }
             self.rhs[k] = value / self.triangle[k * limit + k];
         }
-        values.fill(0.0);
-        for (share, direction) in self.rhs[..done].iter().zip(self.basis.chunks_exact(n)) {
-            single::add_multiple(direction, *share, values);
-        }
-        precondition(values);
+        self.done = done;
         Solved {
             iterations: done,
             residual: residual / size,
+        }
+    }
+
+    /// Shares of the directions, in their order, in the solution of the last solve.
+    pub fn shares(&self) -> &[f32] {
+        &self.rhs[..self.done]
+    }
+
+    /// Writes the solution of the last solve.
+    pub fn solution(&self, values: &mut [f32]) {
+        values.fill(0.0);
+        for (share, direction) in self.shares().iter().zip(self.basis.chunks_exact(values.len())) {
+            single::add_multiple(direction, *share, values);
         }
     }
 }
@@ -145,14 +149,27 @@ mod tests {
         let rhs: Vec<f32> = (0..n).map(|i| (i as f32).cos()).collect();
         let mut counts = Vec::new();
         for preconditioned in [false, true] {
-            let mut x = rhs.clone();
-            let solved = Gmres::new(n, 40).solve(&mut x, 1e-5, multiply, |values| {
-                if preconditioned {
-                    for (i, value) in values.iter_mut().enumerate() {
-                        *value /= 2.0 + 0.1 * i as f32;
-                    }
-                }
+            let mut x = vec![0.0; n];
+            let mut gmres = Gmres::new(n, 40);
+            let mut kept: Vec<Vec<f32>> = Vec::new();
+            let solved = gmres.solve(&rhs, 1e-5, |direction, product| {
+                let diagonal = |i: usize| if preconditioned { 2.0 + 0.1 * i as f32 } else { 1.0 };
+                let corrected: Vec<f32> = direction
+                    .iter()
+                    .enumerate()
+                    .map(|(i, value)| value / diagonal(i))
+                    .collect();
+                multiply(&corrected, product);
+                kept.push(corrected);
             });
+            for (kept, share) in kept.iter().zip(gmres.shares()) {
+                single::add_multiple(kept, *share, &mut x);
+            }
+            if !preconditioned {
+                let mut summed = vec![1.0; n];
+                gmres.solution(&mut summed);
+                assert_eq!(summed, x);
+            }
             let mut product = vec![0.0; n];
             multiply(&x, &mut product);
             let error = product.iter().zip(&rhs).map(|(p, r)| (p - r).abs()).fold(0.0, f32::max);
@@ -164,12 +181,14 @@ mod tests {
 
     #[test]
     fn a_limit_ends_it() {
-        let mut x = vec![1.0; 6];
         let rotate = |x: &[f32], out: &mut [f32]| (0..6).for_each(|i| out[(i + 1) % 6] = x[i] * (1.0 + i as f32));
-        let solved = Gmres::new(6, 3).solve(&mut x, 1e-6, rotate, |_| {});
-        assert_eq!(solved.iterations, 3);
+        let mut gmres = Gmres::new(6, 3);
+        let solved = gmres.solve(&[1.0; 6], 1e-6, rotate);
+        assert_eq!((solved.iterations, gmres.shares().len()), (3, 3));
         assert!(solved.residual > 1e-6);
-        let mut zero = vec![0.0; 6];
-        assert_eq!(Gmres::new(6, 3).solve(&mut zero, 1e-6, rotate, |_| {}).iterations, 0);
+        let mut x = [1.0; 6];
+        assert_eq!(gmres.solve(&[0.0; 6], 1e-6, rotate).iterations, 0);
+        gmres.solution(&mut x);
+        assert_eq!(x, [0.0; 6]);
     }
 }

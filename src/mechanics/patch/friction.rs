@@ -5,6 +5,7 @@
 //! what the leading edge adds to its cells. Residuals are in double precision, corrections in single: a correction is needed
 //! to a few digits only, because the next residual shows what it missed.
 
+mod directions;
 mod on_path;
 mod tangent;
 
@@ -21,6 +22,7 @@ use crate::error::{Error, Result};
 use crate::friction::path::NodeFriction;
 use crate::numerics::gmres::{Gmres, Solved};
 use crate::settings::PatchSettings;
+use directions::Directions;
 use on_path::OnPath;
 
 /// Response of the slip ahead of the cells to the shear.
@@ -77,6 +79,7 @@ pub struct FrictionProblem<'a> {
 pub struct Friction {
     settings: PatchSettings,
     gmres: Gmres,
+    directions: Directions,
     blocks: Blocks,
     factorised: bool,
     /// Shear on the grid that `response` belongs to.
@@ -125,6 +128,7 @@ impl Friction {
         Friction {
             settings,
             gmres: Gmres::new(2 * total, settings.krylov_iterations),
+            directions: Directions::new(grid, settings.krylov_iterations),
             blocks: Blocks::new(cells, total),
             factorised: false,
             answered: double(),
@@ -320,7 +324,6 @@ impl Friction {
                 self.factorised = false;
             }
             let size_before = size;
-            self.work += product;
             self.respond_to_correction(problem, &window, tolerance);
             let mut length = 1.0;
             let mut halvings = 0;
@@ -362,8 +365,8 @@ impl Friction {
         }
     }
 
-    /// Computes the response to the correction: in single precision where its error, added to the response to the shear, is far below the
-    /// tolerance.
+    /// Computes the response to the correction that was solved for last: as the sum of those of the directions, which are in single precision, where its error, added to the
+    /// response to the shear, is far below the tolerance; otherwise as a product in double precision.
     fn respond_to_correction(&mut self, problem: &FrictionProblem, window: &Window, tolerance: f64) {
         let largest = self
             .correction
@@ -371,6 +374,7 @@ impl Friction {
             .flatten()
             .fold(0.0, |m: f64, value| value.abs().max(m));
         if self.settings.single_round_off * largest > tolerance {
+            self.work += work_of_product(problem.transform, window, 2);
             let [x, y] = &mut self.correction_response;
             let load = [&self.correction[0][..], &self.correction[1][..]];
             problem
@@ -378,17 +382,9 @@ impl Friction {
                 .apply(&problem.response.double, window, load, [x, y], &mut self.scratch);
             return;
         }
-        // Outside the contact both are 0.
-        for (single, double) in self.load_single.iter_mut().zip(&self.correction) {
-            for place in problem.contact.places(problem.grid) {
-                single[place] = double[place] as f32;
-            }
-        }
-        let [x, y] = &mut self.response_single;
-        let load = [&self.load_single[0][..], &self.load_single[1][..]];
-        problem
-            .transform
-            .apply_single(&problem.response.single, window, load, [x, y], &mut self.scratch_single);
+        let shares = self.gmres.shares();
+        self.directions
+            .sum_responses(shares, problem.grid, window, &mut self.response_single);
         for (double, single) in self.correction_response.iter_mut().zip(&self.response_single) {
             for strip in window.strips.clone() {
                 let row = problem.grid.row(strip).start;
@@ -484,12 +480,12 @@ impl Friction {
         }
         let Friction {
             gmres,
+            directions,
             blocks,
             rows,
             law,
             step,
             load_single,
-            response_single,
             scratch_single,
             settings,
             on_path,
@@ -500,12 +496,17 @@ impl Friction {
             component.fill(0.0);
         }
         let behind = if problem.response.forward { -1 } else { 1 };
-        let multiply = |x: &[f32], out: &mut [f32]| {
-            let (along, across) = x.split_at(n);
+        let mut number = 0;
+        let multiply = |direction: &[f32], out: &mut [f32]| {
+            let (shear, mut response) = directions.at(number, 2 * n);
+            number += 1;
+            shear.copy_from_slice(direction);
+            blocks.solve(shear);
+            let (along, across) = shear.split_at(n);
             problem.contact.scatter(problem.grid, along, &mut load_single[0]);
             problem.contact.scatter(problem.grid, across, &mut load_single[1]);
             {
-                let [x, y] = &mut *response_single;
+                let [x, y] = &mut response;
                 let load = [&load_single[0][..], &load_single[1][..]];
                 problem
                     .transform
@@ -515,7 +516,7 @@ impl Friction {
             for run in problem.contact.runs() {
                 let (own, places) = (run.indices(), run.places(problem.grid));
                 let next = places.start.wrapping_add_signed(behind);
-                let [x, y] = &*response_single;
+                let [x, y] = &response;
                 let change = RunChange {
                     shear: [&along[own.clone()], &across[own.clone()]],
                     ahead: [&x[places.clone()], &y[places]],
@@ -541,7 +542,9 @@ impl Friction {
                 });
             }
         };
-        let solved = gmres.solve(&mut step[..2 * n], tolerance, multiply, |values| blocks.solve(values));
+        let step = &mut step[..2 * n];
+        let solved = gmres.solve(step, tolerance, multiply);
+        directions.sum_shears(gmres.shares(), step);
         let product = work_of_product(problem.transform, window, 2) + work_of_blocks(problem.contact, 2);
         let orthogonalisation = (2 * n * solved.iterations) as u64;
         self.work += solved.iterations as u64 * (product + orthogonalisation);
