@@ -167,12 +167,12 @@ impl<T: Real> Fourier<T> {
     }
 }
 
-/// What is known of the second half of the rows.
+/// Property of the second half of the rows that saves work.
 #[derive(Clone, Copy, PartialEq)]
 enum Half {
-    /// It is 0 before the transform.
+    /// Zero before the transform.
     Zero,
-    /// It is not needed after the transform.
+    /// Not needed after the transform.
     Unused,
 }
 
