@@ -77,14 +77,24 @@ impl<T: Real> Fourier<T> {
         self.size
     }
 
-    /// Transforms `rows`, each `width` long, a multiple of [`super::real::BLOCK`], of which the second half is 0: it fills up a convolution. `scratch` is as large.
+    /// Transforms `rows`, each `width` long, a multiple of [`super::real::BLOCK`]. The second half of the rows is 0, which fills up
+    /// a convolution; of an odd number the one in the middle belongs to the first half. `scratch` is as large.
     #[inline(always)]
     pub fn forward<S: Simd>(&self, simd: S, width: usize, rows: &mut Rows<T>, scratch: &mut Rows<T>) {
         let (re, im) = (&mut rows.re, &mut rows.im);
+        debug_assert!(
+            [&*re, &*im].iter().all(|rows| {
+                let second = &rows[self.size.div_ceil(2) * width..self.size * width];
+                second.iter().all(|value| *value == T::default())
+            }),
+            "the second half of {} rows is not 0",
+            self.size
+        );
         self.transform(simd, width, Half::Zero, (re, im), (&mut scratch.re, &mut scratch.im));
     }
 
-    /// The first half of the rows of the inverse times P, of three rows the first two: the others of a convolution are of no use, and are not computed.
+    /// Writes the first half of the rows of the inverse times P, as [`Fourier::forward`] counts it. A convolution has no use for
+    /// the second half, which is not computed: it holds whatever was left there.
     #[inline(always)]
     pub fn backward<S: Simd>(&self, simd: S, width: usize, rows: &mut Rows<T>, scratch: &mut Rows<T>) {
         let (re, im) = (&mut rows.re, &mut rows.im);
@@ -106,7 +116,8 @@ impl<T: Real> Fourier<T> {
                 stride,
                 length: stride * vectors,
             };
-            // Half of the rows are the first of two parts, within the first two of three, the first two of four.
+            // The first pass for a factor 4 takes a row from each quarter of the rows, the last pass for a factor R writes a row into each
+            // R-th part: only the first two of four, the first two of three, the first of two concern the first half.
             let zero = half == Half::Zero && stride == 1 && factor == 4;
             let unused = half == Half::Unused && parts == 1;
             {
@@ -203,7 +214,8 @@ struct Butterflies {
     apart: usize,
 }
 
-/// Combines R rows into R rows that follow each other, times the roots if they are not 1. Slices as long as the loop need no test in it.
+/// Combines R rows into R rows that follow each other, and multiplies these by the roots where they are `TURNED`, that is, where the
+/// roots are not all 1. Each row is cut to its length before the loop, which then needs no check of its bounds.
 #[inline(always)]
 fn combine<T: Real, S: Simd, const R: usize, const READ: usize, const WRITTEN: usize, const TURNED: bool>(
     simd: S,
@@ -236,7 +248,7 @@ fn combine<T: Real, S: Simd, const R: usize, const READ: usize, const WRITTEN: u
     }
 }
 
-/// Splits R parts of a length.
+/// Splits off R parts of a length, 4 at most; the other parts are empty.
 #[inline(always)]
 fn split<V, const R: usize>(values: &mut [V], length: usize) -> [&mut [V]; 4] {
     let (first, rest) = values.split_at_mut(length);
@@ -278,7 +290,7 @@ fn turn_and_add<T: Real, S: Simd>(simd: S, u: Complex<T, S>, factor: T, v: Compl
     )
 }
 
-/// The transform of 2, 3 or 4 numbers; of 4 perhaps with two that are not 0.
+/// The transform of 2, 3 or 4 numbers, of which those from number `READ` on are 0.
 #[inline(always)]
 fn butterfly<T: Real, S: Simd, const R: usize, const READ: usize>(
     simd: S,
@@ -332,7 +344,7 @@ mod tests {
             assert_eq!(good_size(size), size);
             let fourier = Fourier::<f64>::new(size);
             let mut rows = Rows::new(size, width);
-            // The first half, of three rows the first two.
+            // The first half of the rows.
             let filled = size.div_ceil(2) * width;
             for (i, (re, im)) in rows.re.iter_mut().zip(&mut rows.im).enumerate().take(filled) {
                 (*re, *im) = ((1.7 * i as f64).sin(), (0.3 * (i * i) as f64).cos());

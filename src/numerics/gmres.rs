@@ -1,8 +1,9 @@
 //! The generalised method of minimal residuals (Saad and Schultz 1986) in single precision: for the corrections of Newton's method,
 //! whose residual is computed in double precision.
 //!
-//! A preconditioner M from the right is its caller's: with products A M⁻¹ v the method solves for y = M x, and x is the sum of the M⁻¹ v, which the
-//! caller may have kept, with the same shares as y is of the directions v.
+//! The method knows of no preconditioner. A caller that has one, M, applies it from the right: in place of A x = b it solves
+//! A M⁻¹ y = b, where x = M⁻¹ y. As y is a sum of the method's directions v, with [`Gmres::shares`], x is the same sum of the M⁻¹ v.
+//! The caller has computed these for its products, and may keep them.
 
 use super::single;
 
@@ -113,7 +114,7 @@ impl Gmres {
         &self.rhs[..self.done]
     }
 
-    /// Writes the solution of the last solve.
+    /// Writes the solution of the last solve, of as many unknowns.
     pub fn solution(&self, values: &mut [f32]) {
         values.fill(0.0);
         for (share, direction) in self.shares().iter().zip(self.basis.chunks_exact(values.len())) {

@@ -91,7 +91,6 @@ pub struct Friction {
     /// Correction of the shear, on the grid.
     correction: [Vec<f64>; 2],
     load_single: [Vec<f32>; 2],
-    response_single: [Vec<f32>; 2],
     scratch: influence::ProductScratch<f64>,
     scratch_single: influence::ProductScratch<f32>,
     /// Linearised law of the cells.
@@ -137,7 +136,6 @@ impl Friction {
             regularised: double(),
             correction: double(),
             load_single: single(),
-            response_single: single(),
             scratch: transform.scratch(),
             scratch_single: transform.scratch(),
             rows: vec![CellLawRow::default(); total],
@@ -285,9 +283,8 @@ impl Friction {
         for changes in [&mut self.correction, &mut self.correction_response] {
             changes.iter_mut().for_each(|component| component.fill(0.0));
         }
-        let product = work_of_product(problem.transform, &window, 2);
         if self.answered != *shear {
-            self.work += product;
+            self.work += work_of_product(problem.transform, &window, 2);
             let [x, y] = &mut self.response;
             let load = [&shear[0][..], &shear[1][..]];
             problem
@@ -365,8 +362,8 @@ impl Friction {
         }
     }
 
-    /// Computes the response to the correction that was solved for last: as the sum of those of the directions, which are in single precision, where its error, added to the
-    /// response to the shear, is far below the tolerance; otherwise as a product in double precision.
+    /// Computes the response to the last correction: as the sum of the responses to its directions where the error of their single
+    /// precision, added to the response to the shear, is far below the tolerance, otherwise as a product in double precision.
     fn respond_to_correction(&mut self, problem: &FrictionProblem, window: &Window, tolerance: f64) {
         let largest = self
             .correction
@@ -382,18 +379,8 @@ impl Friction {
                 .apply(&problem.response.double, window, load, [x, y], &mut self.scratch);
             return;
         }
-        let shares = self.gmres.shares();
         self.directions
-            .sum_responses(shares, problem.grid, window, &mut self.response_single);
-        for (double, single) in self.correction_response.iter_mut().zip(&self.response_single) {
-            for strip in window.strips.clone() {
-                let row = problem.grid.row(strip).start;
-                let read = row + window.read.start..row + window.read.end;
-                for (double, single) in double[read.clone()].iter_mut().zip(&single[read]) {
-                    *double = f64::from(*single);
-                }
-            }
-        }
+            .sum_responses(self.gmres.shares(), problem.grid, window, &mut self.correction_response);
     }
 
     fn largest_residual(&self, n: usize) -> f64 {

@@ -1,14 +1,15 @@
-//! Directions of a correction's Krylov iterations, each a change of the shear with the response of the slip to it. The correction is a sum of them, and its
-//! response the same sum: neither costs a product or a solution with the preconditioner of its own.
+//! The directions in which Krylov's iterations have changed the shear, each with the response of the slip to it.
+//!
+//! The correction of the shear is a sum of these directions, and the response to it the same sum of their responses. So neither takes
+//! another solution with the preconditioner, nor another product.
 
 use crate::body::grid::Grid;
 use crate::body::influence::Window;
 use crate::numerics::single;
-use std::ops::Range;
 
 /// Directions for up to so many iterations, in single precision.
 pub struct Directions {
-    /// Values of a grid.
+    /// Number of values on the grid.
     len: usize,
     /// Changes of the shear of n cells, along x and then along y, one direction after the other, 2n each.
     shears: Vec<f32>,
@@ -26,14 +27,14 @@ impl Directions {
         }
     }
 
-    /// Shear of direction `number`, of so many unknowns, and its response along x and y, to be written.
+    /// Places of direction `number`, to be written: its shear, of so many unknowns, and the response along x and y on the grid.
     pub fn at(&mut self, number: usize, unknowns: usize) -> (&mut [f32], [&mut [f32]; 2]) {
         let shear = &mut self.shears[number * unknowns..][..unknowns];
         let (x, y) = self.responses[2 * number * self.len..][..2 * self.len].split_at_mut(self.len);
         (shear, [x, y])
     }
 
-    /// Writes the sum of the shears with shares in it.
+    /// Writes the sum of the shears, each times its share.
     pub fn sum_shears(&self, shares: &[f32], sum: &mut [f32]) {
         sum.fill(0.0);
         for (share, shear) in shares.iter().zip(self.shears.chunks_exact(sum.len())) {
@@ -41,16 +42,26 @@ impl Directions {
         }
     }
 
-    /// Writes the sum of the responses, where the window reads them. Other values of its strips are of no use.
-    pub fn sum_responses(&self, shares: &[f32], grid: &Grid, window: &Window, sum: &mut [Vec<f32>; 2]) {
-        let rows: Range<usize> = window.strips.start * grid.stride()..window.strips.end * grid.stride();
+    /// Writes the sum of the responses, each times its share, where the window is read.
+    pub fn sum_responses(&self, shares: &[f32], grid: &Grid, window: &Window, sum: &mut [Vec<f64>; 2]) {
         for (component, sum) in sum.iter_mut().enumerate() {
-            let sum = &mut sum[rows.clone()];
-            sum.fill(0.0);
-            let responses = self.responses[component * self.len..].chunks(2 * self.len);
-            for (share, response) in shares.iter().zip(responses) {
-                single::add_multiple(&response[rows.clone()], *share, sum);
+            for strip in window.strips.clone() {
+                let row = grid.row(strip).start;
+                let read = row + window.read.start..row + window.read.end;
+                let sum = &mut sum[read.clone()];
+                sum.fill(0.0);
+                let responses = self.responses[component * self.len..].chunks(2 * self.len);
+                for (share, response) in shares.iter().zip(responses) {
+                    add_multiple(&response[read.clone()], f64::from(*share), sum);
+                }
             }
         }
+    }
+}
+
+/// out += factor x, in double precision.
+fn add_multiple(x: &[f32], factor: f64, out: &mut [f64]) {
+    for (out, x) in out.iter_mut().zip(x) {
+        *out += factor * f64::from(*x);
     }
 }
