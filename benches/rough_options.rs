@@ -1,6 +1,6 @@
 //! Costs of the model's options on the rough track: the median time of a step over that of the plain step, the runs side by side.
 //!
-//! Options are falling friction, its memory, layers, the heat of the wheel and the wear of profiles; besides, a wheel that creeps along, V = 0 to 1 m/s, and one that
+//! Options are falling friction, its memory, layers, the heat of the wheel and the wear of profiles, and of profiles the effects that ask for iterations of a step; besides, a wheel that creeps along, V = 0 to 1 m/s, and one that
 //! stands, over one that rolls, and a window for a larger load. The processor's time of a step of each, by turns of a few steps, so that a machine that
 //! becomes slower makes them all slower. Iterations a step are the same on every machine. `cargo bench --bench rough_options -- profiles` has the contacts alone
 //! whose names begin so.
@@ -127,8 +127,8 @@ fn options(plain: &Parameters, track: &[Inputs]) -> Vec<Setting> {
     ]
 }
 
-/// Profiles that stay new, and profiles that wear.
-fn wear_of_profiles(default: &Parameters, inputs: &[Inputs]) -> Vec<Setting> {
+/// Profiles that stay new, profiles that wear, and new ones with one effect alone of those that couple heat and wear with the mechanics.
+fn options_of_profiles(default: &Parameters, inputs: &[Inputs]) -> Vec<Setting> {
     let plain = Parameters {
         contact_model: ContactModel::Profiles,
         ..braking::patch_parameters(default.patch_nodes, default.patch_strips)
@@ -138,6 +138,24 @@ fn wear_of_profiles(default: &Parameters, inputs: &[Inputs]) -> Vec<Setting> {
         rail_profile_wear: ProfileWear::On,
         wheel_wear_coefficient: plain.wear_coefficient,
         ..plain.clone()
+    };
+    let uncoupled = Parameters {
+        friction_hot: plain.friction_cold,
+        thermal_expansion: 0.0,
+        wear_coefficient: 0.0,
+        ..plain.clone()
+    };
+    let friction = Parameters {
+        friction_hot: plain.friction_hot,
+        ..uncoupled.clone()
+    };
+    let expansion = Parameters {
+        thermal_expansion: plain.thermal_expansion,
+        ..uncoupled.clone()
+    };
+    let wear = Parameters {
+        wear_coefficient: plain.wear_coefficient,
+        ..uncoupled.clone()
     };
     let option = |name, asked, parameters| Setting {
         name,
@@ -157,6 +175,10 @@ fn wear_of_profiles(default: &Parameters, inputs: &[Inputs]) -> Vec<Setting> {
                 ..wearing
             },
         ),
+        option("no effects", f64::INFINITY, uncoupled),
+        option("friction by temperature alone", f64::INFINITY, friction),
+        option("thermal expansion alone", f64::INFINITY, expansion),
+        option("wear alone", f64::INFINITY, wear),
     ]
 }
 
@@ -223,7 +245,7 @@ fn compare(contact: &str, options: &[Setting]) {
         }
     }
     println!(
-        "{contact}: {steps} steps of 1 ms on a rough track, by turns of {TURN}; times in us, iterations a step\n{:>28} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8}",
+        "{contact}: {steps} steps of 1 ms on a rough track, by turns of {TURN}; times in us, iterations a step\n{:>29} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8}",
         "", "median", "99.9 %", "worst", "/ plain", "sweeps", "Newton", "Krylov", "factors", "CG"
     );
     let plain = runs[0].median();
@@ -232,7 +254,7 @@ fn compare(contact: &str, options: &[Setting]) {
         let after = run.simulation.workspace.iterations();
         let per_step = |count: fn(&Iterations) -> u64| (count(&after) - count(&run.before)) as f64 / steps as f64;
         println!(
-            "{:>28} {:>8.1} {:>8.1} {:>8.1} {:>8.3} {:>8.2} {:>8.2} {:>8.1} {:>8.2} {:>8.1}",
+            "{:>29} {:>8.1} {:>8.1} {:>8.1} {:>8.3} {:>8.2} {:>8.2} {:>8.1} {:>8.2} {:>8.1}",
             run.setting.name,
             times[steps / 2],
             times[((steps - 1) as f64 * 0.999) as usize],
@@ -273,7 +295,7 @@ fn main() {
         let contact = format!("profiles, {name}");
         if is_asked(&contact) {
             let inputs = track::on_profiles(&track, displacement);
-            compare(&contact, &wear_of_profiles(&default, &inputs));
+            compare(&contact, &options_of_profiles(&default, &inputs));
         }
     }
     for (nodes, strips) in [(8, 8), (24, 15), (default.patch_nodes, default.patch_strips)] {

@@ -2,9 +2,10 @@
 
     .venv/bin/python tools/speed.py BEFORE.fmu AFTER.fmu
 
-The braking manoeuvre of examples/braking.csv in steps of 1 ms, for the line and the patch. The two take turns of a few
-steps, so that a change of the processor's clock meets both; processor time of the thread, without setting the inputs.
-Printed are the medians, the times that one step in a hundred exceeds, the start of an instance, and their ratios.
+Two manoeuvres in steps of 1 ms: braking (examples/braking.csv) and, with --rough, the rough track of the benchmark
+rough_track, which has the grid `fast` and profiles besides line and patch. The two take turns of a few steps, so that a
+change of the processor's clock meets both; processor time of the thread, without setting the inputs. Printed are the
+medians, the times that one step in a hundred exceeds, the start of an instance, and their ratios.
 """
 
 import argparse
@@ -17,20 +18,56 @@ import numpy as np
 from bits import Component
 from fmpy import extract, read_model_description
 
-TABLE = Path(__file__).resolve().parent.parent / "examples" / "braking.csv"
+ROOT = Path(__file__).resolve().parent.parent
 STEP = 1e-3
 TURN = 20
 SLIP_FROM_SPEEDS = 2
+LINE, PATCH, PROFILES = 1, 2, 3
+FAST_GRID = {"contact_model": PATCH, "patch_nodes": 8, "patch_strips": 8}
+# As benches/track/mod.rs has it: part of the track's spin that profiles have by the inclination of the contact, 1/m.
+INCLINED = 0.1
 
 
-def inputs_at(times):
-    """Return the inputs of the manoeuvre at the given times, a dictionary each."""
-    with TABLE.open() as file:
+def rows_of(table):
+    """Return the columns of a table of inputs."""
+    with (ROOT / table).open() as file:
         rows = list(csv.DictReader(line for line in file if not line.startswith("#")))
-    table = {name: np.array([float(row[name]) for row in rows]) for name in rows[0]}
-    known = table.pop("time")
-    columns = {name: np.interp(times, known, values) for name, values in table.items()}
-    return [dict(zip(columns, values, strict=True)) for values in zip(*columns.values(), strict=True)]
+    return {name: np.array([float(row[name]) for row in rows]) for name in rows[0]}
+
+
+def inputs_at(table, times):
+    """Return the inputs of the manoeuvre at the given times, a column each."""
+    columns = rows_of(table)
+    known = columns.pop("time")
+    return {name: np.interp(times, known, values) for name, values in columns.items()}
+
+
+def on_profiles(inputs, displacement):
+    """Return the inputs for a wheelset that is displaced to the left, with the same creepages."""
+    inclined = INCLINED * inputs["vehicle_speed"]
+    across = {"lateral_displacement": np.full_like(inclined, displacement), "yaw_rate": inputs["spin_rate"] - inclined}
+    return {**inputs, **across, "spin_rate": np.zeros_like(inclined)}
+
+
+def straight(inputs):
+    """Return the inputs without motion across the rail, which a line does not have."""
+    return {name: np.zeros_like(v) if name in ("lateral_speed", "spin_rate") else v for name, v in inputs.items()}
+
+
+def runs(rough, steps):
+    """Return name, parameters and inputs of each run; a patch takes a third of the steps of the line."""
+    if not rough:
+        inputs = inputs_at("examples/braking.csv", STEP * np.arange(steps))
+        fewer = {name: values[: steps // 3] for name, values in inputs.items()}
+        return [("line", {"contact_model": LINE}, inputs), ("patch", {"contact_model": PATCH}, fewer)]
+    inputs = inputs_at("benches/rough_track.csv", STEP * np.arange(steps))
+    return [
+        ("line", {"contact_model": LINE}, straight(inputs)),
+        ("patch", {"contact_model": PATCH}, inputs),
+        ("8 x 8", FAST_GRID, inputs),
+        ("tread", {"contact_model": PROFILES}, on_profiles(inputs, 0.0)),
+        ("two", {"contact_model": PROFILES}, on_profiles(inputs, 5e-3)),
+    ]
 
 
 def timed(call, *arguments, **keywords):
@@ -40,10 +77,11 @@ def timed(call, *arguments, **keywords):
     return result, 1e-3 * (time.thread_time_ns() - start)
 
 
-def times_of(folders, descriptions, model, steps):
+def times_of(folders, descriptions, parameters, columns):
     """Return the times of the starts, and of all steps, of both components."""
-    inputs = inputs_at(STEP * np.arange(steps))
-    parameters = {"slip_source": SLIP_FROM_SPEEDS, "contact_model": model}
+    inputs = [dict(zip(columns, values, strict=True)) for values in zip(*columns.values(), strict=True)]
+    steps = len(inputs)
+    parameters = {"slip_source": SLIP_FROM_SPEEDS, **parameters}
     starts, components = [], []
     for folder, description in zip(folders, descriptions, strict=True):
         component, start = timed(Component, folder, description, parameters, inputs[0])
@@ -66,14 +104,15 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("before", type=Path)
     parser.add_argument("after", type=Path)
-    parser.add_argument("--steps", type=int, default=3000, help="steps of the line; a patch takes a third")
+    parser.add_argument("--steps", type=int, default=3000, help="steps of the line; when braking, a patch takes a third")
+    parser.add_argument("--rough", action="store_true", help="the rough track in place of braking")
     arguments = parser.parse_args()
     archives = [str(arguments.before), str(arguments.after)]
     descriptions = [read_model_description(archive) for archive in archives]
     folders = [extract(archive) for archive in archives]
     try:
-        for name, model, steps in (("line", 1, arguments.steps), ("patch", 2, arguments.steps // 3)):
-            starts, times = times_of(folders, descriptions, model, steps)
+        for name, parameters, inputs in runs(arguments.rough, arguments.steps):
+            starts, times = times_of(folders, descriptions, parameters, inputs)
             rows = {"median step": np.median(times, axis=1), "99 %": np.quantile(times, 0.99, axis=1), "start": starts}
             for row, (before, after) in rows.items():
                 print(f"{name:6}{row:12}{before:10.1f} µs{after:10.1f} µs   ratio {after / before:.3f}")
