@@ -104,7 +104,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("before", type=Path)
     parser.add_argument("after", type=Path)
-    parser.add_argument("--steps", type=int, default=3000, help="steps of the line; when braking, a patch takes a third")
+    parser.add_argument("--steps", type=int, default=3000, help="steps of the line; braking, a patch takes a third")
     parser.add_argument("--rough", action="store_true", help="the rough track in place of braking")
     arguments = parser.parse_args()
     archives = [str(arguments.before), str(arguments.after)]
