@@ -52,8 +52,8 @@ pub struct PatchSettings {
     pub reduction: f64,
     /// Factor on the tolerance up to which it is.
     pub slack: f64,
-    /// Error of a product in single precision, with its rounding in the sums of many Newton steps: where it is below the tolerance, the
-    /// response to a correction is such a product.
+    /// Error of products in single precision, with its rounding in the sums of many Newton steps: where it is below the tolerance, the
+    /// response to a correction is the sum of the responses to its Krylov directions, which are such products.
     pub single_round_off: f64,
     /// Tolerance of the pressure from which on the products of conjugate gradients are in single precision.
     pub single_tolerance: f64,

@@ -249,3 +249,29 @@ fn every_cell_obeys_the_regularised_law() {
         }
     }
 }
+
+/// A response to a correction that is a product in double precision counts as one more product, one that is a sum as none.
+#[test]
+fn a_product_for_the_response_to_a_correction_is_work() {
+    let case = Case::new(false, true, [0.1, 0.05], 0.0);
+    // Far above the rounding of single precision: either way the Newton steps are the same.
+    let problem = FrictionProblem {
+        tolerance: 1e-3,
+        ..case.problem(0.0)
+    };
+    let [by_sums, by_products] = [0.0, f64::INFINITY].map(|single_round_off| {
+        let settings = PatchSettings {
+            single_round_off,
+            ..Settings::default().patch
+        };
+        let mut friction = Friction::new(&case.grid, &case.transform, settings);
+        let mut shear = [vec![0.0; case.grid.len()], vec![0.0; case.grid.len()]];
+        friction.solve(&problem, &mut shear).unwrap();
+        (friction.iterations(), friction.work())
+    });
+    assert_eq!(by_sums.0, by_products.0);
+    let product = work_of_product(&case.transform, &case.contact.window(&case.grid, 1), 2);
+    let newton_steps = by_sums.0[0];
+    assert!(newton_steps > 0);
+    assert_eq!(by_products.1 - by_sums.1, newton_steps * product);
+}
