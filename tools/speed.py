@@ -39,6 +39,8 @@ def inputs_at(table, times):
     """Return the inputs of the manoeuvre at the given times, a column each."""
     columns = rows_of(table)
     known = columns.pop("time")
+    if times[-1] > known[-1]:
+        raise SystemExit(f"--steps {len(times)}: {table} is {known[-1]:g} s long, {known[-1] / STEP:.0f} steps at most")
     return {name: np.interp(times, known, values) for name, values in columns.items()}
 
 
