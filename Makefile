@@ -91,10 +91,10 @@ hosts: $(VENV)/ready
 
 # ---- the component ------------------------------------------------------------------------------------------------
 
-# Both at once, so that the packages that they share are compiled once.
+# Both at once, so that the packages that they share are compiled once; `make test` compiles the tests beside them.
 library: $(VENV)/build
 	$(call say,Shared library and command line)
-	@$(CARGO) library
+	@$(CARGO) library $(BESIDE_THE_LIBRARY)
 
 command: library
 
@@ -195,9 +195,10 @@ sweep-scaling: couplings-set-up
 # ---- checks -------------------------------------------------------------------------------------------------------
 
 # First what the checks need, compiled and downloaded side by side, and what can be checked without it; then the checks that
-# compile or use it, each with its output in one piece. These take what is built for granted (-o): cargo has locked its folder.
+# use it, each with its output in one piece. These take what is built for granted (-o). The tests are compiled with the
+# library, as one core would wait for it otherwise; the lints, which compile for themselves, come last.
 test:
-	+@$(BESIDE) fmu fmu3 packages lint-sources
+	+@$(BESIDE) BESIDE_THE_LIBRARY=--tests fmu fmu3 packages lint-sources
 	$(call say,Rust tests - Python tests - lints: each is printed as it ends)
 	+@$(BESIDE) -o library -o fmu -o fmu3 -o packages --output-sync=target --keep-going rust-test python-test lint-compiled
 	$(call say,All checks passed)

@@ -1,6 +1,6 @@
 """Call cargo so that the library of the FMU, the command line and the tests share everything that is compiled.
 
-    tools/cargo.py library              the shared library and the command line
+    tools/cargo.py library              the shared library and the command line; with --tests the tests beside them
     tools/cargo.py test --no-fail-fast  any other command of cargo, with its options
 
 On x86-64 Linux all is linked by zig against the symbols of an old glibc, so that the library loads on every
@@ -84,9 +84,9 @@ def call(command, options, portable, target, glibc):
     return subprocess.run([*line, *flags, *options], cwd=REPOSITORY).returncode
 
 
-def library(portable, target, glibc):
-    """Build the library and the command line; return cargo's exit status."""
-    code = call("build", ["--lib", "--bin", "wheelrail"], portable, target, glibc)
+def library(options, portable, target, glibc):
+    """Build the library and the command line, and what the options add; return cargo's exit status."""
+    code = call("build", ["--lib", "--bin", "wheelrail", *options], portable, target, glibc)
     if code == 0:
         folder = TARGET / target / "release" if portable else TARGET / "release"
         # Copies that no other build writes to; replaced, not written into: they may be in use.
@@ -124,7 +124,8 @@ def main():
         print(f"WARNING: not the portable build: {reason}.", file=sys.stderr)
         print("WARNING: this library loads only where the C library is as new as here.", file=sys.stderr)
     where = (reason is None, given.target, given.glibc)
-    sys.exit(library(*where) if given.command == "library" else call(given.command, given.options, *where))
+    code = library(given.options, *where) if given.command == "library" else call(given.command, given.options, *where)
+    sys.exit(code)
 
 
 if __name__ == "__main__":
