@@ -196,7 +196,7 @@ sweep-scaling: couplings-set-up
 
 # First what the checks need, compiled and downloaded side by side, and what can be checked without it; then the checks that
 # use it, each with its output in one piece. These take what is built for granted (-o). The tests are compiled with the
-# library, as one core would wait for it otherwise; the lints, which compile for themselves, come last.
+# library, as one core would wait for it otherwise.
 test:
 	+@$(BESIDE) BESIDE_THE_LIBRARY=--tests fmu fmu3 packages lint-sources
 	$(call say,Rust tests - Python tests - lints: each is printed as it ends)

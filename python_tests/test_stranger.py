@@ -41,10 +41,11 @@ make() {
   done
 }
 pip() {
-  # What a wheel needs is fetched by uv, in a fifth of pip's time; pip installs the wheel, and what uv could not.
+  # The packages that a wheel needs are fetched by uv, in a fifth of pip's time. uv installs the wheel as well, which is
+  # taken off again: pip installs it, and all that uv could not.
   case $2 in *.whl)
     uv() { "$TESTING" -m uv pip "$@" --quiet --python environment; }
-    uv install "$2" && uv uninstall wheelrail || true ;;
+    if uv install "$2"; then uv uninstall wheelrail; fi ;;
   esac
   command pip "$@"
 }

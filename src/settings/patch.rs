@@ -52,8 +52,8 @@ pub struct PatchSettings {
     pub reduction: f64,
     /// Factor on the tolerance up to which it is.
     pub slack: f64,
-    /// Error of products in single precision, with its rounding in the sums of many Newton steps: where it is below the tolerance, the
-    /// response to a correction is the sum of the responses to its Krylov directions, which are such products.
+    /// Relative error of products in single precision, with its rounding in the sums of many Newton steps. Where this share of a
+    /// correction is below the tolerance, the response to it is the sum of the responses to its Krylov directions, which are such products.
     pub single_round_off: f64,
     /// Tolerance of the pressure from which on the products of conjugate gradients are in single precision.
     pub single_tolerance: f64,
