@@ -21,7 +21,7 @@ from fmpy import extract, read_model_description
 ROOT = Path(__file__).resolve().parent.parent
 STEP = 1e-3
 TURN = 20
-# A patch in the braking takes a third of the steps: one.
+# With fewer, a patch in the braking, which takes a third of them, would have none.
 LEAST_STEPS = 3
 # Starts by turns, each alone in memory: the second of two instances that stay takes a quarter longer than the first.
 STARTS = 4
