@@ -79,6 +79,13 @@ impl Window {
             read: 0..grid.cells,
         }
     }
+
+    /// Places on the grid of the cells that are read, strip by strip.
+    pub fn rows(&self, grid: &Grid) -> impl Iterator<Item = Range<usize>> {
+        let (stride, read) = (grid.stride(), self.read.clone());
+        let strips = self.strips.clone();
+        strips.map(move |strip| strip * stride + read.start..strip * stride + read.end)
+    }
 }
 
 impl Transform {

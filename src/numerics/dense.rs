@@ -127,19 +127,73 @@ fn add_columns(fma: MultiplyAdd, columns: &[f64], x: &[f64], factor: f64, out: &
     fma.add_quad([column(0), column(1), column(2), column(3)], x.map(|x| factor * x), out);
 }
 
-/// [`MultiplyAdd::add_multiple`] without the run-time choice of instructions, for code outside the hot loops.
+/// Adds a multiple: `out += factor · x`, multiplied and added in two instructions on every machine.
 pub fn add_multiple(x: &[f64], factor: f64, out: &mut [f64]) {
-    MultiplyAdd::SEPARATE.add_multiple(x, factor, out);
+    vectorised(
+        #[inline(always)]
+        |_| MultiplyAdd::SEPARATE.add_multiple(x, factor, out),
+    );
 }
 
-/// [`MultiplyAdd::dot`] without the run-time choice of instructions, for code outside the hot loops.
+/// Scalar product Σ x y, multiplied and added in two instructions on every machine.
 pub fn dot(x: &[f64], y: &[f64]) -> f64 {
-    MultiplyAdd::SEPARATE.dot(x, y)
+    vectorised(
+        #[inline(always)]
+        |_| MultiplyAdd::SEPARATE.dot(x, y),
+    )
 }
 
-/// Largest magnitude.
+/// Sum, in [`LANES`] interleaved partial sums.
+pub fn sum(values: &[f64]) -> f64 {
+    vectorised(
+        #[inline(always)]
+        |_| {
+            let mut sums = [0.0; LANES];
+            let (blocks, rest) = values.as_chunks::<LANES>();
+            for block in blocks {
+                for lane in 0..LANES {
+                    sums[lane] += block[lane];
+                }
+            }
+            rest.iter().sum::<f64>() + sums.iter().sum::<f64>()
+        },
+    )
+}
+
+/// Whether all values are the same; those that are not numbers are not.
+pub fn same(x: &[f64], y: &[f64]) -> bool {
+    vectorised(
+        #[inline(always)]
+        |_| x.len() == y.len() && x.iter().zip(y).fold(true, |same, (x, y)| same & (x == y)),
+    )
+}
+
+/// The larger of two sizes; one that is not a number does not count.
+#[inline(always)]
+fn larger(size: f64, largest: f64) -> f64 {
+    if size > largest { size } else { largest }
+}
+
+/// Largest magnitude, of [`LANES`] interleaved ones; values that are not numbers do not count.
+#[inline(always)]
+fn largest_kernel(values: &[f64]) -> f64 {
+    let mut sizes = [0.0; LANES];
+    let (blocks, rest) = values.as_chunks::<LANES>();
+    for block in blocks {
+        for lane in 0..LANES {
+            sizes[lane] = larger(block[lane].abs(), sizes[lane]);
+        }
+    }
+    let sizes = sizes.iter().chain(rest);
+    sizes.fold(0.0, |largest, value| larger(value.abs(), largest))
+}
+
+/// Largest magnitude; values that are not numbers do not count.
 pub fn largest(values: &[f64]) -> f64 {
-    values.iter().fold(0.0, |m: f64, v| v.abs().max(m))
+    vectorised(
+        #[inline(always)]
+        |_| largest_kernel(values),
+    )
 }
 
 /// A change relative to a size: 0 without change, infinite where something came of nothing.
@@ -147,9 +201,24 @@ pub fn relative(change: f64, size: f64) -> f64 {
     if change == 0.0 { 0.0 } else { change / size }
 }
 
-/// Largest magnitude of the difference.
+/// Largest magnitude of the difference; values that are not numbers do not count.
 pub fn largest_change(now: &[f64], last: &[f64]) -> f64 {
-    now.iter().zip(last).fold(0.0, |m: f64, (a, b)| (a - b).abs().max(m))
+    vectorised(
+        #[inline(always)]
+        |_| {
+            let mut changes = [0.0; LANES];
+            let (blocks, rest) = now.as_chunks::<LANES>();
+            let (last_blocks, last_rest) = last.as_chunks::<LANES>();
+            for (now, last) in blocks.iter().zip(last_blocks) {
+                for lane in 0..LANES {
+                    changes[lane] = larger((now[lane] - last[lane]).abs(), changes[lane]);
+                }
+            }
+            let rest = rest.iter().zip(last_rest).map(|(now, last)| (now - last).abs());
+            let changes = changes.into_iter().chain(rest);
+            changes.fold(0.0, |largest, change| larger(change, largest))
+        },
+    )
 }
 
 /// Multiplies: `out = A x` for the n × n matrix in `a`, skipping where `x` is zero.
@@ -219,15 +288,7 @@ fn lu_kernel(fma: MultiplyAdd, a: &mut [f64], n: usize, pivots: &mut [usize]) ->
 /// The first of the largest magnitudes; 0 where the first value is not a number.
 #[inline(always)]
 fn position_of_largest(values: &[f64]) -> usize {
-    let mut sizes = [0.0; LANES];
-    let (blocks, rest) = values.as_chunks::<LANES>();
-    for block in blocks {
-        for lane in 0..LANES {
-            let size = block[lane].abs();
-            sizes[lane] = if size > sizes[lane] { size } else { sizes[lane] };
-        }
-    }
-    let size = largest(&sizes).max(largest(rest));
+    let size = largest_kernel(values);
     values.iter().position(|value| value.abs() == size).unwrap_or(0)
 }
 

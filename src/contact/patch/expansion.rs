@@ -9,7 +9,7 @@ use crate::body::grid::Grid;
 use crate::body::half_plane::HalfPlane;
 use crate::body::half_space::{Kernel, Rectangle, X_OVER_R3, Y_OVER_R3};
 use crate::body::influence::{self, Tables, Transform, Window};
-use crate::numerics::dense::{add_multiple, largest};
+use crate::numerics::dense::{self, QUAD, largest};
 use crate::parameters::Parameters;
 use crate::transport::strips::Side;
 use std::f64::consts::PI;
@@ -87,11 +87,17 @@ impl Expansion {
         if self.bulge == 0.0 || largest(upward) == 0.0 {
             return false;
         }
-        for (strip, upward) in upward.chunks_exact(grid.cells).enumerate() {
-            for (content, upward) in buffers.content[grid.row(strip)].iter_mut().zip(upward) {
-                *content = upward / self.bulge;
-            }
-        }
+        let (content, bulge) = (&mut buffers.content, self.bulge);
+        dense::vectorised(
+            #[inline(always)]
+            |_| {
+                for (strip, upward) in upward.chunks_exact(grid.cells).enumerate() {
+                    for (content, upward) in content[grid.row(strip)].iter_mut().zip(upward) {
+                        *content = upward / bulge;
+                    }
+                }
+            },
+        );
         let [x, y] = &mut buffers.displacement;
         transform.apply(
             &self.cells,
@@ -101,25 +107,35 @@ impl Expansion {
             &mut buffers.products,
         );
         for (side, end) in [(Side::Left, 0), (Side::Right, grid.cells - 1)] {
-            let [along, across] = &self.outside[side as usize];
-            for hot in 0..grid.strips {
-                let content = buffers.content[grid.place(hot, end)];
-                if content == 0.0 {
-                    continue;
-                }
-                for strip in 0..grid.strips {
-                    let (kernel, row) = (grid.row(strip.abs_diff(hot)), grid.row(strip));
-                    // u_y is odd across the strips.
-                    let sideways = if strip >= hot { content } else { -content };
-                    add_multiple(
-                        &along[kernel.clone()],
-                        content,
-                        &mut buffers.displacement[0][row.clone()],
-                    );
-                    add_multiple(&across[kernel], sideways, &mut buffers.displacement[1][row]);
-                }
+            let content = |strip: usize| buffers.content[grid.place(strip, end)];
+            if (0..grid.strips).any(|strip| content(strip) != 0.0) {
+                self.add_outside(grid, side, content, &mut buffers.displacement);
             }
         }
         true
+    }
+
+    /// Adds the displacement u by the heat of the rail on one side of the window, where each strip holds what `content` says.
+    fn add_outside(&self, grid: &Grid, side: Side, content: impl Fn(usize) -> f64, displacement: &mut [Vec<f64>; 2]) {
+        let [along, across] = &self.outside[side as usize];
+        let [x, y] = displacement;
+        dense::vectorised(
+            #[inline(always)]
+            |arithmetic| {
+                for strip in 0..grid.strips {
+                    let (x, y) = (&mut x[grid.row(strip)], &mut y[grid.row(strip)]);
+                    for first in (0..grid.strips).step_by(QUAD) {
+                        // The last of them may be fewer: the others hold nothing.
+                        let hot: [usize; QUAD] = std::array::from_fn(|k| (first + k).min(grid.strips - 1));
+                        let own = std::array::from_fn(|k| if first + k < grid.strips { content(hot[k]) } else { 0.0 });
+                        let kernels = hot.map(|hot| grid.row(strip.abs_diff(hot)));
+                        arithmetic.add_quad(kernels.clone().map(|row| &along[row]), own, x);
+                        // u_y is odd across the strips.
+                        let sideways = std::array::from_fn(|k| if strip >= hot[k] { own[k] } else { -own[k] });
+                        arithmetic.add_quad(kernels.map(|row| &across[row]), sideways, y);
+                    }
+                }
+            },
+        );
     }
 }

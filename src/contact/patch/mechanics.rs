@@ -20,7 +20,7 @@ use crate::mechanics::normal_tangential::TractionChange;
 use crate::mechanics::patch::contact::Contact;
 use crate::mechanics::patch::friction::{FrictionProblem, PathOfCells};
 use crate::mechanics::patch::normal::PatchNormalProblem;
-use crate::numerics::dense::{add_multiple, largest, largest_change};
+use crate::numerics::dense::{self, add_multiple, largest, largest_change};
 
 /// Adapts the response of the slip to speed and step.
 pub fn respond(problem: &PatchProblem, weights: SlipWeights, strips: usize, solvers: &mut PatchSolvers) {
@@ -112,13 +112,21 @@ pub fn solve_normal(
 ) -> Result<bool> {
     let operators = problem.operators;
     let grid = &operators.grid;
-    for strip in 0..grid.strips {
-        for cell in 0..grid.cells {
-            let (place, index) = (grid.place(strip, cell), strip * grid.cells + cell);
-            solvers.gap[place] =
-                solvers.undeformed.gap[place] + interface.gap()[index] - interface.displacement()[index];
-        }
-    }
+    let (gap, undeformed) = (&mut solvers.gap, &solvers.undeformed.gap);
+    dense::vectorised(
+        #[inline(always)]
+        |_| {
+            let worn = interface.gap().chunks_exact(grid.cells);
+            let surfaces = worn.zip(interface.displacement().chunks_exact(grid.cells));
+            for (strip, (worn, raised)) in surfaces.take(grid.strips).enumerate() {
+                let row = grid.row(strip);
+                let surfaces = undeformed[row.clone()].iter().zip(worn).zip(raised);
+                for (gap, ((undeformed, worn), raised)) in gap[row].iter_mut().zip(surfaces) {
+                    *gap = undeformed + worn - raised;
+                }
+            }
+        },
+    );
     std::mem::swap(&mut solvers.contact, &mut solvers.contact_before);
     let normal_problem = PatchNormalProblem {
         tolerance: tolerance.max(problem.settings.patch.least_tolerance),
@@ -271,13 +279,16 @@ fn keep_within_bounds(grid: &Grid, contact: &Contact, bound: &[f64], fields: &mu
     on_grid.fill(0.0);
     contact.scatter(grid, bound, on_grid);
     let [x, y] = &mut fields.shear;
-    for ((x, y), &bound) in x.iter_mut().zip(y).zip(&*on_grid) {
-        let length = coulomb::magnitude([*x, *y]);
-        if length > bound {
-            let ratio = bound / length;
-            (*x, *y) = (ratio * *x, ratio * *y);
-        }
-    }
+    dense::vectorised(
+        #[inline(always)]
+        |_| {
+            for ((x, y), &bound) in x.iter_mut().zip(y).zip(&*on_grid) {
+                let length = coulomb::magnitude([*x, *y]);
+                let ratio = if length > bound { bound / length } else { 1.0 };
+                (*x, *y) = (ratio * *x, ratio * *y);
+            }
+        },
+    );
     on_grid.fill(0.0);
 }
 
@@ -293,17 +304,26 @@ fn free_slip(
     let grid = &operators.grid;
     given_displacement(problem, interface, fields, solvers);
     let ahead: isize = if problem.is_forward() { 1 } else { -1 };
-    for strip in 0..grid.strips {
-        for cell in problem.cells_with_next() {
-            let place = grid.place(strip, cell);
-            let next = place.wrapping_add_signed(ahead);
-            for component in 0..2 {
-                let (given, before) = (&solvers.given[component], &solvers.before[component]);
-                let rigid = solvers.undeformed.rigid_slip[component][place];
-                solvers.free_slip[component][place] =
-                    weights.slip(rigid, [given[place], given[next]], [before[place], before[next]]);
-            }
-        }
+    for component in 0..2 {
+        let slip = &mut solvers.free_slip[component];
+        let (given, before) = (&solvers.given[component], &solvers.before[component]);
+        let rigid = &solvers.undeformed.rigid_slip[component];
+        dense::vectorised(
+            #[inline(always)]
+            |_| {
+                for strip in 0..grid.strips {
+                    let cells = problem.cells_with_next();
+                    let row = grid.place(strip, cells.start)..grid.place(strip, cells.end);
+                    let next = row.start.wrapping_add_signed(ahead)..row.end.wrapping_add_signed(ahead);
+                    let given = given[row.clone()].iter().zip(&given[next.clone()]);
+                    let before = before[row.clone()].iter().zip(&before[next]);
+                    let displaced = given.zip(before).zip(&rigid[row.clone()]);
+                    for (slip, (((given, given_next), (before, before_next)), rigid)) in slip[row].iter_mut().zip(displaced) {
+                        *slip = weights.slip(*rigid, [*given, *given_next], [*before, *before_next]);
+                    }
+                }
+            },
+        );
     }
 }
 
@@ -389,21 +409,26 @@ fn mean_slip(problem: &PatchProblem, fields: &mut PatchFields, solvers: &mut Pat
     for component in &mut fields.slip {
         component.fill(0.0);
     }
-    let free = &solvers.free_slip;
-    for run in solvers.contact.runs() {
-        for (index, place) in run.indices().zip(run.places(grid)) {
-            let at = |place: usize| {
-                let response = if moves {
-                    solvers.friction.response_at(place)
-                } else {
-                    [0.0; 2]
-                };
-                [free[0][place] + response[0], free[1][place] + response[1]]
-            };
-            let (ahead, behind) = (at(place), at(place.wrapping_add_signed(behind)));
-            for component in 0..2 {
-                let edge = solvers.edge[index][component] * fields.shear[component][place];
-                fields.slip[component][place] = 0.5 * (ahead[component] + edge + behind[component]);
+    for component in 0..2 {
+        let free = &solvers.free_slip[component];
+        let response = if moves {
+            &solvers.friction.response()[component]
+        } else {
+            &solvers.nothing
+        };
+        let shear = &fields.shear[component];
+        let slip = &mut fields.slip[component];
+        for run in solvers.contact.runs() {
+            let places = run.places(grid);
+            let at_next = places.start.wrapping_add_signed(behind)..places.end.wrapping_add_signed(behind);
+            let here = free[places.clone()].iter().zip(&response[places.clone()]);
+            let next = free[at_next.clone()].iter().zip(&response[at_next]);
+            let cells = here.zip(next).zip(&shear[places.clone()]).zip(&solvers.edge[run.indices()]);
+            for (slip, ((((free, response), (next, response_next)), shear), edge)) in
+                slip[places].iter_mut().zip(cells)
+            {
+                let (ahead, behind) = (free + response, next + response_next);
+                *slip = 0.5 * (ahead + edge[component] * shear + behind);
             }
         }
     }

@@ -303,13 +303,12 @@ impl PatchTangent {
         for run in self.point.contact.runs() {
             for (index, place) in run.indices().zip(run.places(grid)) {
                 let last = place.wrapping_add_signed(behind);
-                let (ahead, last_response) = (self.friction.response_at(place), self.friction.response_at(last));
                 for component in 0..2 {
-                    let free = &self.free_slip[component];
+                    let (free, response) = (&self.free_slip[component], &self.friction.response()[component]);
                     let edge = self.point.edge[index][component] * tangent.shear[component][place]
                         + self.edge_change[index][component] * fields.shear[component][place];
                     tangent.slip[component][place] =
-                        0.5 * (free[place] + ahead[component] + edge + free[last] + last_response[component]);
+                        0.5 * (free[place] + response[place] + edge + free[last] + response[last]);
                 }
             }
         }

@@ -11,42 +11,59 @@ use super::fields::SurfaceFields;
 use super::operators::SurfaceOperators;
 use super::windows::{Place, WINDOWS};
 use crate::body::grid::Grid;
-use crate::numerics::dense::add_multiple;
+use crate::numerics::dense::{self, LANES, add_multiple};
 
 /// Strips and cells of a block of the source.
 const BLOCK: [usize; 2] = [4, 6];
 /// Strips and cells between the places of the target.
 const STRIDE: [usize; 2] = [4, 6];
 
-/// Resultant of the pressure on a block: force and its first moments about the block's middle, over the unit of pressure.
-#[derive(Debug, Clone, Copy, Default)]
-struct Resultant {
-    /// Force, `m²`.
-    force: f64,
+/// A value of each of [`LANES`] blocks side by side.
+type Lanes = [f64; LANES];
+
+/// Resultants of the pressure on [`LANES`] blocks side by side: forces and their first moments about the blocks' middles, over the unit of
+/// pressure. Those that are not taken have no force and are far away.
+#[derive(Debug, Clone, Copy)]
+struct Resultants {
+    /// Forces, `m²`.
+    force: Lanes,
     /// Moments along and across, `m³`.
-    moments: [f64; 2],
-    /// Place of the middle along the rail and its arc length, `m`.
-    middle: [f64; 2],
+    moments: [Lanes; 2],
+    /// Places of the middles along the rail and their arc lengths, `m`.
+    middle: [Lanes; 2],
 }
 
-impl Resultant {
-    /// ∫ p/r dA at a place, to the first order in the block's size over the distance, which counts as at least so much.
-    fn at(&self, along: f64, across: f64, least: f64) -> f64 {
-        let [x, y] = [along - self.middle[0], across - self.middle[1]];
-        let distance = (x * x + y * y).sqrt().max(least);
-        let [moment_x, moment_y] = self.moments;
-        (self.force + (moment_x * x + moment_y * y) / (distance * distance)) / distance
+impl Resultants {
+    const NONE: Resultants = Resultants {
+        force: [0.0; LANES],
+        moments: [[0.0; LANES]; 2],
+        middle: [[1e9; LANES]; 2],
+    };
+
+    /// Adds ∫ p/r dA of the blocks at a place to their sums, to the first order in the block's size over the distance, which counts as at
+    /// least so much.
+    #[inline(always)]
+    fn add_at(&self, [along, across]: [f64; 2], least: f64, sums: &mut Lanes) {
+        let ([middle_x, middle_y], [moment_x, moment_y]) = (&self.middle, &self.moments);
+        for lane in 0..LANES {
+            let [x, y] = [along - middle_x[lane], across - middle_y[lane]];
+            let inverse = 1.0 / (x * x + y * y).sqrt().max(least);
+            let moments = moment_x[lane] * x + moment_y[lane] * y;
+            sums[lane] += (self.force[lane] + moments * inverse * inverse) * inverse;
+        }
     }
 }
 
 /// Displacement of the windows by each other.
 pub struct Apart {
-    resultants: [Vec<Resultant>; WINDOWS],
+    resultants: [Vec<Resultants>; WINDOWS],
     /// Displacement at the places of the windows by the pressure of the others, scaled.
     places: [Vec<f64>; WINDOWS],
     /// Rows and columns of the places of a window.
     rows: usize,
     columns: usize,
+    /// Displacement at the height of a strip between the rows, one value for each column.
+    line: Vec<f64>,
     /// Displacement by the others on the grid, scaled.
     pub displacement: [Vec<f64>; WINDOWS],
 }
@@ -62,10 +79,11 @@ impl Apart {
         let blocks = grid.strips.div_ceil(BLOCK[0]) * grid.cells.div_ceil(BLOCK[1]);
         let (rows, columns) = (count(grid.strips, STRIDE[0]), count(grid.cells, STRIDE[1]));
         Apart {
-            resultants: std::array::from_fn(|_| Vec::with_capacity(blocks)),
+            resultants: std::array::from_fn(|_| Vec::with_capacity(blocks.div_ceil(LANES))),
             places: std::array::from_fn(|_| vec![0.0; rows * columns]),
             rows,
             columns,
+            line: vec![0.0; columns],
             displacement: std::array::from_fn(|_| vec![0.0; grid.len()]),
         }
     }
@@ -109,13 +127,11 @@ impl Apart {
     /// Displacement by the resultants at a place along the rail and an arc length, `m`.
     pub fn sinking(&self, operators: &SurfaceOperators, [along, across]: [f64; 2]) -> f64 {
         let unit = operators.pair.normal() * operators.shapes[0].scales.pressure;
-        let sum: f64 = self
-            .resultants
-            .iter()
-            .flatten()
-            .map(|from| from.at(along, across, 0.0))
-            .sum();
-        unit * sum
+        let mut sums = [0.0; LANES];
+        for from in self.resultants.iter().flatten() {
+            from.add_at([along, across], f64::MIN_POSITIVE, &mut sums);
+        }
+        unit * sums.iter().sum::<f64>()
     }
 
     /// Computes the displacement of a window by the others. Returns by how much it has changed at most, scaled.
@@ -125,69 +141,107 @@ impl Apart {
         let middle = place.middle_along(grid);
         // Of a point force F, (1 − ν)/(π G) F/r.
         let unit = operators.pair.normal() * patch.scales.pressure / patch.scales.displacement;
-        let mut change = 0.0;
-        for (number, displacement) in self.places[window].iter_mut().enumerate() {
-            let (row, column) = (number / self.columns, number % self.columns);
-            let across = place.arc(grid, row * STRIDE[0]);
-            let along = middle + grid.x(0) + (column * STRIDE[1]) as f64 * grid.length;
-            let others = self.resultants.iter().enumerate().filter(|(other, _)| *other != window);
-            let sum: f64 = others
-                .flat_map(|(_, others)| others)
-                .map(|from| from.at(along, across, 0.5 * grid.breadth))
-                .sum();
-            change = f64::max(change, (unit * sum - *displacement).abs());
-            *displacement = unit * sum;
-        }
+        let (resultants, columns) = (&self.resultants, self.columns);
+        let least = 0.5 * grid.breadth;
+        let places = &mut self.places[window];
+        let change = dense::vectorised(
+            #[inline(always)]
+            |_| {
+                let mut change = 0.0;
+                for (row, places) in places.chunks_exact_mut(columns).enumerate() {
+                    let across = place.arc(grid, row * STRIDE[0]);
+                    for (column, displacement) in places.iter_mut().enumerate() {
+                        let along = middle + grid.x(0) + (column * STRIDE[1]) as f64 * grid.length;
+                        let mut sums = [0.0; LANES];
+                        for (other, others) in resultants.iter().enumerate() {
+                            if other != window {
+                                others
+                                    .iter()
+                                    .for_each(|from| from.add_at([along, across], least, &mut sums));
+                            }
+                        }
+                        let now = unit * sums.iter().sum::<f64>();
+                        change = f64::max(change, (now - *displacement).abs());
+                        *displacement = now;
+                    }
+                }
+                change
+            },
+        );
         self.interpolate(grid, window);
         change
     }
 
     /// Interpolates the displacement of a window between the places.
     fn interpolate(&mut self, grid: &Grid, window: usize) {
-        let (rows, columns, places) = (self.rows, self.columns, &self.places[window]);
-        let at_place = |row: usize, column: usize| places[row * columns + column];
-        for strip in 0..grid.strips {
-            let (row, up) = ((strip / STRIDE[0]).min(rows - 2), strip as f64 / STRIDE[0] as f64);
-            let up = up - row as f64;
-            for (cell, at) in grid.row(strip).enumerate() {
-                let column = (cell / STRIDE[1]).min(columns - 2);
-                let right = cell as f64 / STRIDE[1] as f64 - column as f64;
-                let low = at_place(row, column) + right * (at_place(row, column + 1) - at_place(row, column));
-                let high =
-                    at_place(row + 1, column) + right * (at_place(row + 1, column + 1) - at_place(row + 1, column));
-                self.displacement[window][at] = low + up * (high - low);
-            }
-        }
+        let (rows, columns) = (self.rows, self.columns);
+        let (places, line) = (&self.places[window], &mut self.line);
+        let displacement = &mut self.displacement[window];
+        dense::vectorised(
+            #[inline(always)]
+            |_| {
+                for strip in 0..grid.strips {
+                    let row = (strip / STRIDE[0]).min(rows - 2);
+                    let up = strip as f64 / STRIDE[0] as f64 - row as f64;
+                    let (low, high) = places[row * columns..(row + 2) * columns].split_at(columns);
+                    for ((line, low), high) in line.iter_mut().zip(low).zip(high) {
+                        *line = low + up * (high - low);
+                    }
+                    let stretches = displacement[grid.row(strip)].chunks_mut(STRIDE[1]);
+                    for (column, stretch) in stretches.enumerate() {
+                        // A last stretch may end at the last place.
+                        let left = column.min(columns - 2);
+                        let (from, slope) = (line[left], line[left + 1] - line[left]);
+                        for (cell, displacement) in stretch.iter_mut().enumerate() {
+                            let right = (column - left) as f64 + cell as f64 / STRIDE[1] as f64;
+                            *displacement = from + right * slope;
+                        }
+                    }
+                }
+            },
+        );
     }
 }
 
 /// Finds the resultants of the blocks of a window that carry anything, the forces over the unit of pressure, `m²`.
-fn resultants(grid: &Grid, place: &Place, pressure: &[f64], found: &mut Vec<Resultant>) {
+fn resultants(grid: &Grid, place: &Place, pressure: &[f64], found: &mut Vec<Resultants>) {
     found.clear();
-    let middle = place.middle_along(grid);
+    let mut count = 0;
+    let (middle, area) = (place.middle_along(grid), grid.cell_area());
     for strips in (0..grid.strips).step_by(BLOCK[0]) {
         let strips = strips..(strips + BLOCK[0]).min(grid.strips);
         let across = 0.5 * (place.arc(grid, strips.start) + place.arc(grid, strips.end - 1));
         for cells in (0..grid.cells).step_by(BLOCK[1]) {
             let cells = cells..(cells + BLOCK[1]).min(grid.cells);
-            let along = middle + 0.5 * (grid.x(cells.start) + grid.x(cells.end - 1));
-            let mut own = Resultant {
-                middle: [along, across],
-                ..Resultant::default()
-            };
+            let along = 0.5 * (grid.x(cells.start) + grid.x(cells.end - 1));
+            let (mut sum, mut moments) = (0.0, [0.0; 2]);
             let mut acts = false;
             for strip in strips.clone() {
-                let y = place.arc(grid, strip) - across;
-                for cell in cells.clone() {
-                    let force = pressure[grid.place(strip, cell)] * grid.cell_area();
-                    acts |= force != 0.0;
-                    own.force += force;
-                    own.moments[0] += force * (middle + grid.x(cell) - along);
-                    own.moments[1] += force * y;
+                let (mut own, mut own_moment) = (0.0, 0.0);
+                let row = &pressure[grid.row(strip)][cells.clone()];
+                for (pressure, cell) in row.iter().zip(cells.clone()) {
+                    acts |= *pressure != 0.0;
+                    own += pressure;
+                    own_moment += pressure * (grid.x(cell) - along);
                 }
+                sum += own;
+                moments[0] += own_moment;
+                moments[1] += own * (place.arc(grid, strip) - across);
             }
             if acts {
-                found.push(own);
+                let lane = count % LANES;
+                if lane == 0 {
+                    found.push(Resultants::NONE);
+                }
+                count += 1;
+                let own = found.last_mut().expect("one has been added");
+                own.force[lane] = area * sum;
+                for (own, value) in own.moments.iter_mut().zip(moments) {
+                    own[lane] = area * value;
+                }
+                for (own, value) in own.middle.iter_mut().zip([middle + along, across]) {
+                    own[lane] = value;
+                }
             }
         }
     }

@@ -18,6 +18,7 @@ use crate::contact::patch::operators::PatchOperators;
 use crate::contact::problem::Coupling;
 use crate::error::{Error, Result};
 use crate::mechanics::normal::normal_problem::Constraint;
+use crate::numerics::dense;
 
 /// Limit of the approaches that are tried for a load.
 const APPROACHES: usize = 40;
@@ -302,6 +303,10 @@ fn press_at(
             }
             press_window(problem, approach, fields, solvers, (window, place), tolerance)?;
             pending[window] = 0.0;
+            if fields.used().count() == 1 {
+                // Nothing else is displaced.
+                continue;
+            }
             solvers.apart.take(operators, fields, window, &place);
             for (other, place) in fields.used().filter(|(other, _)| *other != window) {
                 let scale = operators.of(&place).scales.displacement;
@@ -353,18 +358,21 @@ fn press_window(
     } else {
         tolerance * (problem.vertical_load() / (FEW_CELLS * patch.operators.unit_force())).min(1.0)
     };
-    let displaced = &solvers.apart.displacement[window];
-    let gaps = own.patch.undeformed.gap.iter_mut().zip(&own.gap).zip(displaced);
     let is_height_given = problem.is_height_given();
-    for (((gap, reference), displaced), rise) in gaps.zip(&own.geometry.rise) {
-        // A wall that no height of the wheel presses on carries nothing of a load.
-        let carries = is_height_given || *rise > LEAST_RISE;
-        *gap = if carries {
-            reference - lowered * rise / scale + displaced
-        } else {
-            ELSEWHERE / scale
-        };
-    }
+    let (elsewhere, lowered) = (ELSEWHERE / scale, lowered / scale);
+    let displaced = &solvers.apart.displacement[window];
+    dense::vectorised(
+        #[inline(always)]
+        |_| {
+            let gaps = own.patch.undeformed.gap.iter_mut().zip(&own.gap).zip(displaced);
+            for (((gap, reference), displaced), rise) in gaps.zip(&own.geometry.rise) {
+                // A wall that no height of the wheel presses on carries nothing of a load.
+                let carries = is_height_given || *rise > LEAST_RISE;
+                let lowered = reference - lowered * rise + displaced;
+                *gap = if carries { lowered } else { elsewhere };
+            }
+        },
+    );
     let mut solve = |tolerance: f64| {
         let penetration = Constraint::Penetration(0.0);
         let fields = &mut fields.windows[window];

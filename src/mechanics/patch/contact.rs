@@ -2,6 +2,7 @@
 
 use crate::body::grid::Grid;
 use crate::body::influence::{Transform, Window};
+use crate::numerics::dense;
 use std::ops::Range;
 
 /// Neighbouring cells of one strip, all under pressure.
@@ -109,6 +110,20 @@ impl Contact {
         for run in &self.runs {
             out[run.places(grid)].copy_from_slice(&values[run.indices()]);
         }
+    }
+
+    /// Copies values of the cells to the grid, rounded to single precision. Other places stay.
+    pub fn scatter_single(&self, grid: &Grid, values: &[f64], out: &mut [f32]) {
+        dense::vectorised(
+            #[inline(always)]
+            |_| {
+                for run in &self.runs {
+                    for (out, value) in out[run.places(grid)].iter_mut().zip(&values[run.indices()]) {
+                        *out = *value as f32;
+                    }
+                }
+            },
+        );
     }
 
     /// Places of the cells on the grid, in their order.

@@ -20,6 +20,7 @@ use crate::body::grid::Grid;
 use crate::body::influence::{self, Tables, Transform, Window};
 use crate::error::{Error, Result};
 use crate::friction::path::NodeFriction;
+use crate::numerics::dense;
 use crate::numerics::gmres::{Gmres, Solved};
 use crate::settings::PatchSettings;
 use directions::Directions;
@@ -283,7 +284,7 @@ impl Friction {
         for changes in [&mut self.correction, &mut self.correction_response] {
             changes.iter_mut().for_each(|component| component.fill(0.0));
         }
-        if self.answered != *shear {
+        if !(0..2).all(|component| dense::same(&self.answered[component], &shear[component])) {
             self.work += work_of_product(problem.transform, &window, 2);
             let [x, y] = &mut self.response;
             let load = [&shear[0][..], &shear[1][..]];
@@ -337,15 +338,9 @@ impl Friction {
                 length *= 0.5;
             }
             for (component, shear) in shear.iter_mut().enumerate() {
-                for place in problem.contact.places(problem.grid) {
-                    shear[place] += length * self.correction[component][place];
-                }
-                let moved = self.response[component]
-                    .iter_mut()
-                    .zip(&self.correction_response[component]);
-                for (response, change) in moved {
-                    *response += length * change;
-                }
+                dense::add_multiple(&self.correction[component], length, shear);
+                let change = &self.correction_response[component];
+                dense::add_multiple(change, length, &mut self.response[component]);
             }
             if length < 1.0 {
                 self.factorised = false;
@@ -365,11 +360,8 @@ impl Friction {
     /// Computes the response to the last correction: as the sum of the responses to its directions where the error of their single
     /// precision, added to the response to the shear, is far below the tolerance, otherwise as a product in double precision.
     fn respond_to_correction(&mut self, problem: &FrictionProblem, window: &Window, tolerance: f64) {
-        let largest = self
-            .correction
-            .iter()
-            .flatten()
-            .fold(0.0, |m: f64, value| value.abs().max(m));
+        let [x, y] = &self.correction;
+        let largest = dense::largest(x).max(dense::largest(y));
         if self.settings.single_round_off * largest > tolerance {
             self.work += work_of_product(problem.transform, window, 2);
             let [x, y] = &mut self.correction_response;
@@ -549,9 +541,10 @@ impl Friction {
         (&self.on_path.friction, &self.on_path.speed)
     }
 
-    /// Response of the slip ahead of a cell, by its place, to the shear of the last solve, without the correction at the leading edge.
-    pub fn response_at(&self, place: usize) -> Vector {
-        [self.response[0][place], self.response[1][place]]
+    /// Response of the slip ahead of the cells on the grid, x and y, to the shear of the last solve, without the correction at the leading
+    /// edge.
+    pub fn response(&self) -> &[Vec<f64>; 2] {
+        &self.response
     }
 }
 

@@ -171,10 +171,6 @@ pub struct Normal {
     first_error: f64,
 }
 
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
-}
-
 impl Normal {
     /// Solver for a grid.
     pub fn new(grid: &Grid, transform: &Transform, settings: PatchSettings) -> Normal {
@@ -238,7 +234,7 @@ impl Normal {
             contact.list(grid, |place| pressure[place] > 0.0);
             // Cells have joined and left; conjugate gradients keep the sum that they start from.
             if let Constraint::Total(load) = problem.constraint {
-                let sum: f64 = pressure.iter().sum();
+                let sum = dense::sum(pressure);
                 if sum != load && sum > 0.0 {
                     pressure.iter_mut().for_each(|p| *p *= load / sum);
                 }
@@ -343,7 +339,7 @@ impl Normal {
         } = self.frame(problem, contact);
         let holds = |outer: &Range<usize>, inner: &Range<usize>| outer.start <= inner.start && inner.end <= outer.end;
         let known = holds(&self.displaced.strips, &window.strips) && holds(&self.displaced.read, &window.read);
-        if known && self.displaced_by == pressure {
+        if known && dense::same(&self.displaced_by, pressure) {
             return;
         }
         self.displaced_by.copy_from_slice(pressure);
@@ -363,27 +359,29 @@ impl Normal {
         self.displace(problem, contact, pressure);
         let grid = problem.grid;
         let Window { strips, read, .. } = &self.displaced;
-        let all = strips.len() == grid.strips && read.len() == grid.cells;
-        for strip in 0..grid.strips {
-            let row = grid.row(strip);
-            let looked_at = if all {
-                row.start..row.start + grid.stride()
-            } else if strips.contains(&strip) {
-                row.start + read.start..row.start + read.end
-            } else {
-                row.start..row.start
-            };
-            if !all {
-                // Without the displacement, which opens it further.
-                for at in row {
-                    self.separation[at] = problem.gap[at] - penetration;
+        dense::vectorised(
+            #[inline(always)]
+            |_| {
+                for strip in 0..grid.strips {
+                    let row = grid.row(strip);
+                    // Without the displacement, which opens it further.
+                    for (separation, gap) in self.separation[row.clone()].iter_mut().zip(&problem.gap[row.clone()]) {
+                        *separation = gap - penetration;
+                    }
+                    if strips.contains(&strip) {
+                        let known = row.start + read.start..row.start + read.end;
+                        let surfaces = self.displacement[known.clone()].iter();
+                        let surfaces = surfaces.zip(&problem.wear_compliance[known.clone()]);
+                        let surfaces = surfaces.zip(&pressure[known.clone()]).zip(&problem.gap[known.clone()]);
+                        for (separation, (((displacement, compliance), pressure), gap)) in
+                            self.separation[known].iter_mut().zip(surfaces)
+                        {
+                            *separation = displacement + compliance * pressure + gap - penetration;
+                        }
+                    }
                 }
-            }
-            for at in looked_at {
-                self.separation[at] =
-                    self.displacement[at] + problem.wear_compliance[at] * pressure[at] + problem.gap[at] - penetration;
-            }
-        }
+            },
+        );
     }
 
     /// Conjugate gradients on a set of cells. Returns penetration and the error of the pressure that is left.
@@ -413,9 +411,16 @@ impl Normal {
             Constraint::Total(_) => 0.0,
             Constraint::Penetration(penetration) => penetration,
         };
-        for i in 0..n {
-            self.residual[i] = given - self.residual[i] - self.image[i] - self.wear_compliance[i] * self.pressure[i];
-        }
+        let residual = &mut self.residual[..n];
+        let (image, compliance, own) = (&self.image[..n], &self.wear_compliance[..n], &self.pressure[..n]);
+        dense::vectorised(
+            #[inline(always)]
+            |_| {
+                for i in 0..n {
+                    residual[i] = given - residual[i] - image[i] - compliance[i] * own[i];
+                }
+            },
+        );
         let load_given = matches!(problem.constraint, Constraint::Total(_));
         // What single precision leaves out is far below so large a tolerance.
         let in_single = problem.tolerance >= self.settings.single_tolerance;
@@ -425,24 +430,32 @@ impl Normal {
             problem
                 .normal_influence
                 .precondition(contact, &mut self.ones, &mut self.work);
-            weight = self.ones[..n].iter().sum();
+            weight = dense::sum(&self.ones[..n]);
         }
         let (mut last, mut level) = (0.0, 0.0);
         let mut error = 0.0;
+        self.direction_grid.fill(0.0);
+        self.single[0].fill(0.0);
         for iteration in 0..self.settings.normal_iterations {
             if load_given && n > 0 {
                 self.correct(problem, contact);
                 // The penetration takes what all cells have in common off the residual: kept in it, its round-off would grow into
                 // a change of the load.
-                let common = self.corrected[..n].iter().sum::<f64>() / weight;
+                let common = dense::sum(&self.corrected[..n]) / weight;
                 level += common;
-                let values = self.corrected[..n].iter_mut().zip(&mut self.residual);
-                for ((corrected, residual), one) in values.zip(&self.ones) {
-                    *corrected -= common * one;
-                    *residual -= common;
-                }
+                let (corrected, residual, ones) =
+                    (&mut self.corrected[..n], &mut self.residual[..n], &self.ones[..n]);
+                dense::vectorised(
+                    #[inline(always)]
+                    |_| {
+                        for i in 0..n {
+                            corrected[i] -= common * ones[i];
+                            residual[i] -= common;
+                        }
+                    },
+                );
             }
-            error = self.residual[..n].iter().fold(0.0, |m: f64, r| r.abs().max(m)) / problem.normal_influence.diagonal;
+            error = dense::largest(&self.residual[..n]) / problem.normal_influence.diagonal;
             if iteration == 0 {
                 self.first_error = error;
             }
@@ -453,28 +466,31 @@ impl Normal {
             if !load_given {
                 self.correct(problem, contact);
             }
-            let product = dot(&self.residual[..n], &self.corrected[..n]);
+            let product = dense::dot(&self.residual[..n], &self.corrected[..n]);
             let ratio = if iteration == 0 { 0.0 } else { product / last };
             last = product;
-            for (direction, corrected) in self.direction[..n].iter_mut().zip(&self.corrected) {
-                *direction = corrected + ratio * *direction;
-            }
-            self.direction_grid.fill(0.0);
-            contact.scatter(grid, &self.direction, &mut self.direction_grid);
+            let (direction, corrected) = (&mut self.direction[..n], &self.corrected[..n]);
+            dense::vectorised(
+                #[inline(always)]
+                |_| {
+                    for i in 0..n {
+                        direction[i] = corrected[i] + ratio * direction[i];
+                    }
+                },
+            );
             self.work_done += work;
             self.iterations += 1;
             // Of all cells that may come into contact: what lies beside it must be known to see whether it overlaps.
             if in_single {
                 let [direction, nothing, image, ignored] = &mut self.single;
-                for (single, double) in direction.iter_mut().zip(&self.direction_grid) {
-                    *single = *double as f32;
-                }
+                contact.scatter_single(grid, &self.direction, direction);
                 let (load, out) = ([&direction[..], &nothing[..]], [&mut image[..], &mut ignored[..]]);
                 transform.apply_single(single, &window, load, out, &mut self.scratch_single);
-                for (double, single) in self.direction_image.iter_mut().zip(image) {
-                    *double = f64::from(*single);
+                for row in window.rows(grid) {
+                    to_double(&image[row.clone()], &mut self.direction_image[row]);
                 }
             } else {
+                contact.scatter(grid, &self.direction, &mut self.direction_grid);
                 transform.apply(
                     tables,
                     &window,
@@ -484,19 +500,26 @@ impl Normal {
                 );
             }
             contact.gather(grid, &self.direction_image, &mut self.image);
-            for i in 0..n {
-                self.image[i] += self.wear_compliance[i] * self.direction[i];
-            }
-            let curvature = dot(&self.direction[..n], &self.image[..n]);
+            let (direction, image, compliance) =
+                (&self.direction[..n], &mut self.image[..n], &self.wear_compliance[..n]);
+            let curvature = dense::vectorised(
+                #[inline(always)]
+                |arithmetic| {
+                    for i in 0..n {
+                        image[i] += compliance[i] * direction[i];
+                    }
+                    arithmetic.dot(direction, image)
+                },
+            );
             if curvature.is_nan() || curvature <= 0.0 {
                 break;
             }
             let step = product / curvature;
-            for i in 0..n {
-                self.pressure[i] += step * self.direction[i];
-                self.residual[i] -= step * self.image[i];
+            dense::add_multiple(&self.direction[..n], step, &mut self.pressure[..n]);
+            dense::add_multiple(&self.image[..n], -step, &mut self.residual[..n]);
+            for row in window.rows(grid) {
+                dense::add_multiple(&self.direction_image[row.clone()], step, &mut self.displacement[row]);
             }
-            dense::add_multiple(&self.direction_image, step, &mut self.displacement);
         }
         contact.scatter(grid, &self.pressure, pressure);
         self.displaced_by.copy_from_slice(pressure);
@@ -512,10 +535,29 @@ impl Normal {
             .precondition(contact, &mut self.corrected, &mut self.work);
     }
 
+    /// Whether any cell pulls or overlaps, those at the ends of the strips among them: without a branch for each cell.
+    fn may_change(&self, grid: &Grid, pressure: &[f64]) -> bool {
+        let overlap = -self.settings.overlap;
+        dense::vectorised(
+            #[inline(always)]
+            |_| {
+                (0..grid.strips).map(|strip| grid.row(strip)).any(|row| {
+                    let cells = pressure[row.clone()].iter().zip(&self.separation[row]);
+                    cells.fold(false, |any, (&pressure, &separation)| {
+                        any | (pressure < 0.0) | ((pressure == 0.0) & (separation < overlap))
+                    })
+                })
+            },
+        )
+    }
+
     /// Cells that pull leave, cells that overlap join with a trace of pressure; in the order of `one_at_a_time` only the worst.
     /// Whether any did.
     fn exchange(&self, problem: &PatchNormalProblem, pressure: &mut [f64], one_at_a_time: bool) -> bool {
         let grid = problem.grid;
+        if !self.may_change(grid, pressure) {
+            return false;
+        }
         let largest = pressure.iter().fold(0.0, |m: f64, p| p.max(m));
         // Where every cell pulls: the pressure by which one cell presses the deepest overlap away.
         let of_overlap = || {
@@ -551,6 +593,18 @@ impl Normal {
         }
         changed
     }
+}
+
+/// Copies single precision to double.
+fn to_double(single: &[f32], double: &mut [f64]) {
+    dense::vectorised(
+        #[inline(always)]
+        |_| {
+            for (double, single) in double.iter_mut().zip(single) {
+                *double = f64::from(*single);
+            }
+        },
+    );
 }
 
 /// A start from the cells that overlap, where there is no pressure to start from: the deepest one and those that come close to it.

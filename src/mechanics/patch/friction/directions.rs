@@ -5,6 +5,7 @@
 
 use crate::body::grid::Grid;
 use crate::body::influence::Window;
+use crate::numerics::dense::{self, MultiplyAdd};
 use crate::numerics::single;
 
 /// Directions for up to so many iterations, in single precision.
@@ -44,24 +45,28 @@ impl Directions {
 
     /// Writes the sum of the responses, each times its share, where the window is read.
     pub fn sum_responses(&self, shares: &[f32], grid: &Grid, window: &Window, sum: &mut [Vec<f64>; 2]) {
-        for (component, sum) in sum.iter_mut().enumerate() {
-            for strip in window.strips.clone() {
-                let row = grid.row(strip).start;
-                let read = row + window.read.start..row + window.read.end;
-                let sum = &mut sum[read.clone()];
-                sum.fill(0.0);
-                let responses = self.responses[component * self.len..].chunks(2 * self.len);
-                for (share, response) in shares.iter().zip(responses) {
-                    add_multiple(&response[read.clone()], f64::from(*share), sum);
+        dense::vectorised(
+            #[inline(always)]
+            |arithmetic| {
+                for (component, sum) in sum.iter_mut().enumerate() {
+                    for read in window.rows(grid) {
+                        let sum = &mut sum[read.clone()];
+                        sum.fill(0.0);
+                        let responses = self.responses[component * self.len..].chunks(2 * self.len);
+                        for (share, response) in shares.iter().zip(responses) {
+                            add_multiple(arithmetic, &response[read.clone()], f64::from(*share), sum);
+                        }
+                    }
                 }
-            }
-        }
+            },
+        );
     }
 }
 
 /// out += factor x, in double precision.
-fn add_multiple(x: &[f32], factor: f64, out: &mut [f64]) {
+#[inline(always)]
+fn add_multiple(arithmetic: MultiplyAdd, x: &[f32], factor: f64, out: &mut [f64]) {
     for (out, x) in out.iter_mut().zip(x) {
-        *out += factor * f64::from(*x);
+        *out = arithmetic.multiply_add(factor, f64::from(*x), *out);
     }
 }

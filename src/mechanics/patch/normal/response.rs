@@ -5,7 +5,7 @@ use super::{Normal, PatchNormalProblem};
 use crate::body::grid::Grid;
 use crate::body::influence::Window;
 use crate::mechanics::patch::contact::Contact;
-use crate::numerics::dense::add_multiple;
+use crate::numerics::dense::{add_multiple, same};
 use std::mem::swap;
 use std::ops::Range;
 
@@ -55,7 +55,7 @@ impl Normal {
 
     /// Changes a pressure by the response to a change of the penetration. A cell that would pull is left with nothing.
     pub fn advance(&mut self, grid: &Grid, response: &PressureResponse, change: f64, pressure: &mut [f64]) {
-        let mut known = self.displaced_by == *pressure;
+        let mut known = same(&self.displaced_by, pressure);
         for (pressure, response) in pressure.iter_mut().zip(&response.pressure) {
             if *pressure > 0.0 {
                 let changed = *pressure + change * response;
