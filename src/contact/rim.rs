@@ -79,11 +79,12 @@ impl ContactHeat {
     pub fn new(parameters: &Parameters, unit_force: f64, nodes: impl Iterator<Item = HeatedNode>) -> ContactHeat {
         let weights = Weights::new(parameters, unit_force);
         let mut heat = ContactHeat::default();
-        for node in nodes {
+        // Of nodes by strips, `for_each` makes two nested loops; `for` would ask for one node after the other.
+        nodes.for_each(|node| {
             heat.friction += weights.friction * coulomb::vector_power(node.shear, node.slip);
             heat.conducted += weights.conduction * node.pressure * node.rise;
             heat.conductance += weights.conduction * node.pressure;
-        }
+        });
         heat
     }
 

@@ -43,7 +43,8 @@ pub fn add_multiple(x: &[f32], factor: f32, out: &mut [f32]) {
 
 /// Values of a vector register of AVX2: a matrix that is factorised has a multiple of as many rows.
 pub const WIDTH: usize = 8;
-type Wide = [f32; WIDTH];
+/// Values of a vector register.
+pub type Wide = [f32; WIDTH];
 
 /// Share of the largest entry of a column below which the one on the diagonal is not divided by: an exchange of rows goes through
 /// all columns, and the factors are those of a preconditioner.

@@ -26,7 +26,6 @@ use crate::error::Result;
 use crate::friction::memory::Memory;
 use crate::mechanics::normal::normal_problem::Constraint;
 use crate::mechanics::normal_tangential::TractionChange;
-use crate::mechanics::patch::normal;
 use crate::parameters::{Control, Parameters, PatchGeometry};
 use crate::settings::{SensitivitySettings, Settings, SplitSettings};
 
@@ -226,15 +225,13 @@ impl Engine for PatchOperators {
     fn is_cut_off(problem: &PatchProblem, now: &PatchFields, solvers: &PatchSolvers) -> bool {
         let grid = &problem.operators.grid;
         let overlap = problem.settings.mechanics.overlap;
-        let at_side = |place: usize| {
-            let strip = place / grid.stride();
-            (strip == 0 || strip + 1 == grid.strips) && now.pressure[place] > 0.0
+        let overlaps = |place: usize| solvers.normal.separation[place] < -overlap;
+        let at_an_end = |strip: usize| {
+            let row = grid.row(strip);
+            overlaps(row.start) || overlaps(row.end - 1)
         };
-        let mut places = (0..grid.strips).flat_map(|strip| grid.row(strip));
-        solvers.contact.cells() > 0
-            && places.any(|place| {
-                !normal::is_free(grid, place) && solvers.normal.separation[place] < -overlap || at_side(place)
-            })
+        let is_loaded = |strip: usize| now.pressure[grid.row(strip)].iter().any(|&pressure| pressure > 0.0);
+        solvers.contact.cells() > 0 && ((0..grid.strips).any(at_an_end) || is_loaded(0) || is_loaded(grid.strips - 1))
     }
 
     fn heated_nodes<'f>(

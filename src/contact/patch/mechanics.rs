@@ -318,7 +318,9 @@ fn free_slip(
                     let given = given[row.clone()].iter().zip(&given[next.clone()]);
                     let before = before[row.clone()].iter().zip(&before[next]);
                     let displaced = given.zip(before).zip(&rigid[row.clone()]);
-                    for (slip, (((given, given_next), (before, before_next)), rigid)) in slip[row].iter_mut().zip(displaced) {
+                    for (slip, (((given, given_next), (before, before_next)), rigid)) in
+                        slip[row].iter_mut().zip(displaced)
+                    {
                         *slip = weights.slip(*rigid, [*given, *given_next], [*before, *before_next]);
                     }
                 }
@@ -423,9 +425,11 @@ fn mean_slip(problem: &PatchProblem, fields: &mut PatchFields, solvers: &mut Pat
             let at_next = places.start.wrapping_add_signed(behind)..places.end.wrapping_add_signed(behind);
             let here = free[places.clone()].iter().zip(&response[places.clone()]);
             let next = free[at_next.clone()].iter().zip(&response[at_next]);
-            let cells = here.zip(next).zip(&shear[places.clone()]).zip(&solvers.edge[run.indices()]);
-            for (slip, ((((free, response), (next, response_next)), shear), edge)) in
-                slip[places].iter_mut().zip(cells)
+            let cells = here
+                .zip(next)
+                .zip(&shear[places.clone()])
+                .zip(&solvers.edge[run.indices()]);
+            for (slip, ((((free, response), (next, response_next)), shear), edge)) in slip[places].iter_mut().zip(cells)
             {
                 let (ahead, behind) = (free + response, next + response_next);
                 *slip = 0.5 * (ahead + edge[component] * shear + behind);

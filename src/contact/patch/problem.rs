@@ -139,18 +139,18 @@ impl<'a> PatchProblem<'a> {
             let gauge_face = self.gauge_face_factor(strip);
             for (cell, (place, exchange)) in grid.row(strip).zip(exchange).enumerate() {
                 let pressure = fields.pressure[place] * self.operators.scales.pressure;
-                *exchange = if pressure > 0.0 {
-                    SurfaceExchange::new(self.parameters, pressure, self.sliding(fields, place), wheel_rise)
-                } else {
-                    SurfaceExchange::default()
-                };
-                if of_slip && pressure > 0.0 {
-                    exchange.law = fields.memory.point_law(strip * grid.cells + cell);
+                *exchange = SurfaceExchange::default();
+                if pressure > 0.0 {
+                    *exchange =
+                        SurfaceExchange::new(self.parameters, pressure, self.sliding(fields, place), wheel_rise);
+                    if of_slip {
+                        exchange.law = fields.memory.point_law(strip * grid.cells + cell);
+                    }
+                    if let Some(wear) = wear {
+                        exchange.debris = capacity * wear.rate(&self.rubbing(fields, place));
+                    }
+                    exchange.law.share *= gauge_face;
                 }
-                if let Some(wear) = wear.filter(|_| pressure > 0.0) {
-                    exchange.debris = capacity * wear.rate(&self.rubbing(fields, place));
-                }
-                exchange.law.share *= gauge_face;
             }
         }
     }

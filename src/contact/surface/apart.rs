@@ -64,6 +64,8 @@ pub struct Apart {
     columns: usize,
     /// Displacement at the height of a strip between the rows, one value for each column.
     line: Vec<f64>,
+    /// Buffers of [`resultants`].
+    columns_of_cells: [Vec<f64>; 2],
     /// Displacement by the others on the grid, scaled.
     pub displacement: [Vec<f64>; WINDOWS],
 }
@@ -84,6 +86,7 @@ impl Apart {
             rows,
             columns,
             line: vec![0.0; columns],
+            columns_of_cells: std::array::from_fn(|_| vec![0.0; grid.cells]),
             displacement: std::array::from_fn(|_| vec![0.0; grid.len()]),
         }
     }
@@ -100,7 +103,14 @@ impl Apart {
 
     /// Takes a pressure on the grid, or its change, for that of a window.
     pub fn take_pressure(&mut self, operators: &SurfaceOperators, pressure: &[f64], window: usize, place: &Place) {
-        resultants(&operators.of(place).grid, place, pressure, &mut self.resultants[window]);
+        let found = &mut self.resultants[window];
+        resultants(
+            &operators.of(place).grid,
+            place,
+            pressure,
+            &mut self.columns_of_cells,
+            found,
+        );
     }
 
     /// Begins without any.
@@ -155,9 +165,9 @@ impl Apart {
                         let mut sums = [0.0; LANES];
                         for (other, others) in resultants.iter().enumerate() {
                             if other != window {
-                                others
-                                    .iter()
-                                    .for_each(|from| from.add_at([along, across], least, &mut sums));
+                                for from in others {
+                                    from.add_at([along, across], least, &mut sums);
+                                }
                             }
                         }
                         let now = unit * sums.iter().sum::<f64>();
@@ -203,45 +213,53 @@ impl Apart {
     }
 }
 
-/// Finds the resultants of the blocks of a window that carry anything, the forces over the unit of pressure, `m²`.
-fn resultants(grid: &Grid, place: &Place, pressure: &[f64], found: &mut Vec<Resultants>) {
+/// Finds the resultants of the blocks of a window that carry anything, the forces over the unit of pressure, `m²`. The buffers have room for the
+/// cells of a strip.
+fn resultants(
+    grid: &Grid,
+    place: &Place,
+    pressure: &[f64],
+    [sums, moments]: &mut [Vec<f64>; 2],
+    found: &mut Vec<Resultants>,
+) {
     found.clear();
     let mut count = 0;
     let (middle, area) = (place.middle_along(grid), grid.cell_area());
     for strips in (0..grid.strips).step_by(BLOCK[0]) {
         let strips = strips..(strips + BLOCK[0]).min(grid.strips);
         let across = 0.5 * (place.arc(grid, strips.start) + place.arc(grid, strips.end - 1));
-        for cells in (0..grid.cells).step_by(BLOCK[1]) {
-            let cells = cells..(cells + BLOCK[1]).min(grid.cells);
+        // Of the cells beside each other across the block: their sum, and its moment across.
+        sums.fill(0.0);
+        moments.fill(0.0);
+        for strip in strips {
+            let row = &pressure[grid.row(strip)];
+            add_multiple(row, 1.0, sums);
+            add_multiple(row, place.arc(grid, strip) - across, moments);
+        }
+        for first in (0..grid.cells).step_by(BLOCK[1]) {
+            let cells = first..(first + BLOCK[1]).min(grid.cells);
             let along = 0.5 * (grid.x(cells.start) + grid.x(cells.end - 1));
-            let (mut sum, mut moments) = (0.0, [0.0; 2]);
-            let mut acts = false;
-            for strip in strips.clone() {
-                let (mut own, mut own_moment) = (0.0, 0.0);
-                let row = &pressure[grid.row(strip)][cells.clone()];
-                for (pressure, cell) in row.iter().zip(cells.clone()) {
-                    acts |= *pressure != 0.0;
-                    own += pressure;
-                    own_moment += pressure * (grid.x(cell) - along);
-                }
-                sum += own;
-                moments[0] += own_moment;
-                moments[1] += own * (place.arc(grid, strip) - across);
+            let (mut force, mut moment_along, mut moment_across) = (0.0, 0.0, 0.0);
+            for cell in cells {
+                force += sums[cell];
+                moment_along += sums[cell] * (grid.x(cell) - along);
+                moment_across += moments[cell];
             }
-            if acts {
-                let lane = count % LANES;
-                if lane == 0 {
-                    found.push(Resultants::NONE);
-                }
-                count += 1;
-                let own = found.last_mut().expect("one has been added");
-                own.force[lane] = area * sum;
-                for (own, value) in own.moments.iter_mut().zip(moments) {
-                    own[lane] = area * value;
-                }
-                for (own, value) in own.middle.iter_mut().zip([middle + along, across]) {
-                    own[lane] = value;
-                }
+            if [force, moment_along, moment_across] == [0.0; 3] {
+                continue;
+            }
+            let lane = count % LANES;
+            if lane == 0 {
+                found.push(Resultants::NONE);
+            }
+            count += 1;
+            let own = found.last_mut().expect("one has been added");
+            own.force[lane] = area * force;
+            for (own, value) in own.moments.iter_mut().zip([moment_along, moment_across]) {
+                own[lane] = area * value;
+            }
+            for (own, value) in own.middle.iter_mut().zip([middle + along, across]) {
+                own[lane] = value;
             }
         }
     }

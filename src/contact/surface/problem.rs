@@ -9,6 +9,7 @@ use crate::contact::patch::fields::PatchFields;
 use crate::contact::patch::problem::PatchProblem;
 use crate::contact::problem::Problem;
 use crate::geometry::unrolled::RailPoint;
+use crate::numerics::dense;
 use crate::parameters::Control;
 
 /// Problem of a step of a contact of profiles.
@@ -106,7 +107,7 @@ pub fn sum_over_strips(
     let grid = &window.grid;
     let mut force = 0.0;
     for strip in 0..grid.strips {
-        let sum: f64 = tractions[grid.row(strip)].iter().sum();
+        let sum = dense::sum(&tractions[grid.row(strip)]);
         if sum != 0.0 {
             force += of_strip(strip) * sum;
         }

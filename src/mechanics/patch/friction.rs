@@ -423,12 +423,12 @@ impl Friction {
                     bound: problem.bound[index],
                 };
                 let scheme = scheme.at_edge(edge);
-                let row = match &problem.path {
+                let row = &mut self.rows[index];
+                *row = match &problem.path {
                     None => scheme.row(&cell),
                     Some(path) => self.on_path.row(path, &scheme, index, cell),
                 };
                 sum += row.residual[0] * row.residual[0] + row.residual[1] * row.residual[1];
-                self.rows[index] = row;
             }
         }
         sum.sqrt()

@@ -13,10 +13,14 @@ use crate::body::grid::Grid;
 use crate::body::influence::{self, Tables, Transform, Window};
 use crate::error::{Error, Result};
 use crate::mechanics::normal::normal_problem::Constraint;
-use crate::numerics::dense;
+use crate::numerics::dense::{self, MultiplyAdd};
+use crate::numerics::single::{WIDTH, Wide, padded};
 use crate::settings::PatchSettings;
 use nalgebra::DMatrix;
 use std::ops::Range;
+
+/// Sums of a product that do not wait for each other.
+const SUMS: usize = 4;
 
 /// Normal influence of the cells on one another, with the factors of the preconditioner.
 #[derive(Debug, Clone)]
@@ -27,11 +31,12 @@ pub struct NormalInfluence {
     single: Tables<f32>,
     /// Diagonal of A: influence of a cell on itself.
     pub diagonal: f64,
-    /// Inverse W of the Cholesky factor of a whole strip's own block, column by column and row by row. That of a shorter run is its
-    /// upper left part, because the influence depends on the distance only.
-    columns: Vec<f64>,
-    rows: Vec<f64>,
-    cells: usize,
+    /// Inverse W of the Cholesky factor of a whole strip's own block, column by column and row by row, in vectors of [`WIDTH`]. That of a
+    /// shorter run is its upper left part, because the influence depends on the distance only.
+    columns: Vec<Wide>,
+    rows: Vec<Wide>,
+    /// Vectors in a column or a row.
+    vectors: usize,
 }
 
 impl NormalInfluence {
@@ -50,34 +55,75 @@ impl NormalInfluence {
             diagonal,
             single: tables.single(),
             tables,
-            rows: inverse.transpose().as_slice().to_vec(),
-            columns: inverse.as_slice().to_vec(),
-            cells: n,
+            rows: in_vectors(&inverse.transpose()),
+            columns: in_vectors(&inverse),
+            vectors: n.div_ceil(WIDTH),
         }
     }
 
-    /// Multiplies the values of the runs by Wᵀ W, run by run, in place: solves with the strips' own blocks. `work` has room for one run.
-    fn precondition(&self, contact: &Contact, values: &mut [f64], work: &mut [f64]) {
-        let cells = self.cells;
+    /// Multiplies the values of the runs by Wᵀ W, run by run, in place: solves with the strips' own blocks, to single precision. Each buffer in `work`
+    /// has room for a run in whole vectors.
+    fn precondition(&self, contact: &Contact, values: &mut [f64], work: &mut [Vec<f32>; 2]) {
+        let [given, product] = work;
         dense::vectorised(
             #[inline(always)]
             |arithmetic| {
                 for run in contact.runs() {
                     let own = &mut values[run.indices()];
                     let n = own.len();
-                    let work = &mut work[..n];
-                    work.fill(0.0);
-                    for (i, value) in own.iter().enumerate() {
-                        arithmetic.add_multiple(&self.columns[i * cells + i..i * cells + n], *value, &mut work[i..]);
+                    for (single, value) in given.iter_mut().zip(&*own) {
+                        *single = *value as f32;
                     }
-                    own.fill(0.0);
-                    for (i, value) in work.iter().enumerate() {
-                        arithmetic.add_multiple(&self.rows[i * cells..=i * cells + i], *value, &mut own[..=i]);
+                    for vector in 0..n.div_ceil(WIDTH) {
+                        // W is lower triangular.
+                        let end = n.min((vector + 1) * WIDTH);
+                        let sum = self.multiply(arithmetic, &self.columns[vector..], &given[..n], 0..end);
+                        product[vector * WIDTH..][..WIDTH].copy_from_slice(&sum);
+                    }
+                    for (vector, own) in own.chunks_mut(WIDTH).enumerate() {
+                        let sum = self.multiply(arithmetic, &self.rows[vector..], &product[..n], vector * WIDTH..n);
+                        for (value, single) in own.iter_mut().zip(sum) {
+                            *value = f64::from(single);
+                        }
                     }
                 }
             },
         );
     }
+
+    /// The sum of columns, of which `columns` has a vector each, times their values.
+    #[inline(always)]
+    fn multiply(&self, arithmetic: MultiplyAdd, columns: &[Wide], values: &[f32], range: Range<usize>) -> Wide {
+        let mut sums = [[0.0; WIDTH]; SUMS];
+        let mut add = |sum: usize, i: usize| {
+            let (column, value) = (&columns[i * self.vectors], values[i]);
+            for lane in 0..WIDTH {
+                sums[sum][lane] = arithmetic.multiply_add_single(column[lane], value, sums[sum][lane]);
+            }
+        };
+        let mut first = range.start;
+        while first + SUMS <= range.end {
+            (0..SUMS).for_each(|k| add(k, first + k));
+            first += SUMS;
+        }
+        (first..range.end).for_each(|i| add(0, i));
+        let [a, b, c, d] = sums;
+        std::array::from_fn(|lane| (a[lane] + b[lane]) + (c[lane] + d[lane]))
+    }
+}
+
+/// Columns of a matrix in single precision, filled up with zeros to whole vectors.
+fn in_vectors(matrix: &DMatrix<f64>) -> Vec<Wide> {
+    let columns = matrix.column_iter();
+    columns
+        .flat_map(|column| {
+            let values: Vec<f32> = column.iter().map(|&value| value as f32).collect();
+            let vectors = values
+                .chunks(WIDTH)
+                .map(|part| std::array::from_fn(|lane| part.get(lane).copied().unwrap_or(0.0)));
+            vectors.collect::<Vec<Wide>>()
+        })
+        .collect()
 }
 
 /// Normal influence for loads on a part of the strips: a product costs as much as it serves strips.
@@ -153,7 +199,7 @@ pub struct Normal {
     direction: Vec<f64>,
     corrected: Vec<f64>,
     ones: Vec<f64>,
-    work: Vec<f64>,
+    work: [Vec<f32>; 2],
     image: Vec<f64>,
     pressure: Vec<f64>,
     wear_compliance: Vec<f64>,
@@ -190,7 +236,7 @@ impl Normal {
             direction: on_grid(),
             corrected: on_grid(),
             ones: on_grid(),
-            work: vec![0.0; grid.cells],
+            work: std::array::from_fn(|_| vec![0.0; padded(grid.cells)]),
             image: on_grid(),
             pressure: on_grid(),
             wear_compliance: on_grid(),
@@ -422,8 +468,6 @@ impl Normal {
             },
         );
         let load_given = matches!(problem.constraint, Constraint::Total(_));
-        // What single precision leaves out is far below so large a tolerance.
-        let in_single = problem.tolerance >= self.settings.single_tolerance;
         let mut weight = 0.0;
         if load_given {
             self.ones[..n].fill(1.0);
@@ -433,7 +477,7 @@ impl Normal {
             weight = dense::sum(&self.ones[..n]);
         }
         let (mut last, mut level) = (0.0, 0.0);
-        let mut error = 0.0;
+        let (mut error, mut in_single) = (0.0, false);
         self.direction_grid.fill(0.0);
         self.single[0].fill(0.0);
         for iteration in 0..self.settings.normal_iterations {
@@ -443,8 +487,7 @@ impl Normal {
                 // a change of the load.
                 let common = dense::sum(&self.corrected[..n]) / weight;
                 level += common;
-                let (corrected, residual, ones) =
-                    (&mut self.corrected[..n], &mut self.residual[..n], &self.ones[..n]);
+                let (corrected, residual, ones) = (&mut self.corrected[..n], &mut self.residual[..n], &self.ones[..n]);
                 dense::vectorised(
                     #[inline(always)]
                     |_| {
@@ -458,6 +501,8 @@ impl Normal {
             error = dense::largest(&self.residual[..n]) / problem.normal_influence.diagonal;
             if iteration == 0 {
                 self.first_error = error;
+                // What single precision leaves out of the change is far below the tolerance.
+                in_single = problem.tolerance >= self.settings.single_tolerance * error;
             }
             if error <= tolerance {
                 break;
