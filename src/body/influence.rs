@@ -20,7 +20,7 @@ use super::grid::Grid;
 use crate::numerics::dense;
 use crate::numerics::fourier::{Fourier, Rows, good_size};
 use crate::numerics::real::{BLOCK, Real};
-use convolution::Product;
+use convolution::{Product, ScalarProduct, SourceProduct};
 use std::f64::consts::TAU;
 use std::ops::Range;
 
@@ -34,8 +34,19 @@ pub struct Tables<T> {
     even: [Vec<T>; 2],
     /// Kernel B.
     odd: Vec<T>,
-    /// Whether only A is not 0.
-    scalar: bool,
+}
+
+/// The harmonics of the kernel A alone, as those of [`Tables`]: a product of one component.
+#[derive(Debug, Clone)]
+pub struct ScalarTables<T> {
+    even: Vec<T>,
+}
+
+/// The harmonics of the kernels A and B alone, as those of [`Tables`]: a product whose load has no y component, and which needs no C.
+#[derive(Debug, Clone)]
+pub struct SourceTables<T> {
+    even: Vec<T>,
+    odd: Vec<T>,
 }
 
 /// Everything that products on a grid share for one number of harmonics.
@@ -136,16 +147,21 @@ impl Transform {
         Tables {
             even: [self.table(f64::cos, a), self.table(f64::cos, c)],
             odd: self.table(f64::sin, b),
-            scalar: false,
         }
     }
 
     /// The tables of a kernel A alone.
-    pub fn scalar_tables(&self, a: impl Fn(Lag) -> f64) -> Tables<f64> {
-        Tables {
-            even: [self.table(f64::cos, a), vec![0.0; self.table_len()]],
-            odd: vec![0.0; self.table_len()],
-            scalar: true,
+    pub fn scalar_tables(&self, a: impl Fn(Lag) -> f64) -> ScalarTables<f64> {
+        ScalarTables {
+            even: self.table(f64::cos, a),
+        }
+    }
+
+    /// The tables of kernels A and B alone.
+    pub fn source_tables(&self, a: impl Fn(Lag) -> f64, b: impl Fn(Lag) -> f64) -> SourceTables<f64> {
+        SourceTables {
+            even: self.table(f64::cos, a),
+            odd: self.table(f64::sin, b),
         }
     }
 
@@ -172,18 +188,18 @@ impl Transform {
         table
     }
 
-    /// The product in double precision: `out` = tables · `load`, both as x and y components on the grid. What is not read stays.
-    pub fn apply(
+    /// The product: `out` = tables · `load`, both as x and y components on the grid. What is not read stays.
+    pub fn apply<T: Precision>(
         &self,
-        tables: &Tables<f64>,
+        tables: &Tables<T>,
         window: &Window,
-        load: [&[f64]; 2],
-        out: [&mut [f64]; 2],
-        scratch: &mut ProductScratch<f64>,
+        load: [&[T]; 2],
+        out: [&mut [T]; 2],
+        scratch: &mut ProductScratch<T>,
     ) {
         dense::with_vectors(Product {
             transform: self,
-            fourier: &self.double,
+            fourier: T::fourier(self),
             tables,
             window,
             load,
@@ -192,24 +208,62 @@ impl Transform {
         });
     }
 
-    /// The product in single precision.
-    pub fn apply_single(
+    /// The product of A with one component: `out` = A · `load`, on the grid. What is not read stays.
+    pub fn apply_scalar<T: Precision>(
         &self,
-        tables: &Tables<f32>,
+        tables: &ScalarTables<T>,
         window: &Window,
-        load: [&[f32]; 2],
-        out: [&mut [f32]; 2],
-        scratch: &mut ProductScratch<f32>,
+        load: &[T],
+        out: &mut [T],
+        scratch: &mut ProductScratch<T>,
     ) {
-        dense::with_vectors(Product {
+        dense::with_vectors(ScalarProduct {
             transform: self,
-            fourier: &self.single,
+            fourier: T::fourier(self),
             tables,
             window,
             load,
             out,
             scratch,
         });
+    }
+
+    /// The products of A and of B with one component: `out` = (A · `load`, B · `load`), on the grid. What is not read stays.
+    pub fn apply_source<T: Precision>(
+        &self,
+        tables: &SourceTables<T>,
+        window: &Window,
+        load: &[T],
+        out: [&mut [T]; 2],
+        scratch: &mut ProductScratch<T>,
+    ) {
+        dense::with_vectors(SourceProduct {
+            transform: self,
+            fourier: T::fourier(self),
+            tables,
+            window,
+            load,
+            out,
+            scratch,
+        });
+    }
+}
+
+/// A precision that products are computed in.
+pub trait Precision: Real {
+    /// Its transform over the strips.
+    fn fourier(transform: &Transform) -> &Fourier<Self>;
+}
+
+impl Precision for f32 {
+    fn fourier(transform: &Transform) -> &Fourier<f32> {
+        &transform.single
+    }
+}
+
+impl Precision for f64 {
+    fn fourier(transform: &Transform) -> &Fourier<f64> {
+        &transform.double
     }
 }
 
@@ -257,14 +311,38 @@ impl Tables<f64> {
             }
         }
     }
+}
 
+/// Values in single precision.
+fn single(table: &[f64]) -> Vec<f32> {
+    table.iter().map(|&value| value as f32).collect()
+}
+
+impl Tables<f64> {
     /// Tables in single precision.
     pub fn single(&self) -> Tables<f32> {
-        let single = |table: &Vec<f64>| table.iter().map(|&value| value as f32).collect();
         Tables {
             even: [single(&self.even[0]), single(&self.even[1])],
             odd: single(&self.odd),
-            scalar: self.scalar,
+        }
+    }
+}
+
+impl ScalarTables<f64> {
+    /// Tables in single precision.
+    pub fn single(&self) -> ScalarTables<f32> {
+        ScalarTables {
+            even: single(&self.even),
+        }
+    }
+}
+
+impl SourceTables<f64> {
+    /// Tables in single precision.
+    pub fn single(&self) -> SourceTables<f32> {
+        SourceTables {
+            even: single(&self.even),
+            odd: single(&self.odd),
         }
     }
 }
@@ -301,7 +379,7 @@ mod tests {
             let transform = Transform::new(&grid, window.strips.len());
             let [a, b, c] = kernels();
             let tables = transform.tables(a, b, c);
-            let scalar = transform.scalar_tables(a);
+            let (scalar, source) = (transform.scalar_tables(a), transform.source_tables(a, b));
             let loaded = |strip: usize, cell: usize| window.strips.contains(&strip) && window.loaded.contains(&cell);
             let mut load = [vec![0.0; grid.len()], vec![0.0; grid.len()]];
             for strip in 0..strips {
@@ -312,24 +390,23 @@ mod tests {
                 }
             }
             let mut out = [vec![f64::NAN; grid.len()], vec![f64::NAN; grid.len()]];
-            let mut scalars = out.clone();
-            let mut reals = out.clone();
+            let (mut scalars, mut sources) = (out.clone(), out.clone());
             let mut singles = [vec![f32::NAN; grid.len()], vec![f32::NAN; grid.len()]];
             let given = load.clone().map(|load| load.iter().map(|&value| value as f32).collect::<Vec<f32>>());
             {
                 let [x, y] = &mut out;
                 transform.apply(&tables, &window, [&load[0], &load[1]], [x, y], &mut transform.scratch());
-                let [x, y] = &mut scalars;
-                transform.apply(&scalar, &window, [&load[0], &load[1]], [x, y], &mut transform.scratch());
-                // A load of one component alone takes half of the harmonics.
-                let [x, y] = &mut reals;
-                transform.apply(&scalar, &window, [&load[0], &vec![0.0; grid.len()]], [x, y], &mut transform.scratch());
+                for (scalar_out, load) in scalars.iter_mut().zip(&load) {
+                    transform.apply_scalar(&scalar, &window, load, scalar_out, &mut transform.scratch());
+                }
+                let [x, y] = &mut sources;
+                transform.apply_source(&source, &window, &load[0], [x, y], &mut transform.scratch());
                 let [x, y] = &mut singles;
-                transform.apply_single(&tables.single(), &window, [&given[0], &given[1]], [x, y], &mut transform.scratch());
+                transform.apply(&tables.single(), &window, [&given[0], &given[1]], [x, y], &mut transform.scratch());
             }
             for strip in window.strips.clone() {
                 for cell in window.read.clone() {
-                    let (mut sum, mut alone) = ([0.0; 2], [0.0; 2]);
+                    let (mut sum, mut alone, mut of_source) = ([0.0; 2], [0.0; 2], [0.0; 2]);
                     for strip_loaded in 0..strips {
                         for cell_loaded in 0..cells {
                             let lag = (cell as isize - cell_loaded as isize, strip as isize - strip_loaded as isize);
@@ -339,14 +416,16 @@ mod tests {
                             sum[1] += b(lag) * x + c(lag) * y;
                             alone[0] += a(lag) * x;
                             alone[1] += a(lag) * y;
+                            of_source[0] += a(lag) * x;
+                            of_source[1] += b(lag) * x;
                         }
                     }
                     let place = grid.place(strip, cell);
-                    prop_assert!((reals[0][place] - alone[0]).abs() < 1e-12 && reals[1][place].abs() < 1e-12);
                     for component in 0..2 {
                         // Round-off of sums over a few hundred terms of order 1.
                         prop_assert!((out[component][place] - sum[component]).abs() < 1e-12);
                         prop_assert!((scalars[component][place] - alone[component]).abs() < 1e-12);
+                        prop_assert!((sources[component][place] - of_source[component]).abs() < 1e-12);
                         prop_assert!((f64::from(singles[component][place]) - sum[component]).abs() < 1e-4);
                     }
                 }

@@ -1,6 +1,6 @@
 //! The product of the tables with a load: transforms over the strips, convolutions along them.
 
-use super::{ProductScratch, Tables, Transform, Window};
+use super::{ProductScratch, ScalarTables, SourceTables, Tables, Transform, Window};
 use crate::numerics::fourier::{Fourier, Rows};
 use crate::numerics::real::Real;
 use pulp::{Simd, WithSimd};
@@ -31,8 +31,6 @@ impl<T: Real> WithSimd for Product<'_, T> {
             out,
             scratch,
         } = self;
-        let stride = transform.stride;
-        let strips = window.strips.clone();
         let ProductScratch {
             rows,
             other,
@@ -44,74 +42,218 @@ impl<T: Real> WithSimd for Product<'_, T> {
         let loaded = window.loaded.len().next_multiple_of(lanes);
         let read = window.read.len().next_multiple_of(lanes);
         let size = fourier.size();
+        let all = 0..window.loaded.len();
         for (rows, load) in [&mut rows.re, &mut rows.im].into_iter().zip(load) {
-            // The scratch may be that of a larger transform.
-            let rows = &mut rows[..size * loaded];
-            rows.fill(T::default());
-            for (row, strip) in rows.chunks_exact_mut(loaded.max(1)).zip(strips.clone()) {
-                let given = &load[strip * stride..][window.loaded.clone()];
-                row[..given.len()].copy_from_slice(given);
-            }
+            take_load(transform, window, load, all.clone(), &mut rows[..size * loaded], loaded);
         }
-        let whole = strips.start * stride..strips.end * stride;
-        let real = tables.scalar && load[1][whole].iter().all(|value| *value == T::default());
         fourier.forward(simd, loaded, rows, other);
-        let ranges = Ranges {
-            cells: window.loaded.len(),
-            read,
-            origin: stride + window.read.start - window.loaded.start,
-        };
+        let ranges = Ranges::new(transform, window, read);
         for harmonic in 0..transform.harmonics() {
-            let opposite = (size - harmonic) % size;
-            let places = |width: usize| [harmonic, opposite].map(|harmonic| harmonic * width..(harmonic + 1) * width);
-            let [own, mirror] = places(loaded);
-            let [own_out, mirror_out] = places(read);
+            let [own, mirror] = places(size, harmonic, loaded);
+            let [own_out, mirror_out] = places(size, harmonic, read);
             let lags = harmonic * transform.lags..(harmonic + 1) * transform.lags;
-            if tables.scalar {
-                let kernel = &tables.even[0][lags];
-                let twice = harmonic != opposite;
-                if real && twice {
-                    // The product is real as well: what is opposite is the conjugate.
-                    let [re, im, ..] = &mut *sums;
-                    convolve_one(simd, kernel, [&rows.re[own.clone()], &rows.im[own]], &ranges, [re, im]);
-                    other.re[own_out.clone()].copy_from_slice(&re[..read]);
-                    other.im[own_out].copy_from_slice(&im[..read]);
-                    other.re[mirror_out.clone()].copy_from_slice(&re[..read]);
-                    negate(simd, &im[..read], &mut other.im[mirror_out]);
-                    continue;
-                }
-                let places = [(own, own_out), (mirror, mirror_out)];
-                for (place, out) in places.into_iter().take(if twice { 2 } else { 1 }) {
-                    let values = [&rows.re[place.clone()], &rows.im[place]];
-                    let out = [&mut other.re[out.clone()], &mut other.im[out]];
-                    convolve_one(simd, kernel, values, &ranges, out);
-                }
-            } else {
-                let kernels = [
-                    &tables.even[0][lags.clone()],
-                    &tables.odd[lags.clone()],
-                    &tables.even[1][lags],
-                ];
-                take_apart(simd, rows, &own, &mirror, parts);
-                let [xr, xi, yr, yi] = &*parts;
-                let [sum_xr, sum_xi, sum_yr, sum_yi] = &mut *sums;
-                convolve(
-                    simd,
-                    kernels,
-                    [xr, xi, yr, yi],
-                    &ranges,
-                    [sum_xr, sum_xi, sum_yr, sum_yi],
-                );
-                put_together(simd, sums, &own_out, &mirror_out, other);
-            }
+            let kernels = [
+                &tables.even[0][lags.clone()],
+                &tables.odd[lags.clone()],
+                &tables.even[1][lags],
+            ];
+            let [xr, xi, yr, yi] = &mut *parts;
+            take_apart(simd, rows, &own, &mirror, [xr, xi, yr, yi]);
+            let [sum_xr, sum_xi, sum_yr, sum_yi] = &mut *sums;
+            convolve(
+                simd,
+                kernels,
+                [xr, xi, yr, yi],
+                &ranges,
+                [sum_xr, sum_xi, sum_yr, sum_yi],
+            );
+            put_together(simd, [sum_xr, sum_xi, sum_yr, sum_yi], &own_out, &mirror_out, other);
         }
         fourier.backward(simd, read, other, rows);
+        let all = 0..window.read.len();
         for (component, out) in [&other.re, &other.im].into_iter().zip(out) {
-            for (row, strip) in component.chunks_exact(read.max(1)).zip(strips.clone()) {
-                out[strip * stride..][window.read.clone()].copy_from_slice(&row[..window.read.len()]);
-            }
+            give(transform, window, component, read, all.clone(), out);
         }
     }
+}
+
+/// A product of the kernel A alone, with one component. Its load is real: the first half of the cells travels as real part and the other
+/// half as imaginary part through a transform that is half as wide, and so does the result.
+pub(super) struct ScalarProduct<'a, T> {
+    pub(super) transform: &'a Transform,
+    pub(super) fourier: &'a Fourier<T>,
+    pub(super) tables: &'a ScalarTables<T>,
+    pub(super) window: &'a Window,
+    pub(super) load: &'a [T],
+    pub(super) out: &'a mut [T],
+    pub(super) scratch: &'a mut ProductScratch<T>,
+}
+
+impl<T: Real> WithSimd for ScalarProduct<'_, T> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        let ScalarProduct {
+            transform,
+            fourier,
+            tables,
+            window,
+            load,
+            out,
+            scratch,
+        } = self;
+        let ProductScratch {
+            rows,
+            other,
+            parts: [re, im, ..],
+            sums: [sum_re, sum_im, ..],
+        } = scratch;
+        let (size, half) = (fourier.size(), half::<T, S>(&window.read));
+        let loaded = transform_halves(simd, transform, fourier, window, load, rows, other);
+        let ranges = Ranges::new(transform, window, 2 * half);
+        for harmonic in 0..transform.harmonics() {
+            let [own, mirror] = places(size, harmonic, loaded);
+            let [own_out, mirror_out] = places(size, harmonic, half);
+            let kernel = &tables.even[harmonic * transform.lags..(harmonic + 1) * transform.lags];
+            take_halves_apart(simd, rows, &own, &mirror, [re, im]);
+            convolve_one(simd, kernel, [re, im], &ranges, [sum_re, sum_im]);
+            let ((first_re, second_re), (first_im, second_im)) = (sum_re.split_at(half), sum_im.split_at(half));
+            let halves = [first_re, first_im, second_re, second_im];
+            put_together(simd, halves, &own_out, &mirror_out, other);
+        }
+        fourier.backward(simd, half, other, rows);
+        let count = window.read.len();
+        give(transform, window, &other.re, half, 0..half.min(count), out);
+        give(transform, window, &other.im, half, half.min(count)..count, out);
+    }
+}
+
+/// A product of the kernels A and B with a load of one component: out_x = A τ, out_y = B τ. The load travels as that of
+/// [`ScalarProduct`], the result as that of [`Product`].
+pub(super) struct SourceProduct<'a, T> {
+    pub(super) transform: &'a Transform,
+    pub(super) fourier: &'a Fourier<T>,
+    pub(super) tables: &'a SourceTables<T>,
+    pub(super) window: &'a Window,
+    pub(super) load: &'a [T],
+    pub(super) out: [&'a mut [T]; 2],
+    pub(super) scratch: &'a mut ProductScratch<T>,
+}
+
+impl<T: Real> WithSimd for SourceProduct<'_, T> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        let SourceProduct {
+            transform,
+            fourier,
+            tables,
+            window,
+            load,
+            out,
+            scratch,
+        } = self;
+        let ProductScratch {
+            rows,
+            other,
+            parts: [re, im, ..],
+            sums,
+        } = scratch;
+        let size = fourier.size();
+        let read = window.read.len().next_multiple_of(T::lanes::<S>());
+        let loaded = transform_halves(simd, transform, fourier, window, load, rows, other);
+        let ranges = Ranges::new(transform, window, read);
+        for harmonic in 0..transform.harmonics() {
+            let [own, mirror] = places(size, harmonic, loaded);
+            let [own_out, mirror_out] = places(size, harmonic, read);
+            let lags = harmonic * transform.lags..(harmonic + 1) * transform.lags;
+            let kernels = [&tables.even[lags.clone()], &tables.odd[lags]];
+            take_halves_apart(simd, rows, &own, &mirror, [re, im]);
+            let [sum_xr, sum_xi, sum_yr, sum_yi] = &mut *sums;
+            convolve_source(simd, kernels, [re, im], &ranges, [sum_xr, sum_xi, sum_yr, sum_yi]);
+            put_together(simd, [sum_xr, sum_xi, sum_yr, sum_yi], &own_out, &mirror_out, other);
+        }
+        fourier.backward(simd, read, other, rows);
+        let all = 0..window.read.len();
+        for (component, out) in [&other.re, &other.im].into_iter().zip(out) {
+            give(transform, window, component, read, all.clone(), out);
+        }
+    }
+}
+
+/// Places of a harmonic and of the opposite one in rows of a width.
+#[inline(always)]
+fn places(size: usize, harmonic: usize, width: usize) -> [Range<usize>; 2] {
+    let opposite = (size - harmonic) % size;
+    [harmonic, opposite].map(|harmonic| harmonic * width..(harmonic + 1) * width)
+}
+
+/// Half of the cells, in whole registers.
+#[inline(always)]
+fn half<T: Real, S: Simd>(cells: &Range<usize>) -> usize {
+    cells.len().div_ceil(2).next_multiple_of(T::lanes::<S>())
+}
+
+/// Copies some of the cells that are loaded into rows of a width, filled up with zeros. The scratch may be that of a larger transform.
+#[inline(always)]
+fn take_load<T: Real>(
+    transform: &Transform,
+    window: &Window,
+    load: &[T],
+    cells: Range<usize>,
+    rows: &mut [T],
+    width: usize,
+) {
+    rows.fill(T::default());
+    for (row, strip) in rows.chunks_exact_mut(width.max(1)).zip(window.strips.clone()) {
+        let given = &load[strip * transform.stride..][window.loaded.clone()][cells.clone()];
+        row[..given.len()].copy_from_slice(given);
+    }
+}
+
+/// Copies some of the cells that are read from rows of a width.
+#[inline(always)]
+fn give<T: Real>(transform: &Transform, window: &Window, rows: &[T], width: usize, cells: Range<usize>, out: &mut [T]) {
+    for (row, strip) in rows.chunks_exact(width.max(1)).zip(window.strips.clone()) {
+        let out = &mut out[strip * transform.stride..][window.read.clone()][cells.clone()];
+        out.copy_from_slice(&row[..cells.len()]);
+    }
+}
+
+/// Transforms a load of one component, its halves as real and imaginary parts. Returns the width of the rows.
+#[inline(always)]
+fn transform_halves<T: Real, S: Simd>(
+    simd: S,
+    transform: &Transform,
+    fourier: &Fourier<T>,
+    window: &Window,
+    load: &[T],
+    rows: &mut Rows<T>,
+    other: &mut Rows<T>,
+) -> usize {
+    let (half, count) = (half::<T, S>(&window.loaded), window.loaded.len());
+    let size = fourier.size() * half;
+    let halves = [0..half.min(count), half.min(count)..count];
+    for (rows, cells) in [&mut rows.re, &mut rows.im].into_iter().zip(halves) {
+        take_load(transform, window, load, cells, &mut rows[..size], half);
+    }
+    fourier.forward(simd, half, rows, other);
+    half
+}
+
+/// Separates the transforms of the two halves of a load, and writes them one after the other.
+#[inline(always)]
+fn take_halves_apart<T: Real, S: Simd>(
+    simd: S,
+    rows: &Rows<T>,
+    own: &Range<usize>,
+    mirror: &Range<usize>,
+    [re, im]: [&mut Vec<T>; 2],
+) {
+    let ((first_re, second_re), (first_im, second_im)) = (re.split_at_mut(own.len()), im.split_at_mut(own.len()));
+    take_apart(simd, rows, own, mirror, [first_re, first_im, second_re, second_im]);
 }
 
 /// Ranges that a convolution runs over.
@@ -122,6 +264,17 @@ struct Ranges {
     read: usize,
     /// Place in a kernel of the lag from the first cell to the first place.
     origin: usize,
+}
+
+impl Ranges {
+    #[inline(always)]
+    fn new(transform: &Transform, window: &Window, read: usize) -> Ranges {
+        Ranges {
+            cells: window.loaded.len(),
+            read,
+            origin: transform.stride + window.read.start - window.loaded.start,
+        }
+    }
 }
 
 /// The sums over the cells of kernels a, b, c times values, complex x and y in real and imaginary parts: out_x = Σ a x − i b y,
@@ -213,12 +366,52 @@ fn convolve_one_block<T: Real, S: Simd, const VECTORS: usize>(
     }
 }
 
-/// Writes −x.
+/// Convolution with the kernels a and b of one complex value: out_x = Σ a x, out_y = −i Σ b x (see [`convolve`]).
 #[inline(always)]
-fn negate<T: Real, S: Simd>(simd: S, values: &[T], out: &mut [T]) {
-    let zero = T::splat(simd, T::default());
-    for (out, value) in T::vectors_mut::<S>(out).iter_mut().zip(T::vectors::<S>(values)) {
-        *out = T::subtract(simd, zero, *value);
+fn convolve_source<T: Real, S: Simd>(
+    simd: S,
+    kernels: [&[T]; 2],
+    values: [&[T]; 2],
+    ranges: &Ranges,
+    mut out: [&mut [T]; 4],
+) {
+    let lanes = T::lanes::<S>();
+    let mut start = 0;
+    while start + 2 * lanes <= ranges.read {
+        convolve_source_block::<T, S, 2>(simd, kernels, values, ranges, start, &mut out);
+        start += 2 * lanes;
+    }
+    if start < ranges.read {
+        convolve_source_block::<T, S, 1>(simd, kernels, values, ranges, start, &mut out);
+    }
+}
+
+/// The sums of [`convolve_source`] at so many vectors of places.
+#[inline(always)]
+fn convolve_source_block<T: Real, S: Simd, const VECTORS: usize>(
+    simd: S,
+    [a, b]: [&[T]; 2],
+    [re, im]: [&[T]; 2],
+    ranges: &Ranges,
+    start: usize,
+    out: &mut [&mut [T]; 4],
+) {
+    let block = VECTORS * T::lanes::<S>();
+    let zero = [T::splat(simd, T::default()); VECTORS];
+    let (mut sum_xr, mut sum_xi, mut sum_yr, mut sum_yi) = (zero, zero, zero, zero);
+    for cell in 0..ranges.cells {
+        let lag = ranges.origin + start - cell;
+        let [a, b] = [a, b].map(|kernel| T::vectors::<S>(&kernel[lag..lag + block]));
+        let (re, im) = (T::splat(simd, re[cell]), T::splat(simd, im[cell]));
+        for k in 0..VECTORS {
+            sum_xr[k] = T::multiply_add(simd, a[k], re, sum_xr[k]);
+            sum_xi[k] = T::multiply_add(simd, a[k], im, sum_xi[k]);
+            sum_yr[k] = T::multiply_add(simd, b[k], im, sum_yr[k]);
+            sum_yi[k] = T::multiply_subtract(simd, b[k], re, sum_yi[k]);
+        }
+    }
+    for (out, sums) in out.iter_mut().zip([sum_xr, sum_xi, sum_yr, sum_yi]) {
+        T::vectors_mut::<S>(&mut out[start..start + block]).copy_from_slice(&sums);
     }
 }
 
@@ -230,7 +423,7 @@ fn take_apart<T: Real, S: Simd>(
     rows: &Rows<T>,
     own: &Range<usize>,
     mirror: &Range<usize>,
-    [xr, xi, yr, yi]: &mut [Vec<T>; 4],
+    [xr, xi, yr, yi]: [&mut [T]; 4],
 ) {
     let half = T::splat(simd, T::new(0.5));
     let (a, b) = (
@@ -257,12 +450,12 @@ fn take_apart<T: Real, S: Simd>(
 #[inline(always)]
 fn put_together<T: Real, S: Simd>(
     simd: S,
-    parts: &[Vec<T>; 4],
+    parts: [&[T]; 4],
     own: &Range<usize>,
     mirror: &Range<usize>,
     rows: &mut Rows<T>,
 ) {
-    let [xr, xi, yr, yi] = [0, 1, 2, 3].map(|k| T::vectors::<S>(&parts[k]));
+    let [xr, xi, yr, yi] = parts.map(|part| T::vectors::<S>(part));
     let vectors = own.len() / T::lanes::<S>();
     let (re, im) = (T::vectors_mut::<S>(&mut rows.re), T::vectors_mut::<S>(&mut rows.im));
     let (own, mirror) = (own.start / T::lanes::<S>(), mirror.start / T::lanes::<S>());

@@ -98,7 +98,7 @@ pub fn lift_off(problem: &PatchProblem, interface: &Interface, fields: &mut Patc
     fields.memory.now.speed.fill(0.0);
     fields.memory.now.flow.fill(0.0);
     fields.penetration = 0.0;
-    given_displacement(problem, interface, fields, solvers);
+    given_displacement(problem, interface, fields, 0.0, solvers);
 }
 
 /// (37). Returns whether other cells are under pressure than before.
@@ -206,7 +206,11 @@ fn solve_friction(
         }
     }
     keep_within_bounds(grid, &solvers.contact, &solvers.bound, fields, &mut solvers.nothing);
-    free_slip(problem, interface, &weights, fields, solvers);
+    let peak = largest(&fields.pressure);
+    let tolerance = peak * tolerance.max(problem.settings.patch.least_tolerance);
+    // Of so small a change of a displacement single precision leaves out much less than the tolerance.
+    let small = tolerance * operators.normal_influence.diagonal / problem.settings.patch.single_round_off;
+    free_slip(problem, interface, &weights, fields, small, solvers);
     centroid::set_loads(grid, &fields.pressure, &mut solvers.loads);
     for run in solvers.contact.runs() {
         let centroid = centroid::centroid(&solvers.loads, run.strip);
@@ -215,7 +219,6 @@ fn solve_friction(
         }
     }
     let diagonal = f64::from(solvers.response.strip_kernels[0][solvers.response.origin]);
-    let peak = largest(&fields.pressure);
     let path = path_law.map(|law| PathOfCells {
         law,
         nodes: &solvers.path.nodes,
@@ -244,7 +247,7 @@ fn solve_friction(
             scale: 1.0 / diagonal,
             noise: problem.settings.patch.noise * diagonal * peak,
             regularisation: problem.parameters.slip_regularisation,
-            tolerance: peak * tolerance.max(problem.settings.patch.least_tolerance),
+            tolerance,
             accepted: match problem.conditions.coupling {
                 Coupling::Implicit => 0.0,
                 Coupling::Staggered | Coupling::Held => peak * problem.settings.patch.staggered_residual,
@@ -292,17 +295,19 @@ fn keep_within_bounds(grid: &Grid, contact: &Contact, bound: &[f64], fields: &mu
     on_grid.fill(0.0);
 }
 
-/// Computes the slip ahead of the cells without the response to their shear.
+/// Computes the slip ahead of the cells without the response to their shear. Displacements that have changed by no more than `small` are
+/// changed in single precision.
 fn free_slip(
     problem: &PatchProblem,
     interface: &Interface,
     weights: &SlipWeights,
     fields: &PatchFields,
+    small: f64,
     solvers: &mut PatchSolvers,
 ) {
     let operators = problem.operators;
     let grid = &operators.grid;
-    given_displacement(problem, interface, fields, solvers);
+    given_displacement(problem, interface, fields, small, solvers);
     let ahead: isize = if problem.is_forward() { 1 } else { -1 };
     for component in 0..2 {
         let slip = &mut solvers.free_slip[component];
@@ -329,8 +334,15 @@ fn free_slip(
     }
 }
 
-/// Computes the displacement that does not come from shear: by pressure where the bodies differ, and by heat.
-fn given_displacement(problem: &PatchProblem, interface: &Interface, fields: &PatchFields, solvers: &mut PatchSolvers) {
+/// Computes the displacement that does not come from shear: by pressure where the bodies differ, and by heat, in single precision where that has
+/// changed by no more than `small`.
+fn given_displacement(
+    problem: &PatchProblem,
+    interface: &Interface,
+    fields: &PatchFields,
+    small: f64,
+    solvers: &mut PatchSolvers,
+) {
     let operators = problem.operators;
     let grid = &operators.grid;
     let window = Window::whole(grid);
@@ -350,7 +362,7 @@ fn given_displacement(problem: &PatchProblem, interface: &Interface, fields: &Pa
     let heat = &mut solvers.expansion;
     if operators
         .expansion
-        .displace(grid, &operators.transform, interface.displacement(), heat)
+        .displace(grid, &operators.transform, interface.displacement(), small, heat)
     {
         for (given, by_heat) in solvers.given.iter_mut().zip(&heat.displacement) {
             add_multiple(by_heat, 1.0, given);
@@ -442,7 +454,10 @@ fn mean_slip(problem: &PatchProblem, fields: &mut PatchFields, solvers: &mut Pat
 /// the tractions were solved for.
 pub fn finalise_displacement(problem: &PatchProblem, fields: &mut PatchFields, solvers: &mut PatchSolvers) {
     let operators = problem.operators;
-    let window = Window::whole(&operators.grid);
+    let window = Window {
+        loaded: solvers.contact.window(&operators.grid, 0).loaded,
+        ..Window::whole(&operators.grid)
+    };
     let [x, y] = &mut solvers.shear_displacement;
     let load = [&fields.shear[0][..], &fields.shear[1][..]];
     operators

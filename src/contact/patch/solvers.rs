@@ -123,5 +123,6 @@ impl PatchSolvers {
     pub fn start_step(&mut self) {
         self.normal.start_step();
         self.friction.start_step();
+        self.expansion.start_step();
     }
 }

@@ -489,7 +489,7 @@ impl Friction {
                 let load = [&load_single[0][..], &load_single[1][..]];
                 problem
                     .transform
-                    .apply_single(&problem.response.single, window, load, [x, y], scratch_single);
+                    .apply(&problem.response.single, window, load, [x, y], scratch_single);
             }
             let (out_along, out_across) = out.split_at_mut(n);
             for run in problem.contact.runs() {

@@ -10,7 +10,7 @@ mod tangent;
 
 use super::contact::{Contact, work_of_product};
 use crate::body::grid::Grid;
-use crate::body::influence::{self, Tables, Transform, Window};
+use crate::body::influence::{self, ScalarTables, Transform, Window};
 use crate::error::{Error, Result};
 use crate::mechanics::normal::normal_problem::Constraint;
 use crate::numerics::dense::{self, MultiplyAdd};
@@ -26,9 +26,9 @@ const SUMS: usize = 4;
 #[derive(Debug, Clone)]
 pub struct NormalInfluence {
     /// A.
-    pub tables: Tables<f64>,
+    pub tables: ScalarTables<f64>,
     /// A in single precision.
-    single: Tables<f32>,
+    single: ScalarTables<f32>,
     /// Diagonal of A: influence of a cell on itself.
     pub diagonal: f64,
     /// Inverse W of the Cholesky factor of a whole strip's own block, column by column and row by row, in vectors of [`WIDTH`]. That of a
@@ -132,9 +132,9 @@ pub struct NarrowInfluence {
     /// Transform of the tables.
     transform: Transform,
     /// A.
-    tables: Tables<f64>,
+    tables: ScalarTables<f64>,
     /// A in single precision.
-    single: Tables<f32>,
+    single: ScalarTables<f32>,
 }
 
 impl NarrowInfluence {
@@ -174,8 +174,8 @@ pub struct PatchNormalProblem<'a> {
 /// Transform and tables for a product, and the part of the grid that it reads.
 struct Frame<'p> {
     transform: &'p Transform,
-    tables: &'p Tables<f64>,
-    single: &'p Tables<f32>,
+    tables: &'p ScalarTables<f64>,
+    single: &'p ScalarTables<f32>,
     window: Window,
 }
 
@@ -188,11 +188,9 @@ pub struct Normal {
     /// Direction of the search on the grid, and its displacement.
     direction_grid: Vec<f64>,
     direction_image: Vec<f64>,
-    nothing: Vec<f64>,
-    ignored: Vec<f64>,
     scratch: influence::ProductScratch<f64>,
-    /// Direction, its displacement, and what belongs to the other component, in single precision.
-    single: [Vec<f32>; 4],
+    /// Direction and its displacement in single precision.
+    single: [Vec<f32>; 2],
     scratch_single: influence::ProductScratch<f32>,
     /// Residual of the cells; values of the cells are the following ones as well.
     residual: Vec<f64>,
@@ -227,8 +225,6 @@ impl Normal {
             displacement: on_grid(),
             direction_grid: on_grid(),
             direction_image: on_grid(),
-            nothing: on_grid(),
-            ignored: on_grid(),
             scratch: transform.scratch(),
             single: std::array::from_fn(|_| vec![0.0; grid.len()]),
             scratch_single: transform.scratch(),
@@ -391,13 +387,7 @@ impl Normal {
         self.displaced_by.copy_from_slice(pressure);
         self.displaced = window.clone();
         self.work_done += work_of_product(transform, &window, 1);
-        transform.apply(
-            tables,
-            &window,
-            [pressure, &self.nothing],
-            [&mut self.displacement, &mut self.ignored],
-            &mut self.scratch,
-        );
+        transform.apply_scalar(tables, &window, pressure, &mut self.displacement, &mut self.scratch);
     }
 
     /// The separation of all cells.
@@ -527,22 +517,16 @@ impl Normal {
             self.iterations += 1;
             // Of all cells that may come into contact: what lies beside it must be known to see whether it overlaps.
             if in_single {
-                let [direction, nothing, image, ignored] = &mut self.single;
+                let [direction, image] = &mut self.single;
                 contact.scatter_single(grid, &self.direction, direction);
-                let (load, out) = ([&direction[..], &nothing[..]], [&mut image[..], &mut ignored[..]]);
-                transform.apply_single(single, &window, load, out, &mut self.scratch_single);
+                transform.apply_scalar(single, &window, direction, image, &mut self.scratch_single);
                 for row in window.rows(grid) {
                     to_double(&image[row.clone()], &mut self.direction_image[row]);
                 }
             } else {
                 contact.scatter(grid, &self.direction, &mut self.direction_grid);
-                transform.apply(
-                    tables,
-                    &window,
-                    [&self.direction_grid, &self.nothing],
-                    [&mut self.direction_image, &mut self.ignored],
-                    &mut self.scratch,
-                );
+                let (direction, image) = (&self.direction_grid, &mut self.direction_image);
+                transform.apply_scalar(tables, &window, direction, image, &mut self.scratch);
             }
             contact.gather(grid, &self.direction_image, &mut self.image);
             let (direction, image, compliance) =
