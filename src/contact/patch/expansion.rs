@@ -179,6 +179,9 @@ impl Expansion {
                         // The last of them may be fewer: the others hold nothing.
                         let hot: [usize; QUAD] = std::array::from_fn(|k| (first + k).min(grid.strips - 1));
                         let own = std::array::from_fn(|k| if first + k < grid.strips { content(hot[k]) } else { 0.0 });
+                        if own == [0.0; QUAD] {
+                            continue;
+                        }
                         let kernels = hot.map(|hot| grid.row(strip.abs_diff(hot)));
                         arithmetic.add_quad(kernels.clone().map(|row| &along[row]), own, x);
                         // u_y is odd across the strips.

@@ -136,8 +136,19 @@ impl Scheme {
     }
 
     /// Law of a cell.
+    #[inline(always)]
     pub fn row(&self, cell: &Cell) -> CellLawRow {
-        let (slip, slip_by_ahead, slip_by_behind, slip_by_noise) = self.slip(cell);
+        self.row_at_slip(cell, self.slip(cell))
+    }
+
+    /// Law of a cell whose slip and derivatives are those of [`Scheme::slip`]. Inlined, it writes the row where it belongs: it is as long as
+    /// three lines of the cache.
+    #[inline(always)]
+    pub fn row_at_slip(
+        &self,
+        cell: &Cell,
+        (slip, slip_by_ahead, slip_by_behind, slip_by_noise): (Vector, Matrix, Matrix, Vector),
+    ) -> CellLawRow {
         let (residual, by_shear, by_slip, by_bound, sticks) = if self.regularisation > 0.0 {
             self.regularised(cell, slip)
         } else {

@@ -49,8 +49,10 @@ impl OnPath {
 
     /// Law of a cell, to be asked for in the order in which particles come to the cells of a run. The cell's bound follows from its slip;
     /// its dependence on the slip of the cells before is not in the row.
+    #[inline(always)]
     pub(super) fn row(&mut self, path: &PathOfCells, scheme: &Scheme, index: usize, mut cell: Cell) -> CellLawRow {
-        let (slip, by_ahead, by_behind, slip_by_noise) = scheme.slip(&cell);
+        let slip_of_law = scheme.slip(&cell);
+        let (slip, by_ahead, by_behind, slip_by_noise) = slip_of_law;
         let speed = dot(slip, slip).sqrt();
         // sᵀ/|s| times the slip's derivatives.
         let along = |matrix: [Vector; 2]| {
@@ -74,7 +76,7 @@ impl OnPath {
         (self.friction[index], self.speed[index]) = (friction, speed);
         (self.by_slip[index], self.by_noise[index]) = (by_slip, by_noise);
         cell.bound = friction.coefficient * pressure;
-        let mut row = scheme.row(&cell);
+        let mut row = scheme.row_at_slip(&cell, slip_of_law);
         let own = row.by_bound.map(|by_bound| by_bound * pressure * friction.by_speed());
         for (matrix, by_slip) in [&mut row.by_ahead, &mut row.by_behind].into_iter().zip(by_slip) {
             for (line, added) in matrix.iter_mut().zip(outer(own, by_slip)) {
