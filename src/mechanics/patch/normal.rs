@@ -472,21 +472,17 @@ impl Normal {
         self.single[0].fill(0.0);
         for iteration in 0..self.settings.normal_iterations {
             if load_given && n > 0 {
-                self.correct(problem, contact);
                 // The penetration takes what all cells have in common off the residual: kept in it, its round-off would grow into
-                // a change of the load.
-                let common = dense::sum(&self.corrected[..n]) / weight;
+                // a change of the load. It goes before preconditioning, whose single precision would round it.
+                let common = dense::dot(&self.ones[..n], &self.residual[..n]) / weight;
                 level += common;
-                let (corrected, residual, ones) = (&mut self.corrected[..n], &mut self.residual[..n], &self.ones[..n]);
-                dense::vectorised(
-                    #[inline(always)]
-                    |_| {
-                        for i in 0..n {
-                            corrected[i] -= common * ones[i];
-                            residual[i] -= common;
-                        }
-                    },
-                );
+                for residual in &mut self.residual[..n] {
+                    *residual -= common;
+                }
+                self.correct(problem, contact);
+                // What rounding has left of a change of the load.
+                let left = dense::sum(&self.corrected[..n]) / weight;
+                dense::add_multiple(&self.ones[..n], -left, &mut self.corrected[..n]);
             }
             error = dense::largest(&self.residual[..n]) / problem.normal_influence.diagonal;
             if iteration == 0 {
