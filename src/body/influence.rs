@@ -251,7 +251,7 @@ impl Transform {
 
 /// A precision that products are computed in.
 pub trait Precision: Real {
-    /// Its transform over the strips.
+    /// Transform over the strips in this precision.
     fn fourier(transform: &Transform) -> &Fourier<Self>;
 }
 

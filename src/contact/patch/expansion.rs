@@ -20,7 +20,7 @@ pub struct Expansion {
     pub bulge: f64,
     /// Displacement u along x and y by the heat content of the cells, scaled, per `K m`.
     cells: SourceTables<f64>,
-    /// The same in single precision.
+    /// `cells` in single precision.
     cells_single: SourceTables<f32>,
     /// Displacement u by the heat content of the rail left and right of the window, along x and y, scaled, per `K m`: for a strip
     /// that is 0, 1, … strips to the left of the hot one, a row over its cells.
