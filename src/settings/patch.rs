@@ -55,7 +55,8 @@ pub struct PatchSettings {
     /// Relative error of products in single precision, with its rounding in the sums of many Newton steps. Where this share of a
     /// correction is below the tolerance, the response to it is the sum of the responses to its Krylov directions, which are such products.
     pub single_round_off: f64,
-    /// Tolerance of the pressure from which on the products of conjugate gradients are in single precision.
+    /// Tolerance of the pressure, relative to the error it begins with, from which on the products of its conjugate gradients are in
+    /// single precision.
     pub single_tolerance: f64,
     /// Residual of the friction law, relative to the peak pressure, that will do in a staggered step where none smaller is reached.
     pub staggered_residual: f64,
