@@ -733,6 +733,28 @@ mod tests {
         }
     }
 
+    /// A wheel that stands higher by the same everywhere sinks by as much more: what the cells have in common is not left to single precision.
+    #[test]
+    fn a_height_that_all_cells_have_in_common_costs_nothing() {
+        let rail = rail();
+        let grid = &rail.grid;
+        let unworn = vec![0.0; grid.len()];
+        let [low, high] = [0.0, 1e3].map(|height| {
+            let mut normal = Normal::new(grid, &rail.transform, Settings::default().patch);
+            let mut pressure = vec![0.0; grid.len()];
+            let gap: Vec<f64> = rail.gap.iter().map(|gap| gap + height).collect();
+            let problem = problem(&rail, &gap, &unworn, Constraint::Total(80e3 / rail.unit_force()));
+            let penetration = normal.solve(&problem, &mut Contact::new(grid), &mut pressure).unwrap();
+            (penetration - height, pressure, normal.iterations())
+        });
+        assert!((low.0 - high.0).abs() < 1e-9, "{} {}", low.0, high.0);
+        let largest = dense::largest(&low.1);
+        for (low, high) in low.1.iter().zip(&high.1) {
+            assert!((low - high).abs() < 100.0 * TOLERANCE * largest, "{low} {high}");
+        }
+        assert_eq!(low.2, high.2);
+    }
+
     /// A pressure to begin with where the bodies are apart, all of whose cells pull at once, and an overlap elsewhere.
     #[test]
     fn a_patch_whose_cells_all_pull_finds_the_overlap() {
