@@ -20,7 +20,8 @@ use super::grid::Grid;
 use crate::numerics::dense;
 use crate::numerics::fourier::{Fourier, Rows, good_size};
 use crate::numerics::real::{BLOCK, Real};
-use convolution::{Product, ScalarProduct, SourceProduct};
+use crate::numerics::single::rounded;
+use convolution::{Kernels, Product};
 use std::f64::consts::TAU;
 use std::ops::Range;
 
@@ -188,58 +189,22 @@ impl Transform {
         table
     }
 
-    /// The product: `out` = tables · `load`, both as x and y components on the grid. What is not read stays.
-    pub fn apply<T: Precision>(
-        &self,
-        tables: &Tables<T>,
-        window: &Window,
-        load: [&[T]; 2],
-        out: [&mut [T]; 2],
-        scratch: &mut ProductScratch<T>,
+    /// Places of a harmonic in a table.
+    fn lags_of(&self, harmonic: usize) -> Range<usize> {
+        harmonic * self.lags..(harmonic + 1) * self.lags
+    }
+
+    /// The product: `out` = tables · `load` on the grid, with x and y components of those that the tables have two of. What is not read stays.
+    pub fn apply<'a, K: Kernels>(
+        &'a self,
+        tables: &'a K,
+        window: &'a Window,
+        load: K::Load<'a>,
+        out: K::Out<'a>,
+        scratch: &'a mut ProductScratch<K::Real>,
     ) {
         dense::with_vectors(Product {
             transform: self,
-            fourier: T::fourier(self),
-            tables,
-            window,
-            load,
-            out,
-            scratch,
-        });
-    }
-
-    /// The product of A with one component: `out` = A · `load`, on the grid. What is not read stays.
-    pub fn apply_scalar<T: Precision>(
-        &self,
-        tables: &ScalarTables<T>,
-        window: &Window,
-        load: &[T],
-        out: &mut [T],
-        scratch: &mut ProductScratch<T>,
-    ) {
-        dense::with_vectors(ScalarProduct {
-            transform: self,
-            fourier: T::fourier(self),
-            tables,
-            window,
-            load,
-            out,
-            scratch,
-        });
-    }
-
-    /// The products of A and of B with one component: `out` = (A · `load`, B · `load`), on the grid. What is not read stays.
-    pub fn apply_source<T: Precision>(
-        &self,
-        tables: &SourceTables<T>,
-        window: &Window,
-        load: &[T],
-        out: [&mut [T]; 2],
-        scratch: &mut ProductScratch<T>,
-    ) {
-        dense::with_vectors(SourceProduct {
-            transform: self,
-            fourier: T::fourier(self),
             tables,
             window,
             load,
@@ -250,7 +215,7 @@ impl Transform {
 }
 
 /// A precision that products are computed in.
-pub trait Precision: Real {
+pub trait Precision: Real + 'static {
     /// Transform over the strips in this precision.
     fn fourier(transform: &Transform) -> &Fourier<Self>;
 }
@@ -311,19 +276,12 @@ impl Tables<f64> {
             }
         }
     }
-}
 
-/// Values in single precision.
-fn single(table: &[f64]) -> Vec<f32> {
-    table.iter().map(|&value| value as f32).collect()
-}
-
-impl Tables<f64> {
     /// Tables in single precision.
     pub fn single(&self) -> Tables<f32> {
         Tables {
-            even: [single(&self.even[0]), single(&self.even[1])],
-            odd: single(&self.odd),
+            even: [rounded(&self.even[0]), rounded(&self.even[1])],
+            odd: rounded(&self.odd),
         }
     }
 }
@@ -332,7 +290,7 @@ impl ScalarTables<f64> {
     /// Tables in single precision.
     pub fn single(&self) -> ScalarTables<f32> {
         ScalarTables {
-            even: single(&self.even),
+            even: rounded(&self.even),
         }
     }
 }
@@ -341,8 +299,8 @@ impl SourceTables<f64> {
     /// Tables in single precision.
     pub fn single(&self) -> SourceTables<f32> {
         SourceTables {
-            even: single(&self.even),
-            odd: single(&self.odd),
+            even: rounded(&self.even),
+            odd: rounded(&self.odd),
         }
     }
 }
@@ -397,10 +355,10 @@ mod tests {
                 let [x, y] = &mut out;
                 transform.apply(&tables, &window, [&load[0], &load[1]], [x, y], &mut transform.scratch());
                 for (scalar_out, load) in scalars.iter_mut().zip(&load) {
-                    transform.apply_scalar(&scalar, &window, load, scalar_out, &mut transform.scratch());
+                    transform.apply(&scalar, &window, load, scalar_out, &mut transform.scratch());
                 }
                 let [x, y] = &mut sources;
-                transform.apply_source(&source, &window, &load[0], [x, y], &mut transform.scratch());
+                transform.apply(&source, &window, &load[0], [x, y], &mut transform.scratch());
                 let [x, y] = &mut singles;
                 transform.apply(&tables.single(), &window, [&given[0], &given[1]], [x, y], &mut transform.scratch());
             }

@@ -298,7 +298,7 @@ impl<'a> PlacedWheel<'a> {
     /// f and its gradient in the wheel's own axes, at a distance along the normal.
     fn at(&self, base: [f64; 3], along: [f64; 3], distance: f64) -> Outside {
         let [qx, qy, qz] = add(base, along, distance);
-        // Neither is small or large, as `hypot` would have to look at.
+        // `hypot`, which takes longer, would keep squares from overflow: none is near.
         let radius = (qx * qx + qz * qz).sqrt();
         let [height, slope, second] = self.wheel.profile.value_slope_curvature(qy - self.wheel.offset);
         Outside {

@@ -14,6 +14,7 @@ use super::compression::{Moments, block_responses};
 use crate::body::compliance::ThermalDisplacement;
 use crate::body::mesh::Mesh;
 use crate::numerics::dense::{self, LANES, MultiplyAdd};
+use crate::numerics::single::rounded;
 use nalgebra::DMatrix;
 use std::ops::Range;
 
@@ -83,9 +84,9 @@ impl ThermalMap {
             blocks.push(ColumnBlock {
                 columns: response.columns,
                 far_moments: far_moments..far_moments + own,
-                combinations: single(&response.combinations),
+                combinations: rounded(&response.combinations),
                 near: response.near,
-                near_response: single(&response.near_response),
+                near_response: rounded(&response.near_response),
             });
             far_moments += own;
         }
@@ -97,7 +98,7 @@ impl ThermalMap {
             far_moments,
             weights,
             blocks,
-            far_response: single(far_response.resize_vertically(far_moments, 0.0).as_slice()),
+            far_response: rounded(far_response.resize_vertically(far_moments, 0.0).as_slice()),
         }
     }
 
@@ -196,10 +197,6 @@ impl ThermalMap {
             }
         }
     }
-}
-
-fn single(values: &[f64]) -> Vec<f32> {
-    values.iter().map(|&value| value as f32).collect()
 }
 
 /// `out += rows · x`.

@@ -62,6 +62,14 @@ impl MultiplyAdd {
         }
     }
 
+    /// Adds a multiple of values in single precision: `out += factor · x`.
+    #[inline(always)]
+    pub fn add_multiple_of_single(self, x: &[f32], factor: f64, out: &mut [f64]) {
+        for (out, x) in out.iter_mut().zip(x) {
+            *out = self.multiply_add(factor, f64::from(*x), *out);
+        }
+    }
+
     /// Adds multiples of columns: `out += Σ factors · columns`.
     #[inline(always)]
     pub fn add_quad(self, columns: [&[f64]; QUAD], [a, b, c, d]: [f64; QUAD], out: &mut [f64]) {

@@ -41,6 +41,11 @@ pub fn add_multiple(x: &[f32], factor: f32, out: &mut [f32]) {
     );
 }
 
+/// Values in single precision.
+pub fn rounded(values: &[f64]) -> Vec<f32> {
+    values.iter().map(|&value| value as f32).collect()
+}
+
 /// Values of a vector register of AVX2: a matrix that is factorised has a multiple of as many rows.
 pub const WIDTH: usize = 8;
 /// Values of a vector register.

@@ -1,36 +1,58 @@
 //! The product of the tables with a load: transforms over the strips, convolutions along them.
 
-use super::{ProductScratch, ScalarTables, SourceTables, Tables, Transform, Window};
-use crate::numerics::fourier::{Fourier, Rows};
+use super::{Precision, ProductScratch, ScalarTables, SourceTables, Tables, Transform, Window};
+use crate::numerics::fourier::Rows;
 use crate::numerics::real::Real;
 use pulp::{Simd, WithSimd};
 use std::ops::Range;
 
-/// A product, for the vectors that a machine has.
-pub(super) struct Product<'a, T> {
-    pub(super) transform: &'a Transform,
-    pub(super) fourier: &'a Fourier<T>,
-    pub(super) tables: &'a Tables<T>,
-    pub(super) window: &'a Window,
-    pub(super) load: [&'a [T]; 2],
-    pub(super) out: [&'a mut [T]; 2],
-    pub(super) scratch: &'a mut ProductScratch<T>,
+/// Tables of kernels, with the product that they stand for.
+pub trait Kernels: Sized {
+    /// Precision of the tables, and of their product.
+    type Real: Precision;
+    /// Load on the grid.
+    type Load<'a>;
+    /// Result on the grid.
+    type Out<'a>;
+
+    /// Computes a product by the vectors that a machine has.
+    fn multiply<S: Simd>(simd: S, product: Product<'_, Self>);
 }
 
-impl<T: Real> WithSimd for Product<'_, T> {
+/// A product of tables with a load.
+pub struct Product<'a, K: Kernels> {
+    pub(super) transform: &'a Transform,
+    pub(super) tables: &'a K,
+    pub(super) window: &'a Window,
+    pub(super) load: K::Load<'a>,
+    pub(super) out: K::Out<'a>,
+    pub(super) scratch: &'a mut ProductScratch<K::Real>,
+}
+
+impl<K: Kernels> WithSimd for Product<'_, K> {
     type Output = ();
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
+        K::multiply(simd, self);
+    }
+}
+
+impl<T: Precision> Kernels for Tables<T> {
+    type Real = T;
+    type Load<'a> = [&'a [T]; 2];
+    type Out<'a> = [&'a mut [T]; 2];
+
+    #[inline(always)]
+    fn multiply<S: Simd>(simd: S, product: Product<'_, Self>) {
         let Product {
             transform,
-            fourier,
             tables,
             window,
             load,
             out,
             scratch,
-        } = self;
+        } = product;
         let ProductScratch {
             rows,
             other,
@@ -41,6 +63,7 @@ impl<T: Real> WithSimd for Product<'_, T> {
         let lanes = T::lanes::<S>();
         let loaded = window.loaded.len().next_multiple_of(lanes);
         let read = window.read.len().next_multiple_of(lanes);
+        let fourier = T::fourier(transform);
         let size = fourier.size();
         let all = 0..window.loaded.len();
         for (rows, load) in [&mut rows.re, &mut rows.im].into_iter().zip(load) {
@@ -50,8 +73,7 @@ impl<T: Real> WithSimd for Product<'_, T> {
         let ranges = Ranges::new(transform, window, read);
         for harmonic in 0..transform.harmonics() {
             let [own, mirror] = places(size, harmonic, loaded);
-            let [own_out, mirror_out] = places(size, harmonic, read);
-            let lags = harmonic * transform.lags..(harmonic + 1) * transform.lags;
+            let lags = transform.lags_of(harmonic);
             let kernels = [
                 &tables.even[0][lags.clone()],
                 &tables.odd[lags.clone()],
@@ -67,60 +89,48 @@ impl<T: Real> WithSimd for Product<'_, T> {
                 &ranges,
                 [sum_xr, sum_xi, sum_yr, sum_yi],
             );
-            put_together(simd, [sum_xr, sum_xi, sum_yr, sum_yi], &own_out, &mirror_out, other);
+            let [own, mirror] = places(size, harmonic, read);
+            put_together(simd, [sum_xr, sum_xi, sum_yr, sum_yi], &own, &mirror, other);
         }
-        fourier.backward(simd, read, other, rows);
-        let all = 0..window.read.len();
-        for (component, out) in [&other.re, &other.im].into_iter().zip(out) {
-            give(transform, window, component, read, all.clone(), out);
-        }
+        give_both(simd, transform, window, [other, rows], out);
     }
 }
 
-/// A product of the kernel A alone, with one component. Its load is real: the first half of the cells travels as real part and the other
-/// half as imaginary part through a transform that is half as wide, and so does the result.
-pub(super) struct ScalarProduct<'a, T> {
-    pub(super) transform: &'a Transform,
-    pub(super) fourier: &'a Fourier<T>,
-    pub(super) tables: &'a ScalarTables<T>,
-    pub(super) window: &'a Window,
-    pub(super) load: &'a [T],
-    pub(super) out: &'a mut [T],
-    pub(super) scratch: &'a mut ProductScratch<T>,
-}
-
-impl<T: Real> WithSimd for ScalarProduct<'_, T> {
-    type Output = ();
+/// The load is real: the first half of the cells travels as real part and the other half as imaginary part through a transform that is half
+/// as wide, and so does the result.
+impl<T: Precision> Kernels for ScalarTables<T> {
+    type Real = T;
+    type Load<'a> = &'a [T];
+    type Out<'a> = &'a mut [T];
 
     #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) {
-        let ScalarProduct {
+    fn multiply<S: Simd>(simd: S, product: Product<'_, Self>) {
+        let Product {
             transform,
-            fourier,
             tables,
             window,
             load,
             out,
             scratch,
-        } = self;
+        } = product;
         let ProductScratch {
             rows,
             other,
             parts: [re, im, ..],
             sums: [sum_re, sum_im, ..],
         } = scratch;
+        let fourier = T::fourier(transform);
         let (size, half) = (fourier.size(), half::<T, S>(&window.read));
-        let loaded = transform_halves(simd, transform, fourier, window, load, rows, other);
+        let loaded = transform_halves(simd, transform, window, load, rows, other);
         let ranges = Ranges::new(transform, window, 2 * half);
         for harmonic in 0..transform.harmonics() {
             let [own, mirror] = places(size, harmonic, loaded);
-            let [own_out, mirror_out] = places(size, harmonic, half);
-            let kernel = &tables.even[harmonic * transform.lags..(harmonic + 1) * transform.lags];
             take_halves_apart(simd, rows, &own, &mirror, [re, im]);
+            let kernel = &tables.even[transform.lags_of(harmonic)];
             convolve_one(simd, kernel, [re, im], &ranges, [sum_re, sum_im]);
             let ((first_re, second_re), (first_im, second_im)) = (sum_re.split_at(half), sum_im.split_at(half));
-            let halves = [first_re, first_im, second_re, second_im];
-            put_together(simd, halves, &own_out, &mirror_out, other);
+            let [own, mirror] = places(size, harmonic, half);
+            put_together(simd, [first_re, first_im, second_re, second_im], &own, &mirror, other);
         }
         fourier.backward(simd, half, other, rows);
         let count = window.read.len();
@@ -129,57 +139,60 @@ impl<T: Real> WithSimd for ScalarProduct<'_, T> {
     }
 }
 
-/// A product of the kernels A and B with a load of one component: out_x = A τ, out_y = B τ. The load travels as that of
-/// [`ScalarProduct`], the result as that of [`Product`].
-pub(super) struct SourceProduct<'a, T> {
-    pub(super) transform: &'a Transform,
-    pub(super) fourier: &'a Fourier<T>,
-    pub(super) tables: &'a SourceTables<T>,
-    pub(super) window: &'a Window,
-    pub(super) load: &'a [T],
-    pub(super) out: [&'a mut [T]; 2],
-    pub(super) scratch: &'a mut ProductScratch<T>,
-}
-
-impl<T: Real> WithSimd for SourceProduct<'_, T> {
-    type Output = ();
+/// The load travels as that of [`ScalarTables`], the result as that of [`Tables`]: out_x = A τ, out_y = B τ.
+impl<T: Precision> Kernels for SourceTables<T> {
+    type Real = T;
+    type Load<'a> = &'a [T];
+    type Out<'a> = [&'a mut [T]; 2];
 
     #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) {
-        let SourceProduct {
+    fn multiply<S: Simd>(simd: S, product: Product<'_, Self>) {
+        let Product {
             transform,
-            fourier,
             tables,
             window,
             load,
             out,
             scratch,
-        } = self;
+        } = product;
         let ProductScratch {
             rows,
             other,
             parts: [re, im, ..],
-            sums,
+            sums: [sum_xr, sum_xi, sum_yr, sum_yi],
         } = scratch;
-        let size = fourier.size();
+        let size = T::fourier(transform).size();
         let read = window.read.len().next_multiple_of(T::lanes::<S>());
-        let loaded = transform_halves(simd, transform, fourier, window, load, rows, other);
+        let loaded = transform_halves(simd, transform, window, load, rows, other);
         let ranges = Ranges::new(transform, window, read);
         for harmonic in 0..transform.harmonics() {
             let [own, mirror] = places(size, harmonic, loaded);
-            let [own_out, mirror_out] = places(size, harmonic, read);
-            let lags = harmonic * transform.lags..(harmonic + 1) * transform.lags;
-            let kernels = [&tables.even[lags.clone()], &tables.odd[lags]];
             take_halves_apart(simd, rows, &own, &mirror, [re, im]);
-            let [sum_xr, sum_xi, sum_yr, sum_yi] = &mut *sums;
-            convolve_source(simd, kernels, [re, im], &ranges, [sum_xr, sum_xi, sum_yr, sum_yi]);
-            put_together(simd, [sum_xr, sum_xi, sum_yr, sum_yi], &own_out, &mirror_out, other);
+            let lags = transform.lags_of(harmonic);
+            convolve_one(simd, &tables.even[lags.clone()], [re, im], &ranges, [sum_xr, sum_xi]);
+            // The transform of an odd kernel is −i b: the product's is Σ b im − i Σ b re.
+            convolve_one(simd, &tables.odd[lags], [im, re], &ranges, [sum_yr, sum_yi]);
+            negate(simd, &mut sum_yi[..read]);
+            let [own, mirror] = places(size, harmonic, read);
+            put_together(simd, [sum_xr, sum_xi, sum_yr, sum_yi], &own, &mirror, other);
         }
-        fourier.backward(simd, read, other, rows);
-        let all = 0..window.read.len();
-        for (component, out) in [&other.re, &other.im].into_iter().zip(out) {
-            give(transform, window, component, read, all.clone(), out);
-        }
+        give_both(simd, transform, window, [other, rows], out);
+    }
+}
+
+/// Transforms the product of two components back and copies it from real and imaginary part to where it is read.
+#[inline(always)]
+fn give_both<T: Precision, S: Simd>(
+    simd: S,
+    transform: &Transform,
+    window: &Window,
+    [rows, other]: [&mut Rows<T>; 2],
+    out: [&mut [T]; 2],
+) {
+    let width = window.read.len().next_multiple_of(T::lanes::<S>());
+    T::fourier(transform).backward(simd, width, rows, other);
+    for (component, out) in [&rows.re, &rows.im].into_iter().zip(out) {
+        give(transform, window, component, width, 0..window.read.len(), out);
     }
 }
 
@@ -224,15 +237,15 @@ fn give<T: Real>(transform: &Transform, window: &Window, rows: &[T], width: usiz
 
 /// Transforms a load of one component, its halves as real and imaginary parts. Returns the width of the rows.
 #[inline(always)]
-fn transform_halves<T: Real, S: Simd>(
+fn transform_halves<T: Precision, S: Simd>(
     simd: S,
     transform: &Transform,
-    fourier: &Fourier<T>,
     window: &Window,
     load: &[T],
     rows: &mut Rows<T>,
     other: &mut Rows<T>,
 ) -> usize {
+    let fourier = T::fourier(transform);
     let (half, count) = (half::<T, S>(&window.loaded), window.loaded.len());
     let size = fourier.size() * half;
     let halves = [0..half.min(count), half.min(count)..count];
@@ -366,52 +379,12 @@ fn convolve_one_block<T: Real, S: Simd, const VECTORS: usize>(
     }
 }
 
-/// Convolution with the kernels a and b of one complex value: out_x = Σ a x, out_y = −i Σ b x (see [`convolve`]).
+/// Changes the sign.
 #[inline(always)]
-fn convolve_source<T: Real, S: Simd>(
-    simd: S,
-    kernels: [&[T]; 2],
-    values: [&[T]; 2],
-    ranges: &Ranges,
-    mut out: [&mut [T]; 4],
-) {
-    let lanes = T::lanes::<S>();
-    let mut start = 0;
-    while start + 2 * lanes <= ranges.read {
-        convolve_source_block::<T, S, 2>(simd, kernels, values, ranges, start, &mut out);
-        start += 2 * lanes;
-    }
-    if start < ranges.read {
-        convolve_source_block::<T, S, 1>(simd, kernels, values, ranges, start, &mut out);
-    }
-}
-
-/// The sums of [`convolve_source`] at so many vectors of places.
-#[inline(always)]
-fn convolve_source_block<T: Real, S: Simd, const VECTORS: usize>(
-    simd: S,
-    [a, b]: [&[T]; 2],
-    [re, im]: [&[T]; 2],
-    ranges: &Ranges,
-    start: usize,
-    out: &mut [&mut [T]; 4],
-) {
-    let block = VECTORS * T::lanes::<S>();
-    let zero = [T::splat(simd, T::default()); VECTORS];
-    let (mut sum_xr, mut sum_xi, mut sum_yr, mut sum_yi) = (zero, zero, zero, zero);
-    for cell in 0..ranges.cells {
-        let lag = ranges.origin + start - cell;
-        let [a, b] = [a, b].map(|kernel| T::vectors::<S>(&kernel[lag..lag + block]));
-        let (re, im) = (T::splat(simd, re[cell]), T::splat(simd, im[cell]));
-        for k in 0..VECTORS {
-            sum_xr[k] = T::multiply_add(simd, a[k], re, sum_xr[k]);
-            sum_xi[k] = T::multiply_add(simd, a[k], im, sum_xi[k]);
-            sum_yr[k] = T::multiply_add(simd, b[k], im, sum_yr[k]);
-            sum_yi[k] = T::multiply_subtract(simd, b[k], re, sum_yi[k]);
-        }
-    }
-    for (out, sums) in out.iter_mut().zip([sum_xr, sum_xi, sum_yr, sum_yi]) {
-        T::vectors_mut::<S>(&mut out[start..start + block]).copy_from_slice(&sums);
+fn negate<T: Real, S: Simd>(simd: S, values: &mut [T]) {
+    let zero = T::splat(simd, T::default());
+    for value in T::vectors_mut::<S>(values) {
+        *value = T::subtract(simd, zero, *value);
     }
 }
 

@@ -31,9 +31,9 @@ pub struct Expansion {
 pub struct ExpansionBuffers {
     /// Displacement u on the grid, along x and y, scaled.
     pub displacement: [Vec<f64>; 2],
-    /// Heat content on the grid that `displacement` belongs to, `K m`.
+    /// Heat content on the grid, `K m`.
     content: Vec<f64>,
-    /// Whether it does.
+    /// Whether `displacement` is that of `content`.
     known: bool,
     /// Change of the content, `K m`; in single precision, and its displacement.
     change: Vec<f64>,
@@ -142,14 +142,19 @@ impl Expansion {
         );
         if *known && self.bulge * largest(change) <= small {
             let [x, y] = &mut *displacement_single;
-            transform.apply_source(&self.cells_single, &window, change_single, [x, y], products_single);
-            for (displacement, change) in displacement.iter_mut().zip(&*displacement_single) {
-                add_single(change, displacement);
-            }
+            transform.apply(&self.cells_single, &window, change_single, [x, y], products_single);
+            dense::vectorised(
+                #[inline(always)]
+                |arithmetic| {
+                    for (displacement, change) in displacement.iter_mut().zip(&*displacement_single) {
+                        arithmetic.add_multiple_of_single(change, 1.0, displacement);
+                    }
+                },
+            );
             self.add_outside(grid, change, displacement);
         } else {
             let [x, y] = &mut *displacement;
-            transform.apply_source(&self.cells, &window, content, [x, y], products);
+            transform.apply(&self.cells, &window, content, [x, y], products);
             self.add_outside(grid, content, displacement);
             *known = true;
         }
@@ -192,16 +197,4 @@ impl Expansion {
             },
         );
     }
-}
-
-/// out += x.
-fn add_single(x: &[f32], out: &mut [f64]) {
-    dense::vectorised(
-        #[inline(always)]
-        |_| {
-            for (out, x) in out.iter_mut().zip(x) {
-                *out += f64::from(*x);
-            }
-        },
-    );
 }

@@ -96,8 +96,21 @@ impl Apart {
         self.resultants.iter().filter(|own| !own.is_empty()).count() > 1
     }
 
+    /// Takes the pressure that a window has now, or its change, where there are others that it displaces.
+    pub fn take_for_others(
+        &mut self,
+        operators: &SurfaceOperators,
+        fields: &SurfaceFields,
+        window: usize,
+        place: &Place,
+    ) {
+        if fields.used().count() > 1 {
+            self.take(operators, fields, window, place);
+        }
+    }
+
     /// Takes the pressure that a window has now, or its change.
-    pub fn take(&mut self, operators: &SurfaceOperators, fields: &SurfaceFields, window: usize, place: &Place) {
+    fn take(&mut self, operators: &SurfaceOperators, fields: &SurfaceFields, window: usize, place: &Place) {
         self.take_pressure(operators, &fields.windows[window].pressure, window, place);
     }
 

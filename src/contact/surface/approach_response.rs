@@ -72,18 +72,13 @@ fn respond(problem: &SurfaceProblem, fields: &SurfaceFields, solvers: &mut Surfa
 /// Changes the pressures by their responses to a change of the approach, `m`.
 pub fn advance(problem: &SurfaceProblem, change: f64, fields: &mut SurfaceFields, solvers: &mut SurfaceSolvers) {
     let operators = problem.operators;
-    let alone = fields.used().count() == 1;
     for (window, place) in fields.used() {
         let own = &mut solvers.windows[window];
         let patch = operators.of(&place);
         let change = change / patch.scales.displacement;
         let pressure = &mut fields.windows[window].pressure;
         own.patch.normal.advance(&patch.grid, &own.response, change, pressure);
-        if alone {
-            // Nothing else is displaced.
-            continue;
-        }
-        solvers.apart.take(operators, fields, window, &place);
+        solvers.apart.take_for_others(operators, fields, window, &place);
         solvers.apart.add(&solvers.apart_response, change, window);
     }
 }

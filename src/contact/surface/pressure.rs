@@ -303,11 +303,7 @@ fn press_at(
             }
             press_window(problem, approach, fields, solvers, (window, place), tolerance)?;
             pending[window] = 0.0;
-            if fields.used().count() == 1 {
-                // Nothing else is displaced.
-                continue;
-            }
-            solvers.apart.take(operators, fields, window, &place);
+            solvers.apart.take_for_others(operators, fields, window, &place);
             for (other, place) in fields.used().filter(|(other, _)| *other != window) {
                 let scale = operators.of(&place).scales.displacement;
                 let displaced = solvers.apart.displace(operators, other, &place);

@@ -359,7 +359,7 @@ impl Parts<'_> {
             for (window, place) in self.fields.used() {
                 left = f64::max(left, self.apart.displace(operators, window, &place));
                 self.follow(window, along, change)?;
-                self.apart.take(operators, change, window, &place);
+                self.apart.take_for_others(operators, change, window, &place);
                 size = size
                     .max(largest(&self.windows[window].gap))
                     .max(largest(&self.apart.displacement[window]));

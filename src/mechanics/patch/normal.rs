@@ -14,7 +14,7 @@ use crate::body::influence::{self, ScalarTables, Transform, Window};
 use crate::error::{Error, Result};
 use crate::mechanics::normal::normal_problem::Constraint;
 use crate::numerics::dense::{self, MultiplyAdd};
-use crate::numerics::single::{WIDTH, Wide, padded};
+use crate::numerics::single::{WIDTH, Wide, padded, rounded};
 use crate::settings::PatchSettings;
 use nalgebra::DMatrix;
 use std::ops::Range;
@@ -117,7 +117,7 @@ fn in_vectors(matrix: &DMatrix<f64>) -> Vec<Wide> {
     let columns = matrix.column_iter();
     columns
         .flat_map(|column| {
-            let values: Vec<f32> = column.iter().map(|&value| value as f32).collect();
+            let values = rounded(column.as_slice());
             let vectors = values
                 .chunks(WIDTH)
                 .map(|part| std::array::from_fn(|lane| part.get(lane).copied().unwrap_or(0.0)));
@@ -387,7 +387,7 @@ impl Normal {
         self.displaced_by.copy_from_slice(pressure);
         self.displaced = window.clone();
         self.work_done += work_of_product(transform, &window, 1);
-        transform.apply_scalar(tables, &window, pressure, &mut self.displacement, &mut self.scratch);
+        transform.apply(tables, &window, pressure, &mut self.displacement, &mut self.scratch);
     }
 
     /// The separation of all cells.
@@ -479,10 +479,6 @@ impl Normal {
                 for residual in &mut self.residual[..n] {
                     *residual -= common;
                 }
-                self.correct(problem, contact);
-                // What rounding has left of a change of the load.
-                let left = dense::sum(&self.corrected[..n]) / weight;
-                dense::add_multiple(&self.ones[..n], -left, &mut self.corrected[..n]);
             }
             error = dense::largest(&self.residual[..n]) / problem.normal_influence.diagonal;
             if iteration == 0 {
@@ -493,9 +489,11 @@ impl Normal {
             if error <= tolerance {
                 break;
             }
-            // Under a given penetration the error is known without preconditioning: that of the last residual is saved.
-            if !load_given {
-                self.correct(problem, contact);
+            self.correct(problem, contact);
+            if load_given {
+                // What rounding has left of a change of the load.
+                let left = dense::sum(&self.corrected[..n]) / weight;
+                dense::add_multiple(&self.ones[..n], -left, &mut self.corrected[..n]);
             }
             let product = dense::dot(&self.residual[..n], &self.corrected[..n]);
             let ratio = if iteration == 0 { 0.0 } else { product / last };
@@ -515,14 +513,14 @@ impl Normal {
             if in_single {
                 let [direction, image] = &mut self.single;
                 contact.scatter_single(grid, &self.direction, direction);
-                transform.apply_scalar(single, &window, direction, image, &mut self.scratch_single);
+                transform.apply(single, &window, direction, image, &mut self.scratch_single);
                 for row in window.rows(grid) {
                     to_double(&image[row.clone()], &mut self.direction_image[row]);
                 }
             } else {
                 contact.scatter(grid, &self.direction, &mut self.direction_grid);
                 let (direction, image) = (&self.direction_grid, &mut self.direction_image);
-                transform.apply_scalar(tables, &window, direction, image, &mut self.scratch);
+                transform.apply(tables, &window, direction, image, &mut self.scratch);
             }
             contact.gather(grid, &self.direction_image, &mut self.image);
             let (direction, image, compliance) =

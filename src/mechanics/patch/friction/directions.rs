@@ -5,7 +5,7 @@
 
 use crate::body::grid::Grid;
 use crate::body::influence::Window;
-use crate::numerics::dense::{self, MultiplyAdd};
+use crate::numerics::dense;
 use crate::numerics::single;
 
 /// Directions for up to so many iterations, in single precision.
@@ -54,19 +54,11 @@ impl Directions {
                         sum.fill(0.0);
                         let responses = self.responses[component * self.len..].chunks(2 * self.len);
                         for (share, response) in shares.iter().zip(responses) {
-                            add_multiple(arithmetic, &response[read.clone()], f64::from(*share), sum);
+                            arithmetic.add_multiple_of_single(&response[read.clone()], f64::from(*share), sum);
                         }
                     }
                 }
             },
         );
-    }
-}
-
-/// out += factor x, in double precision.
-#[inline(always)]
-fn add_multiple(arithmetic: MultiplyAdd, x: &[f32], factor: f64, out: &mut [f64]) {
-    for (out, x) in out.iter_mut().zip(x) {
-        *out = arithmetic.multiply_add(factor, f64::from(*x), *out);
     }
 }
