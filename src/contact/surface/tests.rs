@@ -430,6 +430,71 @@ fn windows_displace_each_other_as_their_cells_do() {
     }
 }
 
+/// A loaded cell displaces another window as a point force does, wherever it lies in its block: to the second order in its distance δ from the
+/// block's middle and in the distances d of the places of the target, over the distance r.
+#[test]
+fn a_cell_displaces_another_window_as_a_point_force() {
+    let parameters = parameters(Control::Load);
+    let operators = SurfaceOperators::build(&parameters).unwrap();
+    let inputs = Inputs {
+        normal_load: 20e3,
+        vertical_displacement: 0.0,
+        ..displaced(5e-3)
+    };
+    let state = run(&parameters, &inputs, 0);
+    let (window, place) = fields(&state).used().next().unwrap();
+    let (other, from) = fields(&state).used().nth(1).unwrap();
+    let (grid, source) = (&operators.of(&place).grid, &operators.of(&from).grid);
+    let scales = &operators.of(&place).scales;
+    let unit = operators.pair.normal() * scales.pressure / scales.displacement * source.cell_area();
+    // The four corners of a block of 4 strips and 6 cells.
+    let block = [8, 12];
+    let mut compared = 0;
+    for (strip, cell) in [(0, 0), (0, 5), (3, 0), (3, 5)] {
+        let (strip, cell) = (block[0] + strip, block[1] + cell);
+        let mut pressure = vec![0.0; source.len()];
+        pressure[source.place(strip, cell)] = 1.0;
+        let mut apart = Apart::new(&operators);
+        apart.take_pressure(&operators, &pressure, other, &from);
+        apart.displace(&operators, window, &place);
+        let at = |strip: usize, cell: usize| [from.middle_along(source) + source.x(cell), from.arc(source, strip)];
+        let [u, v] = at(strip, cell);
+        let (first, last) = (at(block[0], block[1]), at(block[0] + 3, block[1] + 5));
+        let middle = [0.5 * (first[0] + last[0]), 0.5 * (first[1] + last[1])];
+        let of_block = (2.5 * source.length).hypot(1.5 * source.breadth);
+        let between = (6.0 * grid.length).hypot(4.0 * grid.breadth);
+        for (row, column) in (0..grid.strips).flat_map(|row| (0..grid.cells).map(move |column| (row, column))) {
+            let [x, y] = [place.middle_along(grid) + grid.x(column), place.arc(grid, row)];
+            let distance = (x - u).hypot(y - v);
+            // Nearer than the blocks and the places are large there is no order.
+            if distance < 2.0 * (of_block + between) {
+                continue;
+            }
+            compared += 1;
+            let found = apart.displacement[window][grid.place(row, column)];
+            let exact = unit / distance;
+            // A series of powers of δ over the distance from the block's middle.
+            let from_middle = (x - middle[0]).hypot(y - middle[1]);
+            let of_series = (of_block / from_middle).powi(2) / (1.0 - of_block / from_middle) * distance / from_middle;
+            // Of 1/r the second derivatives along and across are 2/r³ or less, r from the nearest point between the places.
+            let [right, up] = [(column % 6) as f64 / 6.0, (row % 4) as f64 / 4.0];
+            let [left, low] = [x - 6.0 * right * grid.length, y - 4.0 * up * grid.breadth];
+            let near_x = u.clamp(left, left + 6.0 * grid.length);
+            let near_y = v.clamp(low, low + 4.0 * grid.breadth);
+            let nearest = (near_x - u).hypot(near_y - v);
+            let along = right * (1.0 - right) * (6.0 * grid.length).powi(2);
+            let across = up * (1.0 - up) * (4.0 * grid.breadth).powi(2);
+            let of_places = (along + across) * distance / nearest.powi(3);
+            let allowed = of_series + of_places;
+            assert!(
+                (found / exact - 1.0).abs() < allowed,
+                "{strip} {cell} on {row} {column}: {found} {exact} {allowed}"
+            );
+        }
+    }
+    assert!(compared > 0);
+}
+
 /// Heat and worn depth that a window brings along are those of the window before where it covers them, whatever the size of the cells.
 #[test]
 fn a_window_that_moves_keeps_heat_and_worn_volume() {

@@ -731,6 +731,25 @@ mod tests {
         }
     }
 
+    /// From a pressure that is far off on the very cells in contact, conjugate gradients keep the load: nothing is set right after them.
+    #[test]
+    fn a_load_is_kept_by_every_change_of_the_pressure() {
+        let rail = rail();
+        let grid = &rail.grid;
+        let mut normal = Normal::new(grid, &rail.transform, Settings::default().patch);
+        let mut contact = Contact::new(grid);
+        let mut pressure = vec![0.0; grid.len()];
+        let unworn = vec![0.0; grid.len()];
+        let load = 80e3 / rail.unit_force();
+        let problem = problem(&rail, &rail.gap, &unworn, Constraint::Total(load));
+        normal.solve(&problem, &mut contact, &mut pressure).unwrap();
+        let mean = load / contact.cells() as f64;
+        contact.scatter(grid, &vec![mean; contact.cells()], &mut pressure);
+        normal.solve_on(&problem, &contact, &mut pressure, TOLERANCE);
+        let sum = pressure.iter().sum::<f64>();
+        assert!((sum / load - 1.0).abs() < 1e-12, "{}", sum / load - 1.0);
+    }
+
     /// A wheel that stands higher by the same everywhere sinks by as much more: what the cells have in common is not left to single precision.
     #[test]
     fn a_height_that_all_cells_have_in_common_costs_nothing() {
