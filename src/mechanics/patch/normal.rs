@@ -731,7 +731,7 @@ mod tests {
         }
     }
 
-    /// From a pressure that is far off on the very cells in contact, conjugate gradients keep the load: nothing is set right after them.
+    /// Conjugate gradients keep the load from a pressure that is far off on the very cells in contact: nothing is set right after them.
     #[test]
     fn a_load_is_kept_by_every_change_of_the_pressure() {
         let rail = rail();
