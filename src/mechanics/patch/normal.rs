@@ -2,9 +2,10 @@
 //!
 //! Minimise ½ pᵀ(A + D)p + gᵀp over p ≥ 0 with Σp given, or ½ pᵀ(A + D)p + (g − δ)ᵀp: A is the normal influence of the cells on one
 //! another, D the wear compliance, by which the wear of the step opens the gap of a cell. On a set of cells under pressure this is a linear system, solved
-//! by conjugate gradients from the pressure of the step before, with the strips' own blocks as preconditioner; then cells that pull
+//! by conjugate gradients from the pressure of the step before, with each cell's neighbours as [preconditioner]; then cells that pull
 //! leave the set, cells that overlap join it, until none does.
 
+mod preconditioner;
 pub mod response;
 mod tangent;
 
@@ -13,16 +14,12 @@ use crate::body::grid::Grid;
 use crate::body::influence::{self, ScalarTables, Transform, Window};
 use crate::error::{Error, Result};
 use crate::mechanics::normal::normal_problem::Constraint;
-use crate::numerics::dense::{self, MultiplyAdd};
-use crate::numerics::single::{WIDTH, Wide, padded, rounded};
+use crate::numerics::dense;
 use crate::settings::PatchSettings;
-use nalgebra::DMatrix;
+use preconditioner::{Field, Neighbours};
 use std::ops::Range;
 
-/// Sums of a product that do not wait for each other.
-const SUMS: usize = 4;
-
-/// Normal influence of the cells on one another, with the factors of the preconditioner.
+/// Normal influence of the cells on one another, with the preconditioner.
 #[derive(Debug, Clone)]
 pub struct NormalInfluence {
     /// A.
@@ -31,99 +28,20 @@ pub struct NormalInfluence {
     single: ScalarTables<f32>,
     /// Diagonal of A: influence of a cell on itself.
     pub diagonal: f64,
-    /// Inverse W of the Cholesky factor of a whole strip's own block, column by column and row by row, in vectors of [`WIDTH`]. That of a
-    /// shorter run is its upper left part, because the influence depends on the distance only.
-    columns: Vec<Wide>,
-    rows: Vec<Wide>,
-    /// Vectors in a column or a row.
-    vectors: usize,
+    neighbours: Neighbours,
 }
 
 impl NormalInfluence {
     /// Normal influence from the influence as a function of the lag.
     pub fn new(grid: &Grid, transform: &Transform, influence: impl Fn((isize, isize)) -> f64) -> NormalInfluence {
-        let n = grid.cells;
-        let block = DMatrix::from_fn(n, n, |i, j| influence((i as isize - j as isize, 0)));
-        let factor = block.cholesky().map(|cholesky| cholesky.unpack());
-        // The influence is positive definite; without a factor there is a start for conjugate gradients still.
-        let inverse = factor
-            .and_then(|factor| factor.solve_lower_triangular(&DMatrix::identity(n, n)))
-            .unwrap_or_else(|| DMatrix::identity(n, n));
-        let diagonal = influence((0, 0));
-        let tables = transform.scalar_tables(influence);
+        let tables = transform.scalar_tables(&influence);
         NormalInfluence {
-            diagonal,
+            diagonal: influence((0, 0)),
+            neighbours: Neighbours::new(grid, &influence),
             single: tables.single(),
             tables,
-            rows: in_vectors(&inverse.transpose()),
-            columns: in_vectors(&inverse),
-            vectors: n.div_ceil(WIDTH),
         }
     }
-
-    /// Multiplies the values of the runs by Wᵀ W, run by run, in place: solves with the strips' own blocks, to single precision. Each buffer in `work`
-    /// has room for a run in whole vectors.
-    fn precondition(&self, contact: &Contact, values: &mut [f64], work: &mut [Vec<f32>; 2]) {
-        let [given, product] = work;
-        dense::vectorised(
-            #[inline(always)]
-            |arithmetic| {
-                for run in contact.runs() {
-                    let own = &mut values[run.indices()];
-                    let n = own.len();
-                    for (single, value) in given.iter_mut().zip(&*own) {
-                        *single = *value as f32;
-                    }
-                    for vector in 0..n.div_ceil(WIDTH) {
-                        // W is lower triangular.
-                        let end = n.min((vector + 1) * WIDTH);
-                        let sum = self.multiply(arithmetic, &self.columns[vector..], &given[..n], 0..end);
-                        product[vector * WIDTH..][..WIDTH].copy_from_slice(&sum);
-                    }
-                    for (vector, own) in own.chunks_mut(WIDTH).enumerate() {
-                        let sum = self.multiply(arithmetic, &self.rows[vector..], &product[..n], vector * WIDTH..n);
-                        for (value, single) in own.iter_mut().zip(sum) {
-                            *value = f64::from(single);
-                        }
-                    }
-                }
-            },
-        );
-    }
-
-    /// The sum of columns, of which `columns` has a vector each, times their values.
-    #[inline(always)]
-    fn multiply(&self, arithmetic: MultiplyAdd, columns: &[Wide], values: &[f32], range: Range<usize>) -> Wide {
-        let mut sums = [[0.0; WIDTH]; SUMS];
-        let mut add = |sum: usize, i: usize| {
-            let (column, value) = (&columns[i * self.vectors], values[i]);
-            for lane in 0..WIDTH {
-                sums[sum][lane] = arithmetic.multiply_add_single(column[lane], value, sums[sum][lane]);
-            }
-        };
-        let mut first = range.start;
-        while first + SUMS <= range.end {
-            (0..SUMS).for_each(|k| add(k, first + k));
-            first += SUMS;
-        }
-        (first..range.end).for_each(|i| add(0, i));
-        let [a, b, c, d] = sums;
-        std::array::from_fn(|lane| (a[lane] + b[lane]) + (c[lane] + d[lane]))
-    }
-}
-
-/// Columns of a matrix in single precision, filled up with zeros to whole vectors.
-fn in_vectors(matrix: &DMatrix<f64>) -> Vec<Wide> {
-    let columns = matrix.column_iter();
-    columns
-        .flat_map(|column| {
-            let values = rounded(column.as_slice());
-            let vectors = values
-                .chunks(WIDTH)
-                .map(|part| std::array::from_fn(|lane| part.get(lane).copied().unwrap_or(0.0)));
-            vectors.collect::<Vec<Wide>>()
-        })
-        .collect()
 }
 
 /// Normal influence for loads on a part of the strips: a product costs as much as it serves strips.
@@ -197,7 +115,7 @@ pub struct Normal {
     direction: Vec<f64>,
     corrected: Vec<f64>,
     ones: Vec<f64>,
-    work: [Vec<f32>; 2],
+    around: Field,
     image: Vec<f64>,
     pressure: Vec<f64>,
     wear_compliance: Vec<f64>,
@@ -232,7 +150,7 @@ impl Normal {
             direction: on_grid(),
             corrected: on_grid(),
             ones: on_grid(),
-            work: std::array::from_fn(|_| vec![0.0; padded(grid.cells)]),
+            around: Field::new(grid),
             image: on_grid(),
             pressure: on_grid(),
             wear_compliance: on_grid(),
@@ -457,13 +375,15 @@ impl Normal {
                 }
             },
         );
+        self.around.clear();
         let load_given = matches!(problem.constraint, Constraint::Total(_));
         let mut weight = 0.0;
         if load_given {
             self.ones[..n].fill(1.0);
             problem
                 .normal_influence
-                .precondition(contact, &mut self.ones, &mut self.work);
+                .neighbours
+                .apply(contact, &mut self.ones, &mut self.around);
             weight = dense::sum(&self.ones[..n]);
         }
         let (mut last, mut level) = (0.0, 0.0);
@@ -555,7 +475,8 @@ impl Normal {
         self.corrected[..n].copy_from_slice(&self.residual[..n]);
         problem
             .normal_influence
-            .precondition(contact, &mut self.corrected, &mut self.work);
+            .neighbours
+            .apply(contact, &mut self.corrected, &mut self.around);
     }
 
     /// Whether any cell pulls or overlaps, those at the ends of the strips among them: without a branch for each cell.
