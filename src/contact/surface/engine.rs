@@ -31,10 +31,10 @@ use crate::settings::{SensitivitySettings, Settings, SplitSettings};
 
 /// Ratio of two changes of the interface vector below which iterations are plain: with contacts of different size the mechanics' errors are a large
 /// part of the last changes.
-const PLAIN_BELOW: f64 = 0.3;
+const PLAIN_BELOW: f64 = 0.03;
 /// Factor on a patch's tolerance of the tractions in the first sweep: the vertical force of the friction, which the pressure of the next one carries, is a
 /// guess as well.
-const FIRST_SLACK: f64 = 10.0;
+const FIRST_SLACK: f64 = 100.0;
 /// Least change of the interface, in tolerances, that the next sweep is taken to make. The mechanics are solved to a part of it. Solved to a part of the last change, which
 /// is larger, they left errors of their own that took two more sweeps.
 const LEAST_SEEN_CHANGE: f64 = 20.0;

@@ -126,6 +126,20 @@ impl Contact {
         );
     }
 
+    /// Copies values on the grid in single precision to the cells.
+    pub fn gather_single(&self, grid: &Grid, values: &[f32], out: &mut [f64]) {
+        dense::vectorised(
+            #[inline(always)]
+            |_| {
+                for run in &self.runs {
+                    for (out, value) in out[run.indices()].iter_mut().zip(&values[run.places(grid)]) {
+                        *out = f64::from(*value);
+                    }
+                }
+            },
+        );
+    }
+
     /// Places of the cells on the grid, in their order.
     pub fn places<'a>(&'a self, grid: &'a Grid) -> impl Iterator<Item = usize> + 'a {
         self.runs.iter().flat_map(|run| run.places(grid))

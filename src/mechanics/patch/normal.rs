@@ -5,6 +5,7 @@
 //! by conjugate gradients from the pressure of the step before, with each cell's neighbours as [preconditioner]; then cells that pull
 //! leave the set, cells that overlap join it, until none does.
 
+mod gradients;
 mod preconditioner;
 pub mod response;
 mod tangent;
@@ -129,8 +130,6 @@ pub struct Normal {
     work_done: u64,
     /// Conjugate gradients since the solver was made.
     iterations: u64,
-    /// Error from which the last conjugate gradients on a set began.
-    first_error: f64,
 }
 
 impl Normal {
@@ -159,7 +158,6 @@ impl Normal {
             displaced: Window::whole(grid),
             work_done: 0,
             iterations: 0,
-            first_error: 0.0,
         }
     }
 
@@ -187,28 +185,34 @@ impl Normal {
         let grid = problem.grid;
         self.look_at(problem);
         start(problem, &self.settings, pressure);
-        let mut settled = false;
+        let mut gradients = None;
         let mut left = f64::INFINITY;
         let mut least = problem.tolerance;
         for pass in 0..self.settings.normal_passes {
-            contact.list(grid, |place| pressure[place] > 0.0);
-            // Cells have joined and left; conjugate gradients keep the sum that they start from.
-            if let Constraint::Total(load) = problem.constraint {
-                let sum = dense::sum(pressure);
-                if sum != load && sum > 0.0 {
-                    pressure.iter_mut().for_each(|p| *p *= load / sum);
-                }
-            }
+            // Where the cells have stayed, conjugate gradients go on from where they were.
+            let settled = gradients.is_some();
             let tolerance = if settled {
                 least
             } else {
                 self.settings.set_tolerance.max(least)
             };
-            let penetration;
-            (penetration, left) = self.solve_on(problem, contact, pressure, tolerance);
+            let mut own = gradients.take().unwrap_or_else(|| {
+                contact.list(grid, |place| pressure[place] > 0.0);
+                // Cells have joined and left; conjugate gradients keep the sum that they start from.
+                if let Constraint::Total(load) = problem.constraint {
+                    let sum = dense::sum(pressure);
+                    if sum != load && sum > 0.0 {
+                        pressure.iter_mut().for_each(|p| *p *= load / sum);
+                    }
+                }
+                self.begin_on(problem, contact, pressure)
+            });
+            self.go_on(problem, contact, &mut own, pressure, tolerance);
+            let penetration = own.penetration();
+            left = own.error();
             if pass == 0 {
                 // As roughly as the friction law after a first guess that is far off.
-                let roughly = (self.settings.reduction * self.first_error).min(self.settings.slack * least);
+                let roughly = (self.settings.reduction * own.first_error()).min(self.settings.slack * least);
                 least = least.max(roughly);
             }
             self.separate(problem, contact, pressure, penetration);
@@ -217,7 +221,7 @@ impl Normal {
             if !changed && left <= least {
                 return Ok(penetration);
             }
-            settled = !changed;
+            gradients = (!changed).then_some(own);
         }
         Err(Error::NormalNotConverged {
             solver: "active set of the patch",
@@ -338,147 +342,6 @@ impl Normal {
         );
     }
 
-    /// Conjugate gradients on a set of cells. Returns penetration and the error of the pressure that is left.
-    fn solve_on(
-        &mut self,
-        problem: &PatchNormalProblem,
-        contact: &Contact,
-        pressure: &mut [f64],
-        tolerance: f64,
-    ) -> (f64, f64) {
-        let (grid, n) = (problem.grid, contact.cells());
-        let Frame {
-            transform,
-            tables,
-            single,
-            window,
-        } = self.frame(problem, contact);
-        let preconditioner: usize = contact.runs().iter().map(|run| run.cells * run.cells).sum();
-        let work = work_of_product(transform, &window, 1) + preconditioner as u64;
-        self.displace(problem, contact, pressure);
-        self.displaced = window.clone();
-        contact.gather(grid, pressure, &mut self.pressure);
-        contact.gather(grid, problem.wear_compliance, &mut self.wear_compliance);
-        contact.gather(grid, problem.gap, &mut self.residual);
-        contact.gather(grid, &self.displacement, &mut self.image);
-        let given = match problem.constraint {
-            Constraint::Total(_) => 0.0,
-            Constraint::Penetration(penetration) => penetration,
-        };
-        let residual = &mut self.residual[..n];
-        let (image, compliance, own) = (&self.image[..n], &self.wear_compliance[..n], &self.pressure[..n]);
-        dense::vectorised(
-            #[inline(always)]
-            |_| {
-                for i in 0..n {
-                    residual[i] = given - residual[i] - image[i] - compliance[i] * own[i];
-                }
-            },
-        );
-        self.around.clear();
-        let load_given = matches!(problem.constraint, Constraint::Total(_));
-        let mut weight = 0.0;
-        if load_given {
-            self.ones[..n].fill(1.0);
-            problem
-                .normal_influence
-                .neighbours
-                .apply(contact, &mut self.ones, &mut self.around);
-            weight = dense::sum(&self.ones[..n]);
-        }
-        let (mut last, mut level) = (0.0, 0.0);
-        let (mut error, mut in_single) = (0.0, false);
-        self.direction_grid.fill(0.0);
-        self.single[0].fill(0.0);
-        for iteration in 0..self.settings.normal_iterations {
-            if load_given && n > 0 {
-                // The penetration takes what all cells have in common off the residual: kept in it, its round-off would grow into
-                // a change of the load. It goes before preconditioning, whose single precision would round it.
-                let common = dense::dot(&self.ones[..n], &self.residual[..n]) / weight;
-                level += common;
-                for residual in &mut self.residual[..n] {
-                    *residual -= common;
-                }
-            }
-            error = dense::largest(&self.residual[..n]) / problem.normal_influence.diagonal;
-            if iteration == 0 {
-                self.first_error = error;
-                // What single precision leaves out of the change is far below the tolerance.
-                in_single = problem.tolerance >= self.settings.single_tolerance * error;
-            }
-            if error <= tolerance {
-                break;
-            }
-            self.correct(problem, contact);
-            if load_given {
-                // What rounding has left of a change of the load.
-                let left = dense::sum(&self.corrected[..n]) / weight;
-                dense::add_multiple(&self.ones[..n], -left, &mut self.corrected[..n]);
-            }
-            let product = dense::dot(&self.residual[..n], &self.corrected[..n]);
-            let ratio = if iteration == 0 { 0.0 } else { product / last };
-            last = product;
-            let (direction, corrected) = (&mut self.direction[..n], &self.corrected[..n]);
-            dense::vectorised(
-                #[inline(always)]
-                |_| {
-                    for i in 0..n {
-                        direction[i] = corrected[i] + ratio * direction[i];
-                    }
-                },
-            );
-            self.work_done += work;
-            self.iterations += 1;
-            // Of all cells that may come into contact: what lies beside it must be known to see whether it overlaps.
-            if in_single {
-                let [direction, image] = &mut self.single;
-                contact.scatter_single(grid, &self.direction, direction);
-                transform.apply(single, &window, direction, image, &mut self.scratch_single);
-                for row in window.rows(grid) {
-                    to_double(&image[row.clone()], &mut self.direction_image[row]);
-                }
-            } else {
-                contact.scatter(grid, &self.direction, &mut self.direction_grid);
-                let (direction, image) = (&self.direction_grid, &mut self.direction_image);
-                transform.apply(tables, &window, direction, image, &mut self.scratch);
-            }
-            contact.gather(grid, &self.direction_image, &mut self.image);
-            let (direction, image, compliance) =
-                (&self.direction[..n], &mut self.image[..n], &self.wear_compliance[..n]);
-            let curvature = dense::vectorised(
-                #[inline(always)]
-                |arithmetic| {
-                    for i in 0..n {
-                        image[i] += compliance[i] * direction[i];
-                    }
-                    arithmetic.dot(direction, image)
-                },
-            );
-            if curvature.is_nan() || curvature <= 0.0 {
-                break;
-            }
-            let step = product / curvature;
-            dense::add_multiple(&self.direction[..n], step, &mut self.pressure[..n]);
-            dense::add_multiple(&self.image[..n], -step, &mut self.residual[..n]);
-            for row in window.rows(grid) {
-                dense::add_multiple(&self.direction_image[row.clone()], step, &mut self.displacement[row]);
-            }
-        }
-        contact.scatter(grid, &self.pressure, pressure);
-        self.displaced_by.copy_from_slice(pressure);
-        (if load_given { -level } else { given }, error)
-    }
-
-    /// Preconditions the residual of the cells.
-    fn correct(&mut self, problem: &PatchNormalProblem, contact: &Contact) {
-        let n = contact.cells();
-        self.corrected[..n].copy_from_slice(&self.residual[..n]);
-        problem
-            .normal_influence
-            .neighbours
-            .apply(contact, &mut self.corrected, &mut self.around);
-    }
-
     /// Whether any cell pulls or overlaps, those at the ends of the strips among them: without a branch for each cell.
     fn may_change(&self, grid: &Grid, pressure: &[f64]) -> bool {
         let overlap = -self.settings.overlap;
@@ -537,18 +400,6 @@ impl Normal {
         }
         changed
     }
-}
-
-/// Copies single precision to double.
-fn to_double(single: &[f32], double: &mut [f64]) {
-    dense::vectorised(
-        #[inline(always)]
-        |_| {
-            for (double, single) in double.iter_mut().zip(single) {
-                *double = f64::from(*single);
-            }
-        },
-    );
 }
 
 /// A start from the cells that overlap, where there is no pressure to start from: the deepest one and those that come close to it.

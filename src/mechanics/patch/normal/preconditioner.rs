@@ -51,6 +51,11 @@ impl Neighbours {
         Neighbours { weights }
     }
 
+    /// Multiplications and additions of a product with the values of the contact's cells.
+    pub fn work(&self, contact: &Contact) -> u64 {
+        (BREADTH * BREADTH * contact.cells()) as u64
+    }
+
     /// Multiplies the values of the contact's cells by the weights of their neighbours in contact, in place and in single precision.
     pub fn apply(&self, contact: &Contact, values: &mut [f64], field: &mut Field) {
         let Field { stride, values: around } = field;
