@@ -90,6 +90,14 @@ pub struct Distance {
     pub curvature_along: f64,
 }
 
+impl Distance {
+    /// Distance a small way farther along the rail, `m`, to the second order.
+    pub fn farther_along(&self, way: f64) -> f64 {
+        // dh/dx = −g_x/(g·n).
+        self.distance + way * (0.5 * way * self.curvature_along - self.gradient[0])
+    }
+}
+
 /// Steps for the distance. Newton's method is quadratic from a guess that is better than the radius of the flange's tip.
 const STEPS: usize = 12;
 /// Distance that two steps may differ by at the end, `m`: round-off of a radius.
@@ -287,7 +295,11 @@ impl<'a> PlacedWheel<'a> {
             }
             let step = (slope / at.curvature_along).clamp(-LONGEST_STEP * 10.0, LONGEST_STEP * 10.0);
             x -= step;
-            at = self.distance(x, point, at.distance);
+            // A straight wheel is closest where it was looked for.
+            if step.abs() < 1e-9 {
+                break;
+            }
+            at = self.distance(x, point, at.farther_along(-step));
             if step.abs() < 1e-6 {
                 break;
             }

@@ -103,7 +103,7 @@ impl Default for PatchSettings {
             reduction: 3e-3,
             slack: 10.0,
             single_round_off: 1e-5,
-            single_tolerance: 1e-5,
+            single_tolerance: 1e-4,
             staggered_residual: 1e-2,
             renewal: 4.5,
             halvings: 12,

@@ -211,10 +211,12 @@ impl WindowGeometry {
             };
             let point = rail.at(arc);
             let tangent = point.tangent();
-            let mut guess = first_guess;
+            let mut last: Option<(f64, Distance)> = None;
             let found = interpolation.nodes.map(|node| {
-                let at = wheel.distance(middle + half * node, &point, guess);
-                guess = as_guess(at.distance);
+                let along = middle + half * node;
+                let guess = last.map_or(first_guess, |(before, at)| as_guess(at.farther_along(along - before)));
+                let at = wheel.distance(along, &point, guess);
+                last = Some((along, at));
                 at
             });
             first_guess = as_guess(found[0].distance);
