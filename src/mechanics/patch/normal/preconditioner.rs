@@ -2,7 +2,7 @@
 //!
 //! A residual on a set of cells asks for a change of their pressures. A cell's own change is taken from its residual and those of the cells around it as if these alone were
 //! there: with the middle row of the inverse of their influence. The influence of a pressure reaches far, its inverse does not, as pressures beside a
-//! cell shield it from those farther away: what is left is a condition number of some 4, of any number of cells, where the strips' own blocks leave 10 to 40.
+//! cell shield it from those farther away: the condition number that is left is some 4, however many cells there are.
 
 use super::super::contact::Contact;
 use crate::body::grid::Grid;
