@@ -171,7 +171,7 @@ mod tests {
         }
     }
 
-    /// On the contact of a default patch the condition number is 3.5, as in the middle of a large one.
+    /// The condition number on the contact of a default patch is 3.5.
     #[test]
     fn the_condition_is_that_of_few_iterations() {
         let rail = rail();
