@@ -295,7 +295,7 @@ impl<'a> PlacedWheel<'a> {
             }
             let step = (slope / at.curvature_along).clamp(-LONGEST_STEP * 10.0, LONGEST_STEP * 10.0);
             x -= step;
-            // A straight wheel is closest where it was looked for.
+            // The guess was the closest place, as it is for a wheelset without yaw: the distance there is known.
             if step.abs() < 1e-9 {
                 break;
             }

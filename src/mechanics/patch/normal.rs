@@ -209,10 +209,10 @@ impl Normal {
             });
             self.go_on(problem, contact, &mut own, pressure, tolerance);
             let penetration = own.penetration();
-            left = own.error();
+            left = own.error;
             if pass == 0 {
                 // As roughly as the friction law after a first guess that is far off.
-                let roughly = (self.settings.reduction * own.first_error()).min(self.settings.slack * least);
+                let roughly = (self.settings.reduction * own.first_error).min(self.settings.slack * least);
                 least = least.max(roughly);
             }
             self.separate(problem, contact, pressure, penetration);

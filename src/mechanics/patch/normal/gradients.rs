@@ -15,9 +15,10 @@ pub struct Gradients {
     level: f64,
     /// Product of the last residual with itself, preconditioned; 0 before the first iteration.
     last: f64,
-    /// Errors of the pressure at the beginning and now.
-    first_error: f64,
-    error: f64,
+    /// Error of the pressure at the beginning.
+    pub first_error: f64,
+    /// Error of the pressure that is left.
+    pub error: f64,
     /// Whether products are in single precision.
     in_single: bool,
 }
@@ -29,16 +30,6 @@ impl Gradients {
             Some(_) => -self.level,
             None => self.given,
         }
-    }
-
-    /// Error of the pressure that is left.
-    pub fn error(&self) -> f64 {
-        self.error
-    }
-
-    /// Error of the pressure at the beginning.
-    pub fn first_error(&self) -> f64 {
-        self.first_error
     }
 }
 
@@ -143,7 +134,6 @@ impl Normal {
         } = self.frame(problem, contact);
         let work = work_of_product(transform, &window, 1) + neighbours.work(contact);
         for _ in 0..self.settings.normal_iterations {
-            // Not a number is no error that is small enough, and none that gets smaller.
             if gradients.error <= tolerance {
                 break;
             }

@@ -2,7 +2,7 @@
 //!
 //! A residual on a set of cells asks for a change of their pressures. A cell's own change is taken from its residual and those of the cells around it as if these alone were
 //! there: with the middle row of the inverse of their influence. The influence of a pressure reaches far, its inverse does not, as pressures beside a
-//! cell shield it from those farther away: the condition number that is left is some 4, however many cells there are.
+//! cell shield it from those farther away.
 
 use super::super::contact::Contact;
 use crate::body::grid::Grid;
@@ -34,8 +34,8 @@ impl Neighbours {
         let middle = cells / 2;
         let unit = DVector::from_fn(cells, |i, _| if i == middle { 1.0 } else { 0.0 });
         let row = block.cholesky().map(|factor| factor.solve(&unit));
-        // On any set of cells the weights make a positive definite matrix if the middle one outweighs the others. Without there is a start for conjugate
-        // gradients still.
+        // Conjugate gradients need weights that make a positive definite matrix on any set of cells. They do if the middle one outweighs the others together; if it
+        // does not, each cell counts alone.
         let outweighs = |row: &DVector<f64>| 2.0 * row[middle] > row.iter().map(|weight| weight.abs()).sum();
         let row = row.filter(outweighs).unwrap_or_else(|| unit / influence((0, 0)));
         // From one quarter of the block, so that mirror images have the same weights to the last bit.
@@ -177,10 +177,7 @@ mod tests {
         let rail = rail();
         let grid = &rail.grid;
         let mut contact = Contact::new(grid);
-        let [x, y] = [
-            0.35 * grid.half_length() * 2.0,
-            0.35 * grid.breadth * grid.strips as f64,
-        ];
+        let [x, y] = [0.7 * grid.half_length(), 0.35 * grid.breadth * grid.strips as f64];
         contact.list(grid, |place| {
             let (strip, cell) = (place / grid.stride(), place % grid.stride());
             (grid.x(cell) / x).powi(2) + (grid.y(strip) / y).powi(2) < 1.0
