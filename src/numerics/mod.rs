@@ -11,6 +11,7 @@ pub mod elliptic;
 pub mod fourier;
 pub mod gmres;
 pub mod interpolation;
+pub mod inverse;
 pub mod real;
 pub mod root;
 pub mod single;

@@ -1,11 +1,12 @@
-//! The friction law of each strip by itself, factorised: the preconditioner of the law of all strips together.
+//! The friction law of each strip by itself, inverted: the preconditioner of the law of all strips together.
 //!
 //! What a strip does to itself is nearly all that is stiff; what the others do to it is smooth along it. In single precision,
 //! which is as much as a preconditioner is good for, and twice as fast.
 
 use super::contact::Contact;
 use super::linear_law::LinearLaw;
-use crate::numerics::{dense, single};
+use crate::numerics::single::padded;
+use crate::numerics::{dense, inverse};
 
 /// Response of the slip of a strip to its own shear: along and across, by the lag along x; the lag 0 is at `origin`.
 #[derive(Debug, Clone, Copy)]
@@ -20,13 +21,15 @@ pub struct StripResponse<'a> {
     pub behind: isize,
 }
 
-/// Factorised blocks of the strips.
+/// Inverse blocks of the strips' runs.
 #[derive(Debug, Clone)]
 pub struct Blocks {
-    factors: Vec<f32>,
-    pivots: Vec<usize>,
+    inverses: Vec<f32>,
     places: Vec<Place>,
-    values: Vec<f32>,
+    given: Vec<f32>,
+    solved: Vec<f32>,
+    /// Scratch of an inversion.
+    panel: Vec<f32>,
 }
 
 /// Place of a run.
@@ -36,10 +39,8 @@ struct Place {
     first: usize,
     /// Number of its cells.
     cells: usize,
-    /// First of its factors.
-    factors: usize,
-    /// First of its pivots.
-    pivots: usize,
+    /// First value of its inverse.
+    inverse: usize,
 }
 
 impl Blocks {
@@ -47,36 +48,37 @@ impl Blocks {
     pub fn new(cells: usize, total: usize) -> Blocks {
         // As much as runs of any lengths can take: one of a cell is padded more than a long one.
         let strips = total.div_ceil(cells.max(1));
-        let (whole, single) = (single::padded(2 * cells), single::padded(2));
-        let of_strip = |one: usize, several: usize| one.max(several * cells.div_ceil(2));
+        let (whole, single) = (padded(2 * cells), padded(2));
+        let of_strip = (whole * whole).max(single * single * cells.div_ceil(2));
         Blocks {
-            factors: vec![0.0; strips * of_strip(whole * whole, single * single)],
-            pivots: vec![0; strips * of_strip(whole, single)],
+            inverses: vec![0.0; strips * of_strip],
             places: Vec::with_capacity(total),
-            values: vec![0.0; whole],
+            given: vec![0.0; whole],
+            solved: vec![0.0; whole],
+            panel: vec![0.0; inverse::panel(2 * cells)],
         }
     }
 
-    /// Factorises the law. False where a block is singular.
+    /// Inverts the law of each run. False where a block is singular.
     /// The dependence of a cell's μ on the slip of the cells before it is left out: it would take more time than the iterations that it
     /// would save.
-    pub fn factorise(&mut self, contact: &Contact, law: &LinearLaw, response: &StripResponse) -> bool {
+    pub fn invert(&mut self, contact: &Contact, law: &LinearLaw, response: &StripResponse) -> bool {
         self.places.clear();
-        let (mut factors, mut pivots) = (0, 0);
+        let mut first = 0;
         for run in contact.runs() {
-            let size = single::padded(2 * run.cells);
-            let block = &mut self.factors[factors..factors + size * size];
+            let n = 2 * run.cells;
+            let size = padded(n);
+            let block = &mut self.inverses[first..first + size * size];
             assemble(law, run.offset, run.cells, response, block);
-            if !single::lu(block, size, &mut self.pivots[pivots..pivots + size]) {
+            if !inverse::invert(block, n, &mut self.panel) {
                 return false;
             }
             self.places.push(Place {
                 first: run.offset,
                 cells: run.cells,
-                factors,
-                pivots,
+                inverse: first,
             });
-            (factors, pivots) = (factors + size * size, pivots + size);
+            first += size * size;
         }
         true
     }
@@ -86,14 +88,13 @@ impl Blocks {
         let (x, y) = values.split_at_mut(values.len() / 2);
         for place in &self.places {
             let (n, cells) = (place.cells, place.first..place.first + place.cells);
-            let size = single::padded(2 * n);
-            let own = &mut self.values[..size];
-            own[..n].copy_from_slice(&x[cells.clone()]);
-            own[n..2 * n].copy_from_slice(&y[cells.clone()]);
-            own[2 * n..].fill(0.0);
-            single::lu_solve(&self.factors[place.factors..], size, &self.pivots[place.pivots..], own);
-            x[cells.clone()].copy_from_slice(&own[..n]);
-            y[cells].copy_from_slice(&own[n..2 * n]);
+            let given = &mut self.given[..2 * n];
+            given[..n].copy_from_slice(&x[cells.clone()]);
+            given[n..].copy_from_slice(&y[cells.clone()]);
+            let solved = &mut self.solved[..padded(2 * n)];
+            inverse::multiply(&self.inverses[place.inverse..], given, solved);
+            x[cells.clone()].copy_from_slice(&solved[..n]);
+            y[cells].copy_from_slice(&solved[n..2 * n]);
         }
     }
 }
@@ -104,7 +105,7 @@ fn assemble(law: &LinearLaw, first: usize, n: usize, response: &StripResponse, b
     dense::vectorised(
         #[inline(always)]
         |fma| {
-            let size = single::padded(2 * n);
+            let size = padded(2 * n);
             for (number, entries) in block.chunks_exact_mut(size).enumerate() {
                 entries[2 * n..].fill(0.0);
                 if number >= 2 * n {
@@ -220,7 +221,7 @@ mod tests {
                 behind,
             };
             let mut blocks = Blocks::new(CELLS, CELLS * STRIPS);
-            assert!(blocks.factorise(&contact, &law(&rows, &edge), &response));
+            assert!(blocks.invert(&contact, &law(&rows, &edge), &response));
             let mut solved = right.clone();
             blocks.solve(&mut solved);
             for run in contact.runs() {
@@ -255,6 +256,6 @@ mod tests {
         // Of one cell that sticks without compliance.
         rows[n - 1].by_shear = [[0.0; 2]; 2];
         let mut blocks = Blocks::new(CELLS, CELLS * STRIPS);
-        assert!(!blocks.factorise(&contact, &law(&rows, &vec![[0.0; 2]; n]), &response));
+        assert!(!blocks.invert(&contact, &law(&rows, &vec![[0.0; 2]; n]), &response));
     }
 }

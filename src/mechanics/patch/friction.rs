@@ -446,7 +446,7 @@ impl Friction {
         self.work += work_of_blocks(problem.contact, 3) / 3;
         self.iterations[2] += 1;
         self.law.take(&self.rows[..problem.contact.cells()], problem.edge);
-        self.blocks.factorise(problem.contact, &self.law, &own)
+        self.blocks.invert(problem.contact, &self.law, &own)
     }
 
     /// Computes the correction of the shear on the grid.
