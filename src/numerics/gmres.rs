@@ -57,9 +57,8 @@ impl Gmres {
             };
         }
         let limit = self.iterations;
-        for (direction, value) in self.basis[..n].iter_mut().zip(rhs) {
-            *direction = value / size;
-        }
+        self.basis[..n].copy_from_slice(rhs);
+        single::divide(&mut self.basis[..n], size);
         self.rhs[0] = size;
         let (mut done, mut residual) = (0, size);
         while done < limit && residual > tolerance * size {
@@ -73,7 +72,7 @@ impl Gmres {
             }
             let height = single::norm(new);
             if height > 0.0 {
-                new.iter_mut().for_each(|value| *value /= height);
+                single::divide(new, height);
             }
             for (k, (cosine, sine)) in self.rotations[..done].iter().enumerate() {
                 let (upper, lower) = (column[k], column[k + 1]);

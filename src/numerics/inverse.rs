@@ -4,7 +4,7 @@
 //! a triangular solution do: it takes half of the time.
 
 use super::dense::{self, MultiplyAdd};
-use super::single::{WIDTH, Wide, padded};
+use super::single::{WIDTH, Wide, padded, wide, wide_mut};
 
 /// Columns that share what is read of a panel: with two registers of each, their sums fill half of the registers.
 const GROUP: usize = 4;
@@ -130,18 +130,6 @@ fn multiply_rows<const REGISTERS: usize>(
             out[lane] = even[lane] + odd[lane];
         }
     }
-}
-
-#[inline(always)]
-fn wide(values: &[f32], first: usize) -> &Wide {
-    let values = &values[first..first + WIDTH];
-    values.first_chunk().expect("a whole register")
-}
-
-#[inline(always)]
-fn wide_mut(values: &mut [f32], first: usize) -> &mut Wide {
-    let values = &mut values[first..first + WIDTH];
-    values.first_chunk_mut().expect("a whole register")
 }
 
 /// Adds a multiple: `sum += factor · x`.

@@ -41,6 +41,18 @@ pub fn add_multiple(x: &[f32], factor: f32, out: &mut [f32]) {
     );
 }
 
+/// Divides values by a number, in place.
+pub fn divide(values: &mut [f32], by: f32) {
+    dense::vectorised(
+        #[inline(always)]
+        |_| {
+            for value in values {
+                *value /= by;
+            }
+        },
+    );
+}
+
 /// Values in single precision.
 pub fn rounded(values: &[f64]) -> Vec<f32> {
     values.iter().map(|&value| value as f32).collect()
@@ -54,4 +66,18 @@ pub type Wide = [f32; WIDTH];
 /// Number of values of whole vector registers that hold `n` values.
 pub const fn padded(n: usize) -> usize {
     n.next_multiple_of(WIDTH)
+}
+
+/// Values from place `first` on, as many as a register holds.
+#[inline(always)]
+pub fn wide(values: &[f32], first: usize) -> &Wide {
+    let values = &values[first..first + WIDTH];
+    values.first_chunk().expect("a whole register")
+}
+
+/// Places of as many values as a register holds, from place `first` on.
+#[inline(always)]
+pub fn wide_mut(values: &mut [f32], first: usize) -> &mut Wide {
+    let values = &mut values[first..first + WIDTH];
+    values.first_chunk_mut().expect("a whole register")
 }

@@ -5,10 +5,11 @@
 
 use super::contact::Contact;
 use super::linear_law::LinearLaw;
-use crate::numerics::single::padded;
+use crate::numerics::single::{WIDTH, padded, wide, wide_mut};
 use crate::numerics::{dense, inverse};
 
-/// Response of the slip of a strip to its own shear: along and across, by the lag along x; the lag 0 is at `origin`.
+/// Response of the slip of a strip to its own shear: along and across, by the lag along x; the lag 0 is at `origin`. There are values for
+/// a vector register beyond the largest lag.
 #[derive(Debug, Clone, Copy)]
 pub struct StripResponse<'a> {
     /// Slip along x per shear along x.
@@ -51,7 +52,7 @@ impl Blocks {
         let (whole, single) = (padded(2 * cells), padded(2));
         let of_strip = (whole * whole).max(single * single * cells.div_ceil(2));
         Blocks {
-            inverses: vec![0.0; strips * of_strip],
+            inverses: vec![0.0; strips * of_strip + WIDTH],
             places: Vec::with_capacity(total),
             given: vec![0.0; whole],
             solved: vec![0.0; whole],
@@ -68,9 +69,9 @@ impl Blocks {
         for run in contact.runs() {
             let n = 2 * run.cells;
             let size = padded(n);
-            let block = &mut self.inverses[first..first + size * size];
+            let block = &mut self.inverses[first..first + size * size + WIDTH];
             assemble(law, run.offset, run.cells, response, block);
-            if !inverse::invert(block, n, &mut self.panel) {
+            if !inverse::invert(&mut block[..size * size], n, &mut self.panel) {
                 return false;
             }
             self.places.push(Place {
@@ -100,33 +101,45 @@ impl Blocks {
 }
 
 /// Writes the block of a run of `n` cells from cell `first` on: the x components of all of them, then their y components.
+/// `block` has values for a vector register beyond it.
 fn assemble(law: &LinearLaw, first: usize, n: usize, response: &StripResponse, block: &mut [f32]) {
     let kernels = [response.along, response.across];
     dense::vectorised(
         #[inline(always)]
         |fma| {
             let size = padded(2 * n);
-            for (number, entries) in block.chunks_exact_mut(size).enumerate() {
-                entries[2 * n..].fill(0.0);
-                if number >= 2 * n {
-                    entries.fill(0.0);
-                    entries[number] = 1.0;
-                    continue;
-                }
+            for number in 0..2 * n {
                 let (component, column) = (number / n, number % n);
                 // The lag of the first line; those of the others follow.
-                let lag = response.origin - column;
-                let ahead = &kernels[component][lag..lag + n];
-                let behind = &kernels[component][lag.wrapping_add_signed(response.behind)..][..n];
-                for (residual, entries) in entries[..2 * n].chunks_exact_mut(n).enumerate() {
-                    let by_ahead = &law.by_ahead[residual][component][first..first + n];
-                    let by_behind = &law.by_behind[residual][component][first..first + n];
-                    let slips = by_ahead.iter().zip(ahead).zip(by_behind.iter().zip(behind));
-                    for (entry, ((by_ahead, ahead), (by_behind, behind))) in entries.iter_mut().zip(slips) {
-                        *entry = fma.multiply_add_single(*by_ahead, *ahead, by_behind * behind);
+                let ahead = response.origin - column;
+                let behind = ahead.wrapping_add_signed(response.behind);
+                let entries = &mut block[number * size..];
+                // By whole registers: what one of them writes beyond its part, the next part overwrites, and the next column.
+                for residual in 0..2 {
+                    let by_ahead = &law.by_ahead[residual][component];
+                    let by_behind = &law.by_behind[residual][component];
+                    let entries = &mut entries[residual * n..];
+                    for line in (0..n).step_by(WIDTH) {
+                        let (by_ahead, by_behind) = (wide(by_ahead, first + line), wide(by_behind, first + line));
+                        let ahead = wide(kernels[component], ahead + line);
+                        let behind = wide(kernels[component], behind + line);
+                        // A sum of its own: the compiler does not know that the entries are none of what is read.
+                        let mut sum = [0.0; WIDTH];
+                        for lane in 0..WIDTH {
+                            sum[lane] = by_behind[lane] * behind[lane];
+                        }
+                        for lane in 0..WIDTH {
+                            sum[lane] = fma.multiply_add_single(by_ahead[lane], ahead[lane], sum[lane]);
+                        }
+                        *wide_mut(entries, line) = sum;
                     }
                     entries[column] += law.by_shear[residual][component][first + column];
                 }
+                *wide_mut(entries, 2 * n) = [0.0; WIDTH];
+            }
+            for (number, entries) in block.chunks_exact_mut(size).enumerate().take(size).skip(2 * n) {
+                entries.fill(0.0);
+                entries[number] = 1.0;
             }
         },
     );
@@ -207,7 +220,7 @@ mod tests {
         let edge: Vec<[f64; 2]> = (0..n).map(|i| [0.3 * (i % 3) as f64, 0.1 * (i % 2) as f64]).collect();
         let origin = CELLS + 1;
         let table = |component: usize| -> Vec<f32> {
-            (0..2 * origin + 1)
+            (0..2 * origin + WIDTH)
                 .map(|place| kernel(component, place as isize - origin as isize) as f32)
                 .collect()
         };
@@ -245,7 +258,7 @@ mod tests {
     fn a_singular_block_is_refused() {
         let contact = contact();
         let n = contact.cells();
-        let zero = vec![0.0; 2 * CELLS + 3];
+        let zero = vec![0.0; 2 * (CELLS + 1) + WIDTH];
         let response = StripResponse {
             along: &zero,
             across: &zero,

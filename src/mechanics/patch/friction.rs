@@ -15,13 +15,14 @@ pub use tangent::{FrictionChange, LEAST_CHANGE};
 use super::blocks::{Blocks, StripResponse};
 use super::contact::{Contact, work_of_product};
 use super::law::{Cell, CellLawRow, Scheme, Vector};
-use super::linear_law::{LinearLaw, RunChange};
+use super::linear_law::{Change, LinearLaw};
 use crate::body::grid::Grid;
 use crate::body::influence::{self, Tables, Transform, Window};
 use crate::error::{Error, Result};
 use crate::friction::path::NodeFriction;
 use crate::numerics::dense;
 use crate::numerics::gmres::{Gmres, Solved};
+use crate::numerics::single::WIDTH;
 use crate::settings::PatchSettings;
 use directions::Directions;
 use on_path::OnPath;
@@ -99,6 +100,8 @@ pub struct Friction {
     /// Linearised law in single precision, as it was when it was taken last.
     law: LinearLaw,
     step: Vec<f32>,
+    /// Product of the linearised law, along x and y, with values for a vector register beyond.
+    product: [Vec<f32>; 2],
     /// Change of the rows by the data in a linearised problem.
     given: Vec<Vector>,
     /// Law of the cells where μ depends on slip.
@@ -142,6 +145,7 @@ impl Friction {
             rows: vec![CellLawRow::default(); total],
             law: LinearLaw::new(total),
             step: vec![0.0; 2 * total],
+            product: std::array::from_fn(|_| vec![0.0; total + WIDTH]),
             given: Vec::with_capacity(total),
             on_path: OnPath::new(total),
             work: 0,
@@ -464,6 +468,7 @@ impl Friction {
             rows,
             law,
             step,
+            product,
             load_single,
             scratch_single,
             settings,
@@ -479,9 +484,9 @@ impl Friction {
         let multiply = |direction: &[f32], out: &mut [f32]| {
             let (shear, mut response) = directions.at(number, 2 * n);
             number += 1;
-            shear.copy_from_slice(direction);
-            blocks.solve(shear);
-            let (along, across) = shear.split_at(n);
+            shear[..2 * n].copy_from_slice(direction);
+            blocks.solve(&mut shear[..2 * n]);
+            let (along, across) = (&shear[..n + WIDTH], &shear[n..]);
             problem.contact.scatter(problem.grid, along, &mut load_single[0]);
             problem.contact.scatter(problem.grid, across, &mut load_single[1]);
             {
@@ -491,29 +496,26 @@ impl Friction {
                     .transform
                     .apply(&problem.response.single, window, load, [x, y], scratch_single);
             }
+            let change = Change {
+                shear: [along, across],
+                slip: [&*response[0], &*response[1]],
+                behind,
+            };
+            let [product_along, product_across] = &mut *product;
+            law.multiply(problem.contact, problem.grid, &change, [product_along, product_across]);
             let (out_along, out_across) = out.split_at_mut(n);
-            for run in problem.contact.runs() {
-                let (own, places) = (run.indices(), run.places(problem.grid));
-                let next = places.start.wrapping_add_signed(behind);
-                let [x, y] = &response;
-                let change = RunChange {
-                    shear: [&along[own.clone()], &across[own.clone()]],
-                    ahead: [&x[places.clone()], &y[places]],
-                    behind: [&x[next..next + run.cells], &y[next..next + run.cells]],
-                };
-                law.multiply(0, run.offset, &change, &mut out_along[own.clone()]);
-                law.multiply(1, run.offset, &change, &mut out_across[own.clone()]);
-                if let Some(path) = &problem.path {
-                    for (k, index) in own.enumerate() {
-                        let at = |values: [&[f32]; 2]| values.map(|component| f64::from(component[k]));
-                        let (shear, mut ahead, edge) = (at(change.shear), at(change.ahead), problem.edge[index]);
-                        ahead[0] += edge[0] * shear[0];
-                        ahead[1] += edge[1] * shear[1];
-                        on_path.keep_slip_change(path, index, ahead, at(change.behind));
-                    }
-                }
-            }
+            out_along.copy_from_slice(&product_along[..n]);
+            out_across.copy_from_slice(&product_across[..n]);
             if let Some(path) = &problem.path {
+                for (index, place) in problem.contact.places(problem.grid).enumerate() {
+                    let at = |values: [&[f32]; 2], place: usize| values.map(|component| f64::from(component[place]));
+                    let (shear, mut ahead, edge) =
+                        (at(change.shear, index), at(change.slip, place), problem.edge[index]);
+                    ahead[0] += edge[0] * shear[0];
+                    ahead[1] += edge[1] * shear[1];
+                    let slip_behind = at(change.slip, place.wrapping_add_signed(behind));
+                    on_path.keep_slip_change(path, index, ahead, slip_behind);
+                }
                 on_path.follow(path, n, |index, friction| {
                     let by_friction = path.pressure[index] * friction;
                     out_along[index] += (rows[index].by_bound[0] * by_friction) as f32;

@@ -1,8 +1,11 @@
 //! The linearised law of the cells in single precision, each coefficient an array of its own: what the corrections of Newton's method
 //! multiply with and factorise. Neighbouring cells then go through one vector instruction.
 
+use super::contact::Contact;
 use super::law::{CellLawRow, Vector};
+use crate::body::grid::Grid;
 use crate::numerics::dense;
+use crate::numerics::single::{WIDTH, wide, wide_mut};
 
 /// Coefficients of a cell's law by component of the residual and component of what it is multiplied with.
 type Coefficients = [[Vec<f32>; 2]; 2];
@@ -18,21 +21,22 @@ pub struct LinearLaw {
     pub by_behind: Coefficients,
 }
 
-/// Changes of shear and slip at the cells of a run, along x and y.
+/// Changes of shear and slip, along x and y.
 #[derive(Clone, Copy)]
-pub struct RunChange<'a> {
-    /// Change of the shear.
+pub struct Change<'a> {
+    /// Change of the shear, cells, and values for a vector register beyond them.
     pub shear: [&'a [f32]; 2],
-    /// Change of the slip ahead, without what the leading edge adds.
-    pub ahead: [&'a [f32]; 2],
-    /// Change of the slip behind.
-    pub behind: [&'a [f32]; 2],
+    /// Change of the slip on the grid, ahead of the cells and behind, without what the leading edge adds; and values for a vector
+    /// register beyond it.
+    pub slip: [&'a [f32]; 2],
+    /// Lag of the slip behind: −1 for V ≥ 0, 1 else.
+    pub behind: isize,
 }
 
 impl LinearLaw {
-    /// Law of up to so many cells.
+    /// Law of up to so many cells, and values for a vector register beyond them.
     pub fn new(cells: usize) -> LinearLaw {
-        let zero = || std::array::from_fn(|_| std::array::from_fn(|_| vec![0.0; cells]));
+        let zero = || std::array::from_fn(|_| std::array::from_fn(|_| vec![0.0; cells + WIDTH]));
         LinearLaw {
             by_shear: zero(),
             by_ahead: zero(),
@@ -53,24 +57,36 @@ impl LinearLaw {
         }
     }
 
-    /// Writes the change of one component of the residual at the cells of a run, of which `first` is the first.
-    pub fn multiply(&self, component: usize, first: usize, change: &RunChange, out: &mut [f32]) {
+    /// Writes the change of the residual of all cells, along x and y, and values without meaning for a vector register beyond them.
+    pub fn multiply(&self, contact: &Contact, grid: &Grid, change: &Change, out: [&mut [f32]; 2]) {
         dense::vectorised(
             #[inline(always)]
             |fma| {
-                out.fill(0.0);
-                let parts = [
-                    (&self.by_shear, change.shear),
-                    (&self.by_ahead, change.ahead),
-                    (&self.by_behind, change.behind),
-                ];
-                for (coefficients, changes) in parts {
-                    let [by_x, by_y] = &coefficients[component];
-                    let coefficients = by_x[first..].iter().zip(&by_y[first..]);
-                    let changes = changes[0].iter().zip(changes[1]);
-                    for (out, ((by_x, by_y), (x, y))) in out.iter_mut().zip(coefficients.zip(changes)) {
-                        let sum = fma.multiply_add_single(*by_x, *x, *out);
-                        *out = fma.multiply_add_single(*by_y, *y, sum);
+                for (component, out) in out.into_iter().enumerate() {
+                    for run in contact.runs() {
+                        let ahead = run.places(grid).start;
+                        let behind = ahead.wrapping_add_signed(change.behind);
+                        // By whole registers: what one of them writes beyond the end of its run, the next run overwrites.
+                        for k in (0..run.cells).step_by(WIDTH) {
+                            let cell = run.offset + k;
+                            let mut sum = [0.0; WIDTH];
+                            for by in 0..2 {
+                                let slip = change.slip[by];
+                                let parts = [
+                                    (&self.by_shear, wide(change.shear[by], cell)),
+                                    (&self.by_ahead, wide(slip, ahead + k)),
+                                    (&self.by_behind, wide(slip, behind + k)),
+                                ];
+                                for (coefficients, change) in parts {
+                                    let coefficients = wide(&coefficients[component][by], cell);
+                                    for lane in 0..WIDTH {
+                                        sum[lane] =
+                                            fma.multiply_add_single(coefficients[lane], change[lane], sum[lane]);
+                                    }
+                                }
+                            }
+                            *wide_mut(out, cell) = sum;
+                        }
                     }
                 }
             },
@@ -83,13 +99,21 @@ mod tests {
     use super::*;
     use crate::mechanics::patch::law::{Matrix, multiply};
 
-    /// The change of the residual of a run inside other cells is that of its rows, with the leading edge in the slip ahead.
+    /// The change of the residual of every cell is that of its row, with the leading edge in the slip ahead.
     #[test]
     fn the_product_is_that_of_the_rows() {
         let wave = |i: usize, k: usize| (1.3 * i as f64 + 2.1 * k as f64).sin();
         let matrix =
             |i: usize, k: usize| -> Matrix { [[wave(i, k), wave(i, k + 1)], [wave(i, k + 2), wave(i, k + 3)]] };
-        let rows: Vec<CellLawRow> = (0..21)
+        let grid = Grid::new(21, 3, 1.0, 1.0);
+        let mut contact = Contact::new(&grid);
+        // Runs longer and shorter than a register.
+        contact.list(&grid, |place| {
+            let (strip, cell) = (place / grid.stride(), place % grid.stride());
+            [3..20, 0..0, 9..12][strip].contains(&cell) || (strip == 1 && (cell % 10 == 4 || cell == 5))
+        });
+        let n = contact.cells();
+        let rows: Vec<CellLawRow> = (0..n)
             .map(|i| CellLawRow {
                 by_shear: matrix(i, 0),
                 by_ahead: matrix(i, 4),
@@ -97,36 +121,38 @@ mod tests {
                 ..CellLawRow::default()
             })
             .collect();
-        let edge: Vec<Vector> = (0..21).map(|i| [0.3 * (i % 3) as f64, 0.1 * (i % 2) as f64]).collect();
-        let mut law = LinearLaw::new(30);
+        let edge: Vec<Vector> = (0..n).map(|i| [0.3 * (i % 3) as f64, 0.1 * (i % 2) as f64]).collect();
+        let mut law = LinearLaw::new(n);
         law.take(&rows, &edge);
-        let (first, cells) = (3, 17);
-        let values: Vec<Vec<f32>> = (0..6)
-            .map(|k| (0..cells).map(|i| wave(k, i) as f32).collect())
-            .collect();
-        let pair = |k: usize| [&values[k][..], &values[k + 1][..]];
-        let change = RunChange {
-            shear: pair(0),
-            ahead: pair(2),
-            behind: pair(4),
-        };
-        let mut out = [vec![0.0; cells], vec![0.0; cells]];
-        for (component, out) in out.iter_mut().enumerate() {
-            law.multiply(component, first, &change, out);
-        }
-        for i in 0..cells {
-            let at = |k: usize| -> Vector { [0, 1].map(|j: usize| f64::from(values[k + j][i])) };
-            let (row, edge, shear) = (&rows[first + i], edge[first + i], at(0));
-            let ahead = [at(2)[0] + edge[0] * shear[0], at(2)[1] + edge[1] * shear[1]];
-            let terms = [
-                multiply(row.by_shear, shear),
-                multiply(row.by_ahead, ahead),
-                multiply(row.by_behind, at(4)),
-            ];
-            for (component, out) in out.iter().enumerate() {
-                let exact: f64 = terms.iter().map(|term| term[component]).sum();
-                // Single precision.
-                assert!((f64::from(out[i]) - exact).abs() < 1e-6, "{i}: {} {exact}", out[i]);
+        let values = |k: usize, number: usize| -> Vec<f32> { (0..number).map(|i| wave(k, i) as f32).collect() };
+        let shear = [0, 1].map(|k| values(k, n + WIDTH));
+        let slip = [2, 3].map(|k| values(k, grid.len() + WIDTH));
+        for behind in [-1, 1] {
+            let change = Change {
+                shear: [&shear[0], &shear[1]],
+                slip: [&slip[0], &slip[1]],
+                behind,
+            };
+            let mut out = [vec![f32::NAN; n + WIDTH], vec![f32::NAN; n + WIDTH]];
+            let [along, across] = &mut out;
+            law.multiply(&contact, &grid, &change, [along, across]);
+            for (i, place) in contact.places(&grid).enumerate() {
+                let at = |values: &[Vec<f32>; 2], place: usize| -> Vector {
+                    [0, 1].map(|j: usize| f64::from(values[j][place]))
+                };
+                let (own, mut ahead) = (at(&shear, i), at(&slip, place));
+                ahead[0] += edge[i][0] * own[0];
+                ahead[1] += edge[i][1] * own[1];
+                let terms = [
+                    multiply(rows[i].by_shear, own),
+                    multiply(rows[i].by_ahead, ahead),
+                    multiply(rows[i].by_behind, at(&slip, place.wrapping_add_signed(behind))),
+                ];
+                for (component, out) in out.iter().enumerate() {
+                    let exact: f64 = terms.iter().map(|term| term[component]).sum();
+                    // Single precision.
+                    assert!((f64::from(out[i]) - exact).abs() < 1e-6, "{i}: {} {exact}", out[i]);
+                }
             }
         }
     }

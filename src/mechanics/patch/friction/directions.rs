@@ -6,11 +6,11 @@
 use crate::body::grid::Grid;
 use crate::body::influence::Window;
 use crate::numerics::dense;
-use crate::numerics::single;
+use crate::numerics::single::{self, WIDTH};
 
 /// Directions for up to so many iterations, in single precision.
 pub struct Directions {
-    /// Number of values on the grid.
+    /// Number of values on the grid, and of those for a vector register beyond it.
     len: usize,
     /// Changes of the shear of n cells, along x and then along y, one direction after the other, 2n each.
     shears: Vec<f32>,
@@ -22,15 +22,16 @@ impl Directions {
     /// Buffers for a grid.
     pub fn new(grid: &Grid, iterations: usize) -> Directions {
         Directions {
-            len: grid.len(),
-            shears: vec![0.0; 2 * grid.cells * grid.strips * iterations],
-            responses: vec![0.0; 2 * grid.len() * iterations],
+            len: grid.len() + WIDTH,
+            shears: vec![0.0; 2 * grid.cells * grid.strips * iterations + WIDTH],
+            responses: vec![0.0; 2 * (grid.len() + WIDTH) * iterations],
         }
     }
 
-    /// Places of direction `number`, to be written: its shear, of so many unknowns, and the response along x and y on the grid.
+    /// Places of direction `number`, to be written: its shear, of so many unknowns, and the response along x and y on the grid, each with
+    /// values for a vector register beyond.
     pub fn at(&mut self, number: usize, unknowns: usize) -> (&mut [f32], [&mut [f32]; 2]) {
-        let shear = &mut self.shears[number * unknowns..][..unknowns];
+        let shear = &mut self.shears[number * unknowns..][..unknowns + WIDTH];
         let (x, y) = self.responses[2 * number * self.len..][..2 * self.len].split_at_mut(self.len);
         (shear, [x, y])
     }
