@@ -190,6 +190,38 @@ fn the_gap_is_that_of_the_wheel_over_each_cell() {
     assert!(largest < 1e-9, "{largest:e}");
 }
 
+/// A distance is guessed from slope and curvature of the one beside it: what is missing is of third order.
+#[test]
+fn a_distance_is_guessed_from_the_one_beside_it() {
+    let parameters = parameters(Control::Height);
+    let operators = SurfaceOperators::build(&parameters).unwrap();
+    let (mut points, mut largest, mut least) = (0, 0.0_f64, f64::INFINITY);
+    for lateral in [1e-3, 5e-3] {
+        let inputs = displaced(lateral);
+        let state = run(&parameters, &inputs, 0);
+        let pose = Pose::new(&operators, &inputs, parameters.wheel_radius);
+        let wheel = PlacedWheel::new(&operators.bodies.wheel, &pose.position);
+        for (_, place) in fields(&state).used() {
+            let grid = &operators.of(&place).grid;
+            let middle = place.middle_along(grid);
+            let point = operators.bodies.rail.at(place.arc(grid, grid.strips / 2));
+            for along in [middle - 3e-3, middle, middle + 3e-3] {
+                let here = wheel.distance(along, &point, 0.0);
+                for way in [-1e-3, 1e-3] {
+                    let beside = wheel.distance(along + way, &point, 0.0).distance;
+                    largest = largest.max((here.farther_along(way) - beside).abs());
+                    least = least.min((beside - here.distance).abs());
+                    points += 1;
+                }
+            }
+        }
+    }
+    assert!(points > 0, "{points}");
+    // A millimetre squared over twice the wheel's radius is 1e-6 m; cubed, over the square of the wheel's radius, 5e-9 m.
+    assert!(least > 1e-7, "{points} {least:e} {largest:e}");
+    assert!(largest < 5e-9, "{points} {least:e} {largest:e}");
+}
+
 /// A wheel that is worn, cell by cell, between two positions on its profile, `m`.
 fn worn_wheel(operators: &SurfaceOperators, between: Range<f64>, mut depth_of: impl FnMut(usize) -> f64) -> WornBodies {
     let mut worn = WornBodies::new(operators);
