@@ -13,6 +13,7 @@ use crate::contact::patch::operators::PatchOperators;
 use crate::contact::problem::{Coupling, StepConditions, Task};
 use crate::contact::{ContactState, ContactWorkspace, Operators};
 use crate::error::{Error, Result};
+use crate::geometry::hertz::HertzEllipse;
 use crate::geometry::profile::Profile;
 use crate::parameters::{ContactModel, Control, Parameters};
 use crate::settings::Settings;
@@ -33,6 +34,8 @@ pub struct Model {
     parameters: Parameters,
     settings: Settings,
     operators: Operators,
+    /// Contact ellipse under the largest load; none with a line.
+    largest_ellipse: Option<HertzEllipse>,
 }
 
 /// Scratch of a step. What a step leaves in it changes no result of another one.
@@ -116,10 +119,13 @@ impl Model {
         parameters.validate()?;
         settings.step = settings.step.for_cells(&parameters);
         let operators = Operators::new(&parameters)?;
+        let is_line = parameters.contact_model == ContactModel::Line;
+        let largest_ellipse = (!is_line).then(|| parameters.hertz_ellipse(parameters.largest_load));
         Ok(Model {
             parameters,
             settings,
             operators,
+            largest_ellipse,
         })
     }
 

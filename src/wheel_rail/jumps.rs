@@ -2,6 +2,7 @@
 
 use super::Model;
 use crate::friction;
+use crate::geometry::hertz::HertzEllipse;
 use crate::numerics::dense;
 use crate::parameters::{ContactModel, Control};
 use crate::signals::{Inputs, Motion};
@@ -13,7 +14,7 @@ impl Model {
         let speed = before.rolling_speed.abs().max(after.rolling_speed.abs());
         // Creepage at which the whole contact slides, μ a / r₀.
         let load = from.normal_load.max(to.normal_load);
-        let (half_length, half_breadth) = self.parameters.contact_half_axes(load);
+        let (half_length, half_breadth) = self.half_axes(load);
         let saturation = friction::largest_coefficient(&self.parameters) * half_length / to.radius(&self.parameters);
         // Slip along and across the rail, and that of the spin at the contact's side.
         let slips = |motion: &Motion, inputs: &Inputs| {
@@ -40,21 +41,28 @@ impl Model {
             .max(self.change_of_place(from, to))
     }
 
+    /// Half-length and half-breadth of the contact under a load, `m`. An ellipse's grow with the cube root of the load.
+    fn half_axes(&self, load: f64) -> (f64, f64) {
+        let Some(largest) = &self.largest_ellipse else {
+            return self.parameters.contact_half_axes(load);
+        };
+        let share = (load / self.parameters.largest_load).cbrt();
+        (share * largest.along, share * largest.across)
+    }
+
     /// Largest change of the wheelset's place over the rail, or of the given geometry of a patch, relative to what changes the contacts appreciably.
     fn change_of_place(&self, from: &Inputs, to: &Inputs) -> f64 {
         /// Way across the track over which the contacts become others, `m`.
         const LATERAL: f64 = 5e-3;
-        let approach = || self.parameters.hertz_ellipse(self.parameters.largest_load).approach;
-        match self.parameters.contact_model {
-            ContactModel::Line => return 0.0,
-            ContactModel::Patch => {
-                let penetration = (to.contact_penetration - from.contact_penetration).abs() / approach();
-                let relative = |from: f64, to: f64| dense::relative((to - from).abs(), from.max(to));
-                return penetration
-                    .max(relative(from.longitudinal_curvature, to.longitudinal_curvature))
-                    .max(relative(from.transverse_curvature, to.transverse_curvature));
-            }
-            ContactModel::Profiles => {}
+        let Some(HertzEllipse { approach, .. }) = self.largest_ellipse else {
+            return 0.0;
+        };
+        if self.parameters.contact_model == ContactModel::Patch {
+            let penetration = (to.contact_penetration - from.contact_penetration).abs() / approach;
+            let relative = |from: f64, to: f64| dense::relative((to - from).abs(), from.max(to));
+            return penetration
+                .max(relative(from.longitudinal_curvature, to.longitudinal_curvature))
+                .max(relative(from.transverse_curvature, to.transverse_curvature));
         }
         let lateral = |inputs: &Inputs| inputs.lateral_displacement - inputs.rail_lateral_displacement;
         let place = (lateral(to) - lateral(from)).abs() / LATERAL;
@@ -62,7 +70,7 @@ impl Model {
             return place;
         }
         let height = |inputs: &Inputs| inputs.vertical_displacement - inputs.rail_vertical_displacement;
-        place.max((height(to) - height(from)).abs() / approach())
+        place.max((height(to) - height(from)).abs() / approach)
     }
 
     /// Time in which rail material crosses the contact window, `s`; infinite at rest.
