@@ -246,7 +246,7 @@ fn compare(contact: &str, options: &[Setting]) {
     }
     println!(
         "{contact}: {steps} steps of 1 ms on a rough track, by turns of {TURN}; times in us, iterations a step\n{:>29} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8}",
-        "", "median", "99.9 %", "worst", "/ plain", "sweeps", "Newton", "Krylov", "factors", "CG"
+        "", "median", "99.9 %", "worst", "/ plain", "sweeps", "Newton", "Krylov", "inverted", "CG"
     );
     let plain = runs[0].median();
     for run in &runs {
@@ -263,7 +263,7 @@ fn compare(contact: &str, options: &[Setting]) {
             run.sweeps as f64 / steps as f64,
             per_step(|iterations| iterations.newton),
             per_step(|iterations| iterations.krylov),
-            per_step(|iterations| iterations.factorisations),
+            per_step(|iterations| iterations.inversions),
             per_step(|iterations| iterations.gradients),
         );
     }

@@ -92,7 +92,7 @@ impl Run {
     pub fn print_headings(first: &str, ratio: &str) {
         println!(
             "{first:>9} {:>9} {:>9} {:>9} {:>9} {ratio:>9} {:>8} {:>8} {:>8} {:>8} {:>8}",
-            "median", "99 %", "99.9 %", "worst", "sweeps", "Newton", "Krylov", "factors", "CG"
+            "median", "99 %", "99.9 %", "worst", "sweeps", "Newton", "Krylov", "inverted", "CG"
         );
     }
 
@@ -107,7 +107,7 @@ impl Run {
             self.sweeps as f64 / self.times.len() as f64,
             per_step(|iterations| iterations.newton),
             per_step(|iterations| iterations.krylov),
-            per_step(|iterations| iterations.factorisations),
+            per_step(|iterations| iterations.inversions),
             per_step(|iterations| iterations.gradients),
         );
     }

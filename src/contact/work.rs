@@ -9,8 +9,8 @@ pub struct Iterations {
     pub newton: u64,
     /// Krylov iterations of their linear systems.
     pub krylov: u64,
-    /// Factorisations of the strips' blocks.
-    pub factorisations: u64,
+    /// Inversions of the strips' blocks of the friction law.
+    pub inversions: u64,
     /// Conjugate gradients of a patch's pressure.
     pub gradients: u64,
 }

@@ -60,7 +60,7 @@ pub struct PatchSettings {
     pub single_tolerance: f64,
     /// Residual of the friction law, relative to the peak pressure, that will do in a staggered step where none smaller is reached.
     pub staggered_residual: f64,
-    /// Krylov iterations a decimal digit of a correction above which the blocks are factorised anew for the next Newton step.
+    /// Krylov iterations a decimal digit of a correction above which the blocks are inverted anew for the next Newton step.
     pub renewal: f64,
     /// Limit of the halvings of a Newton step.
     pub halvings: usize,

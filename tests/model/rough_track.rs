@@ -12,7 +12,7 @@ const MARGIN: f64 = 1.15;
 const COUNTED: [&str; 5] = [
     "Newton steps",
     "Krylov iterations",
-    "factorisations",
+    "inversions",
     "conjugate gradients",
     "iterations of the split",
 ];
@@ -63,7 +63,7 @@ fn takes_no_more(name: &str, parameters: &Parameters, track: &[Inputs], recorded
     let counted = [
         after.newton - before.newton,
         after.krylov - before.krylov,
-        after.factorisations - before.factorisations,
+        after.inversions - before.inversions,
         after.gradients - before.gradients,
         sweeps as u64,
     ];

@@ -154,11 +154,11 @@ impl Engine for PatchOperators {
     }
 
     fn iterations(solvers: &PatchSolvers) -> Iterations {
-        let [newton, krylov, factorisations] = solvers.friction.iterations();
+        let [newton, krylov, inversions] = solvers.friction.iterations();
         Iterations {
             newton,
             krylov,
-            factorisations,
+            inversions,
             gradients: solvers.normal.iterations(),
         }
     }

@@ -251,7 +251,7 @@ impl Engine for SurfaceOperators {
             let iterations = PatchOperators::iterations(&own.patch);
             sum.newton += iterations.newton;
             sum.krylov += iterations.krylov;
-            sum.factorisations += iterations.factorisations;
+            sum.inversions += iterations.inversions;
             sum.gradients += iterations.gradients;
         }
         sum

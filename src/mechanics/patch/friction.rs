@@ -83,7 +83,7 @@ pub struct Friction {
     gmres: Gmres,
     directions: Directions,
     blocks: Blocks,
-    factorised: bool,
+    inverted: bool,
     /// Shear on the grid that `response` belongs to.
     answered: [Vec<f64>; 2],
     response: [Vec<f64>; 2],
@@ -110,7 +110,7 @@ pub struct Friction {
     work: u64,
     /// Multiplications and additions after which Newton's method stops.
     work_limit: u64,
-    /// Newton steps, Krylov iterations and factorisations since the solver was made.
+    /// Newton steps, Krylov iterations and inversions of the blocks since the solver was made.
     iterations: [u64; 3],
 }
 
@@ -133,7 +133,7 @@ impl Friction {
             gmres: Gmres::new(2 * total, settings.krylov_iterations),
             directions: Directions::new(grid, settings.krylov_iterations),
             blocks: Blocks::new(cells, total),
-            factorised: false,
+            inverted: false,
             answered: double(),
             response: double(),
             correction_response: double(),
@@ -165,14 +165,14 @@ impl Friction {
         self.work
     }
 
-    /// Newton steps, Krylov iterations and factorisations since the solver was made.
+    /// Newton steps, Krylov iterations and inversions of the blocks since the solver was made.
     pub fn iterations(&self) -> [u64; 3] {
         self.iterations
     }
 
     /// Forgets what was computed for another contact.
     pub fn start_contact(&mut self) {
-        self.factorised = false;
+        self.inverted = false;
         self.answered.iter_mut().for_each(|component| component.fill(f64::NAN));
     }
 
@@ -221,7 +221,7 @@ impl Friction {
                 regularisation: epsilon,
                 ..scheme
             };
-            self.factorised = false;
+            self.inverted = false;
             // A smoother law that stalls still leads closer.
             if self.newton(problem, &smooth, shear, rough, 1.0).is_ok() && problem.accepted > 0.0 {
                 regularised = Some(smooth);
@@ -234,7 +234,7 @@ impl Friction {
         self.work_limit = problem.work;
         let mut last = Ok(());
         for noise in [f64::INFINITY, 1e2 * problem.noise, problem.noise] {
-            self.factorised = false;
+            self.inverted = false;
             last = self.newton(problem, &Scheme { noise, ..scheme }, shear, problem.tolerance, 1.0);
         }
         self.remember(shear);
@@ -309,21 +309,21 @@ impl Friction {
             if self.work > limit {
                 return Err((iterations, largest));
             }
-            let fresh = !self.factorised;
+            let fresh = !self.inverted;
             if fresh {
-                self.factorised = self.factorise(problem);
+                self.inverted = self.invert_blocks(problem);
             }
-            if !self.factorised {
+            if !self.inverted {
                 return Err((iterations, largest));
             }
             let needed = self.settings.forcing_margin * tolerance / largest;
             let solved = self.correct(problem, &window, needed.max(forcing) as f32);
             self.iterations[0] += 1;
             self.iterations[1] += solved.iterations as u64;
-            // A kept factorisation that no longer serves is made anew for the next correction.
+            // Kept blocks that no longer serve are inverted anew for the next correction.
             let digits = -f64::from(solved.residual).log10();
             if solved.iterations as f64 > self.settings.renewal * digits.max(LEAST_DIGITS) && !fresh {
-                self.factorised = false;
+                self.inverted = false;
             }
             let size_before = size;
             self.respond_to_correction(problem, &window, tolerance);
@@ -347,7 +347,7 @@ impl Friction {
                 dense::add_multiple(change, length, &mut self.response[component]);
             }
             if length < 1.0 {
-                self.factorised = false;
+                self.inverted = false;
             }
             largest = self.largest_residual(n);
             // No closer than the law's curvature lets the next step come.
@@ -438,8 +438,8 @@ impl Friction {
         sum.sqrt()
     }
 
-    /// Factorises the strips' blocks. False where one is singular.
-    fn factorise(&mut self, problem: &FrictionProblem) -> bool {
+    /// Inverts the strips' blocks. False where one is singular.
+    fn invert_blocks(&mut self, problem: &FrictionProblem) -> bool {
         let response = problem.response;
         let own = StripResponse {
             along: &response.strip_kernels[0],
@@ -447,6 +447,8 @@ impl Friction {
             origin: response.origin,
             behind: if response.forward { -1 } else { 1 },
         };
+        // An inversion has three times as many, and takes less time than the factorisation that this is the count of: it is a measure of
+        // time, by which the budget of a step was chosen.
         self.work += work_of_blocks(problem.contact, 3) / 3;
         self.iterations[2] += 1;
         self.law.take(&self.rows[..problem.contact.cells()], problem.edge);

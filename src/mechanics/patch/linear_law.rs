@@ -1,5 +1,5 @@
 //! The linearised law of the cells in single precision, each coefficient an array of its own: what the corrections of Newton's method
-//! multiply with and factorise. Neighbouring cells then go through one vector instruction.
+//! multiply with and invert. Neighbouring cells then go through one vector instruction.
 
 use super::contact::Contact;
 use super::law::{CellLawRow, Vector};

@@ -66,8 +66,8 @@ impl Friction {
                 };
             }
         }
-        self.factorised = self.factorise(problem);
-        if self.factorised {
+        self.inverted = self.invert_blocks(problem);
+        if self.inverted {
             Ok(())
         } else {
             Err(Error::SingularContactMatrix {
