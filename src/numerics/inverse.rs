@@ -42,7 +42,7 @@ pub fn invert(matrix: &mut [f32], n: usize, scratch: &mut [f32]) -> bool {
             for first in (0..rows).step_by(WIDTH) {
                 let (before, rest) = matrix.split_at_mut(first * rows);
                 let (own, after) = rest.split_at_mut(WIDTH * rows);
-                // Columns of padding are 0 where they are not panels themselves, and stay so.
+                // Columns of the padding have 0 in the rows of other panels: eliminating these changes nothing there.
                 let after_inside = n.next_multiple_of(GROUP).saturating_sub(first + WIDTH);
                 let after = &mut after[..after_inside * rows];
                 let mut block = [[0.0; WIDTH]; WIDTH];
@@ -132,7 +132,7 @@ fn multiply_rows<const REGISTERS: usize>(
     }
 }
 
-/// Adds a multiple: `sum += factor · x`.
+/// Adds a multiple: `sum += factor · x`. By index: of two iterators over arrays the compiler makes slower code here.
 #[inline(always)]
 fn add_multiple(fma: MultiplyAdd, x: &Wide, factor: f32, sum: &mut Wide) {
     for lane in 0..WIDTH {
@@ -221,8 +221,8 @@ fn update_rows<const REGISTERS: usize>(fma: MultiplyAdd, own: &[f32], row: usize
             }
         }
         for (k, own) in own.chunks_exact(rows).enumerate() {
-            // The compiler does not know that there are no more than eight, and is not to unroll the loop: all values would be
-            // spread over registers at once, and spilled.
+            // For a loop over eight the compiler would unroll it, spread all values over registers at once, and spill them: it does not
+            // know that this one has as many.
             let k = k % WIDTH;
             for (register, sums) in sums.iter_mut().enumerate() {
                 let values = wide(own, row + register * WIDTH);
