@@ -1,7 +1,7 @@
 //! Inverses of small matrices in single precision, for preconditioners; column-major.
 //!
-//! A product with an inverse reads as many values as a solution with factors, but no sum in it waits for another one, as those of
-//! a triangular solution do: it takes half of the time.
+//! A product with an inverse reads as many values as a solution with factors, but no sum in it waits for another one, as the sums of
+//! a triangular solution do. That makes it the faster one.
 
 use super::dense::{self, MultiplyAdd};
 use super::single::{WIDTH, Wide, padded, wide, wide_mut};
@@ -25,12 +25,12 @@ const UNIT: [Wide; WIDTH] = {
 };
 
 /// Number of values of scratch that the inversion of a matrix of `n` rows takes.
-pub const fn panel(n: usize) -> usize {
+pub const fn scratch_len(n: usize) -> usize {
     WIDTH * padded(n)
 }
 
 /// Inverts a matrix of `n` rows in place, padded to whole registers with a unit matrix; of the inverse, the first `n` columns count. False where
-/// a column of a block of eight on its diagonal is 0, or no number. `scratch` has as many values as [`panel`] tells.
+/// a column of a block of eight on its diagonal is 0, or no number. `scratch` has [`scratch_len`] values.
 ///
 /// Gauss and Jordan's elimination by panels of eight columns. Rows are not exchanged: the friction law of a strip has its largest
 /// entries on the diagonal.
@@ -41,33 +41,33 @@ pub fn invert(matrix: &mut [f32], n: usize, scratch: &mut [f32]) -> bool {
         |fma| {
             for first in (0..rows).step_by(WIDTH) {
                 let (before, rest) = matrix.split_at_mut(first * rows);
-                let (own, after) = rest.split_at_mut(WIDTH * rows);
+                let (panel, after) = rest.split_at_mut(WIDTH * rows);
                 // Columns of the padding have 0 in the rows of other panels: eliminating these changes nothing there.
                 let after_inside = n.next_multiple_of(GROUP).saturating_sub(first + WIDTH);
                 let after = &mut after[..after_inside * rows];
                 let mut block = [[0.0; WIDTH]; WIDTH];
-                for (column, block) in own.chunks_exact(rows).zip(&mut block) {
+                for (column, block) in panel.chunks_exact(rows).zip(&mut block) {
                     *block = *wide(column, first);
                 }
                 if !invert_block(fma, &mut block) {
                     return false;
                 }
                 for columns in [before, after] {
-                    eliminate(fma, &block, own, first, columns, scratch);
+                    eliminate(fma, &block, panel, first, columns, scratch);
                 }
                 for row in (0..rows).step_by(WIDTH).filter(|&row| row != first) {
                     let mut sums = [[0.0; WIDTH]; WIDTH];
-                    for (k, column) in own.chunks_exact(rows).enumerate() {
+                    for (k, column) in panel.chunks_exact(rows).enumerate() {
                         let values = wide(column, row);
                         for (sum, block) in sums.iter_mut().zip(&block) {
                             add_multiple(fma, values, -block[k % WIDTH], sum);
                         }
                     }
-                    for (column, sum) in own.chunks_exact_mut(rows).zip(&sums) {
+                    for (column, sum) in panel.chunks_exact_mut(rows).zip(&sums) {
                         *wide_mut(column, row) = *sum;
                     }
                 }
-                for (column, block) in own.chunks_exact_mut(rows).zip(&block) {
+                for (column, block) in panel.chunks_exact_mut(rows).zip(&block) {
                     *wide_mut(column, first) = *block;
                 }
             }
@@ -140,8 +140,8 @@ fn add_multiple(fma: MultiplyAdd, x: &Wide, factor: f32, sum: &mut Wide) {
     }
 }
 
-/// Inverts a block on the diagonal by Gauss and Jordan's elimination, all columns alike in each step: with −a on the pivot's column,
-/// 1 in place of the pivot, every column changes by its share of the pivot's row times that.
+/// Inverts a block on the diagonal by Gauss and Jordan's elimination. A step takes the pivot's column, with its sign turned and 1 in
+/// place of the pivot, and adds it to every column, times that column's entry in the pivot's row over the pivot.
 #[inline(always)]
 fn invert_block(fma: MultiplyAdd, block: &mut [Wide; WIDTH]) -> bool {
     let larger = |a: f32, b: f32| if a > b { a } else { b };
@@ -173,61 +173,68 @@ fn invert_block(fma: MultiplyAdd, block: &mut [Wide; WIDTH]) -> bool {
     regular
 }
 
-/// Eliminates the panel `own`, whose inverse block on the diagonal is `block`, from other columns: their rows of the panel are
-/// multiplied with that, and then with the panel's other rows, which is taken off theirs.
+/// Eliminates a panel, the inverse of whose block on the diagonal is `block`, from other columns: their values in the panel's rows are
+/// multiplied with that block; the panel's other rows, multiplied with what this gives, are taken off the columns' other rows. `reduced` is
+/// scratch for it, with the sign turned.
 #[inline(always)]
 fn eliminate(
     fma: MultiplyAdd,
     block: &[Wide; WIDTH],
-    own: &[f32],
+    panel: &[f32],
     first: usize,
     columns: &mut [f32],
-    panel: &mut [f32],
+    reduced: &mut [f32],
 ) {
-    let rows = own.len() / WIDTH;
-    for (column, panel) in columns.chunks_exact_mut(rows).zip(panel.as_chunks_mut::<WIDTH>().0) {
+    let rows = panel.len() / WIDTH;
+    for (column, reduced) in columns.chunks_exact_mut(rows).zip(reduced.as_chunks_mut::<WIDTH>().0) {
         let values = wide_mut(column, first);
         let mut sum = [0.0; WIDTH];
         for k in 0..WIDTH {
             add_multiple(fma, &block[k], values[k], &mut sum);
         }
         *values = sum;
-        for (panel, sum) in panel.iter_mut().zip(sum) {
-            *panel = -sum;
+        for (reduced, sum) in reduced.iter_mut().zip(sum) {
+            *reduced = -sum;
         }
     }
     for range in [0..first, first + WIDTH..rows] {
         let mut row = range.start;
         while row + 2 * WIDTH <= range.end {
-            update_rows::<2>(fma, own, row, columns, panel);
+            update_rows::<2>(fma, panel, row, columns, reduced);
             row += 2 * WIDTH;
         }
         if row < range.end {
-            update_rows::<1>(fma, own, row, columns, panel);
+            update_rows::<1>(fma, panel, row, columns, reduced);
         }
     }
 }
 
-/// Adds the product of some registers of the panel's rows with `panel`, the rows of the panel in the other columns, to these columns.
+/// Adds the product of some registers of a panel's rows with what [`eliminate`] has `reduced` to other columns.
 #[inline(always)]
-fn update_rows<const REGISTERS: usize>(fma: MultiplyAdd, own: &[f32], row: usize, columns: &mut [f32], panel: &[f32]) {
-    let rows = own.len() / WIDTH;
-    let groups = panel.as_chunks::<{ GROUP * WIDTH }>().0;
-    for (columns, panel) in columns.chunks_exact_mut(GROUP * rows).zip(groups) {
+fn update_rows<const REGISTERS: usize>(
+    fma: MultiplyAdd,
+    panel: &[f32],
+    row: usize,
+    columns: &mut [f32],
+    reduced: &[f32],
+) {
+    let rows = panel.len() / WIDTH;
+    let groups = reduced.as_chunks::<{ GROUP * WIDTH }>().0;
+    for (columns, reduced) in columns.chunks_exact_mut(GROUP * rows).zip(groups) {
         let mut sums = [[[0.0; WIDTH]; GROUP]; REGISTERS];
         for (register, sums) in sums.iter_mut().enumerate() {
             for (c, sum) in sums.iter_mut().enumerate() {
                 *sum = *wide(columns, c * rows + row + register * WIDTH);
             }
         }
-        for (k, own) in own.chunks_exact(rows).enumerate() {
-            // For a loop over eight the compiler would unroll it, spread all values over registers at once, and spill them: it does not
-            // know that this one has as many.
+        for (k, panel) in panel.chunks_exact(rows).enumerate() {
+            // The remainder tells the compiler that the index is in range. A loop over 0..WIDTH would tell it too, but that one it unrolls,
+            // reads all values at once, and has no registers for them.
             let k = k % WIDTH;
             for (register, sums) in sums.iter_mut().enumerate() {
-                let values = wide(own, row + register * WIDTH);
+                let values = wide(panel, row + register * WIDTH);
                 for (c, sum) in sums.iter_mut().enumerate() {
-                    add_multiple(fma, values, panel[c * WIDTH + k], sum);
+                    add_multiple(fma, values, reduced[c * WIDTH + k], sum);
                 }
             }
         }
@@ -271,7 +278,7 @@ mod tests {
         for n in [1, 2, 5, 8, 13, 17, 28, 40, 44] {
             let mut inverse = matrix(n);
             let exact = inside(&inverse, n).try_inverse().unwrap();
-            assert!(invert(&mut inverse, n, &mut vec![0.0; panel(n)]));
+            assert!(invert(&mut inverse, n, &mut vec![0.0; scratch_len(n)]));
             let off = (inside(&inverse, n) - &exact).amax();
             // Single precision, times a condition of some tens.
             assert!(off < 1e-5 * exact.amax(), "{n}: {off:e}");

@@ -78,3 +78,52 @@ impl Model {
         self.operators.window_length() / inputs.motion(&self.parameters).rolling_speed.abs()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::parameters::{Parameters, SlipSource};
+
+    fn model(contact_model: ContactModel) -> Model {
+        let parameters = Parameters {
+            contact_model,
+            slip_source: match contact_model {
+                ContactModel::Profiles => SlipSource::VehicleSpeed,
+                _ => Parameters::default().slip_source,
+            },
+            patch_nodes: 8,
+            patch_strips: 5,
+            ..Parameters::default()
+        };
+        Model::new(parameters).unwrap()
+    }
+
+    /// The half-axes are those that the parameters have for the load, and a penetration that grows by the approach of the largest load is a
+    /// change of 1.
+    #[test]
+    fn the_scales_are_those_of_the_contact_under_the_load() {
+        for contact_model in [ContactModel::Line, ContactModel::Patch, ContactModel::Profiles] {
+            let model = model(contact_model);
+            for load in [0.0, 1e3, 40e3, model.parameters.largest_load] {
+                let (found, exact) = (model.half_axes(load), model.parameters.contact_half_axes(load));
+                // Round-off.
+                assert!(
+                    (found.0 - exact.0).abs() <= 1e-14,
+                    "{contact_model:?} {load}: {found:?} {exact:?}"
+                );
+                assert!(
+                    (found.1 - exact.1).abs() <= 1e-14,
+                    "{contact_model:?} {load}: {found:?} {exact:?}"
+                );
+            }
+        }
+        let model = model(ContactModel::Patch);
+        let approach = model.parameters.hertz_ellipse(model.parameters.largest_load).approach;
+        let from = Inputs::default();
+        let to = Inputs {
+            contact_penetration: from.contact_penetration + approach,
+            ..from
+        };
+        assert!((model.change_of_place(&from, &to) - 1.0).abs() < 1e-12);
+    }
+}

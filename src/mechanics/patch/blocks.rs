@@ -30,7 +30,7 @@ pub struct Blocks {
     given: Vec<f32>,
     solved: Vec<f32>,
     /// Scratch of an inversion.
-    panel: Vec<f32>,
+    scratch: Vec<f32>,
 }
 
 /// Place of a run.
@@ -56,7 +56,7 @@ impl Blocks {
             places: Vec::with_capacity(total),
             given: vec![0.0; whole],
             solved: vec![0.0; whole],
-            panel: vec![0.0; inverse::panel(2 * cells)],
+            scratch: vec![0.0; inverse::scratch_len(2 * cells)],
         }
     }
 
@@ -71,7 +71,7 @@ impl Blocks {
             let size = padded(n);
             let block = &mut self.inverses[first..first + size * size + WIDTH];
             assemble(law, run.offset, run.cells, response, block);
-            if !inverse::invert(&mut block[..size * size], n, &mut self.panel) {
+            if !inverse::invert(&mut block[..size * size], n, &mut self.scratch) {
                 return false;
             }
             self.places.push(Place {
@@ -137,7 +137,8 @@ fn assemble(law: &LinearLaw, first: usize, n: usize, response: &StripResponse, b
                 }
                 *wide_mut(entries, 2 * n) = [0.0; WIDTH];
             }
-            for (number, entries) in block.chunks_exact_mut(size).enumerate().take(size).skip(2 * n) {
+            let block = &mut block[..size * size];
+            for (number, entries) in block.chunks_exact_mut(size).enumerate().skip(2 * n) {
                 entries.fill(0.0);
                 entries[number] = 1.0;
             }

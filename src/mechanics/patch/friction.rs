@@ -447,8 +447,8 @@ impl Friction {
             origin: response.origin,
             behind: if response.forward { -1 } else { 1 },
         };
-        // An inversion has three times as many, and takes less time than the factorisation that this is the count of: it is a measure of
-        // time, by which the budget of a step was chosen.
+        // The count of a factorisation, with which the budget of a step was chosen. An inversion has three times as many multiplications,
+        // but takes no longer, and the count is a measure of time.
         self.work += work_of_blocks(problem.contact, 3) / 3;
         self.iterations[2] += 1;
         self.law.take(&self.rows[..problem.contact.cells()], problem.edge);
