@@ -492,15 +492,6 @@ impl Inputs {
         self.check_motion(parameters)
     }
 
-    /// The inputs after `time` at the given rates of change.
-    pub fn advanced(&self, rates: &Inputs, time: f64) -> Inputs {
-        let mut later = *self;
-        for signal in INPUTS {
-            (signal.set)(&mut later, (signal.get)(self) + (signal.get)(rates) * time);
-        }
-        later
-    }
-
     /// Values that miss a limit by rounding, at the end of a ramp to it, are moved onto the limit.
     pub fn snapped(&self, parameters: &Parameters) -> Inputs {
         let mut snapped = *self;

@@ -245,13 +245,14 @@ impl Model {
         workspace.contact.renew_budget();
         let start = state.time;
         let interrupted = |committed, error| Interrupted { committed, error };
+        let end = self.inputs_at(inputs, rates, duration);
         inputs
             .check(&self.parameters)
-            .and_then(|()| self.inputs_at(inputs, rates, duration).check(&self.parameters))
+            .and_then(|()| end.check(&self.parameters))
             .map_err(|error| interrupted(0.0, error))?;
 
         let jump = self.change(&state.inputs, inputs);
-        let ramp = self.change(inputs, &self.inputs_at(inputs, rates, duration));
+        let ramp = self.change(inputs, &end);
         let planned = duration / (ramp / settings.jump).ceil().clamp(1.0, settings.ramp_substeps);
         let first = if jump > settings.jump {
             settings.first_substep * self.passage_time(inputs)
@@ -264,7 +265,11 @@ impl Model {
         let mut division = Division::new(settings, duration, [planned, first], may_hold);
         let mut convergence = Convergence::default();
         while let Some(part) = division.next() {
-            let at_end = self.inputs_at(inputs, rates, part.end);
+            let at_end = if part.end == duration {
+                end
+            } else {
+                self.inputs_at(inputs, rates, part.end)
+            };
             let solved = match self.advance(workspace, state, &at_end, part) {
                 Ok(solved) => solved,
                 Err(error) => {
@@ -299,10 +304,7 @@ impl Model {
                 .solve(&task, &mut workspace.contact, &state.contact, state.duration)?;
         let totals = integrals.totals_after(&self.parameters, &task.conditions, &state.totals);
         let outputs = integrals.outputs(&self.parameters, inputs, &totals);
-        for signal in OUTPUTS {
-            let rate = ((signal.get)(&outputs) - (signal.get)(&state.outputs)) / duration;
-            (signal.set)(&mut state.output_rates, rate);
-        }
+        state.output_rates = outputs.rates(&state.outputs, duration);
         workspace.contact.commit(&mut state.contact, duration);
         state.inputs = *inputs;
         state.duration = duration;

@@ -144,6 +144,11 @@ macro_rules! inputs {
         impl Inputs {
             /// All zero: the rates of inputs that are held.
             pub const ZERO: Inputs = Inputs { $($field: 0.0,)+ };
+
+            /// The inputs after `time` at the given rates of change. Written out, as [`Outputs::rates`] is.
+            pub fn advanced(&self, rates: &Inputs, time: f64) -> Inputs {
+                Inputs { $($field: self.$field + rates.$field * time,)+ }
+            }
         }
 
         impl Default for Inputs {
@@ -193,6 +198,17 @@ macro_rules! outputs {
             )+
             /// The contacts along the rail's profile, from its gauge side to its field side; 0 where there is none.
             pub contact: [ContactOutputs; CONTACTS],
+        }
+
+        impl Outputs {
+            /// Rates of change since the outputs `duration` `s` before, per second. Written out, field by field: through the functions of
+            /// [`OUTPUTS`] they took 1.7 µs a step, of 63 µs on 8 × 8 cells.
+            pub(crate) fn rates(&self, before: &Outputs, duration: f64) -> Outputs {
+                Outputs {
+                    $($field: (self.$field - before.$field) / duration,)+
+                    contact: std::array::from_fn(|k| self.contact[k].rates(&before.contact[k], duration)),
+                }
+            }
         }
 
         /// The rows of numbers.
@@ -248,6 +264,15 @@ macro_rules! contact_outputs {
                 #[doc = concat!("\n\nUnit: `", $unit, "`")]
                 pub $field: f64,
             )+
+        }
+
+        impl ContactOutputs {
+            /// See [`Outputs::rates`].
+            fn rates(&self, before: &ContactOutputs, duration: f64) -> ContactOutputs {
+                ContactOutputs {
+                    $($field: (self.$field - before.$field) / duration,)+
+                }
+            }
         }
 
         /// The rows of arrays, element by element.
