@@ -1,6 +1,7 @@
 //! The friction law at one node of a path, and what a particle takes from there to the next one: see [`super::path`].
 
 use super::layer::Yielding;
+use std::ops::{Add, Mul};
 
 /// The law at a node for given temperature, all that the slip in the step does not change.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -23,13 +24,62 @@ pub struct PathNode {
 
 /// Values that a particle takes from a node in contact to the next one, or a change of them.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Passed {
+pub struct Passed<T = f64> {
     /// Coefficient μ of the surfaces.
-    pub friction: f64,
+    pub friction: T,
     /// Magnitude of the slip velocity, `m/s`.
-    pub speed: f64,
+    pub speed: T,
     /// Way of flow u_pl, `m`.
-    pub flow: f64,
+    pub flow: T,
+}
+
+/// Derivatives by which a change at a node follows from that at the node before, in either precision.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Link<T> {
+    /// Derivatives of μ of the surfaces by that of the node before, by the slip velocity there and by the node's own.
+    by_before: T,
+    by_speed_before: T,
+    by_speed: T,
+    /// Derivatives of the coefficient by μ of the surfaces and by u_pl.
+    by_friction: T,
+    by_flow: T,
+    /// Derivatives of u_pl by that of the node before, by the node's own slip velocity and by μ.
+    flow_by_before: T,
+    flow_by_speed: T,
+    flow_by_friction: T,
+}
+
+impl<T: Copy + Add<Output = T> + Mul<Output = T>> Link<T> {
+    /// Changes of the coefficient with those of what comes from the node before, and of what it passes on with that of its own slip velocity besides.
+    #[inline(always)]
+    pub fn change(&self, before: &Passed<T>, speed: T) -> (T, Passed<T>) {
+        let friction = self.by_before * before.friction + self.by_speed_before * before.speed;
+        let flow = self.flow_by_before * before.flow;
+        let linked = self.by_friction * friction + self.by_flow * flow;
+        let friction = friction + self.by_speed * speed;
+        let passed = Passed {
+            friction,
+            speed,
+            flow: flow + self.flow_by_speed * speed + self.flow_by_friction * friction,
+        };
+        (linked, passed)
+    }
+}
+
+impl Link<f64> {
+    /// Rounded to single precision.
+    pub fn single(&self) -> Link<f32> {
+        Link {
+            by_before: self.by_before as f32,
+            by_speed_before: self.by_speed_before as f32,
+            by_speed: self.by_speed as f32,
+            by_friction: self.by_friction as f32,
+            by_flow: self.by_flow as f32,
+            flow_by_before: self.flow_by_before as f32,
+            flow_by_speed: self.flow_by_speed as f32,
+            flow_by_friction: self.flow_by_friction as f32,
+        }
+    }
 }
 
 /// Friction at a node: the coefficient and its derivatives.
@@ -98,23 +148,26 @@ impl NodeFriction {
         }
     }
 
-    /// Changes of the coefficient with those of what comes from the node before, and of what it passes on with those of its own slip velocity
-    /// and pressure besides.
-    pub fn change(&self, before: &Passed, speed: f64, pressure: f64) -> (f64, Passed) {
+    /// Derivatives by which a change here follows from that at the node before.
+    pub fn link(&self) -> Link<f64> {
         let layer = &self.layer;
-        let friction = self.by_before * before.friction + self.by_speed_before * before.speed;
-        let flow = self.flow_by_before * before.flow;
-        let linked = layer.by_friction * friction + layer.by_flow * flow;
-        let friction = friction + self.by_speed * speed;
-        let passed = Passed {
-            friction,
-            speed,
-            flow: flow
-                + layer.flow_by_speed * speed
-                + layer.flow_by_friction * friction
-                + layer.flow_by_pressure * pressure,
-        };
-        (linked, passed)
+        Link {
+            by_before: self.by_before,
+            by_speed_before: self.by_speed_before,
+            by_speed: self.by_speed,
+            by_friction: layer.by_friction,
+            by_flow: layer.by_flow,
+            flow_by_before: self.flow_by_before,
+            flow_by_speed: layer.flow_by_speed,
+            flow_by_friction: layer.flow_by_friction,
+        }
+    }
+
+    /// [`Link::change`], and of what it passes on with that of its own pressure besides.
+    pub fn change(&self, before: &Passed, speed: f64, pressure: f64) -> (f64, Passed) {
+        let (linked, passed) = self.link().change(before, speed);
+        let flow = passed.flow + self.layer.flow_by_pressure * pressure;
+        (linked, Passed { flow, ..passed })
     }
 
     /// [`NodeFriction::change`] of several changes side by side: of what is passed on, and in place of the slip velocities the linked changes

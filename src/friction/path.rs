@@ -33,7 +33,7 @@
 use super::largest_coefficient;
 use super::layer::{LayerLaw, Yielding};
 use super::memory::ParticlePath;
-pub use super::node::{NodeFriction, Passed, PassedTogether, PathNode};
+pub use super::node::{Link, NodeFriction, Passed, PassedTogether, PathNode};
 use super::passage::Passage;
 pub use super::passage::PathStep;
 use crate::parameters::Parameters;

@@ -12,6 +12,7 @@ pub mod fourier;
 pub mod gmres;
 pub mod interpolation;
 pub mod inverse;
+pub mod number;
 pub mod real;
 pub mod root;
 pub mod single;

@@ -151,6 +151,7 @@ mod tests {
     use super::*;
     use crate::body::grid::Grid;
     use crate::mechanics::patch::law::{CellLawRow, Vector};
+    use crate::mechanics::patch::law_arrays::tests::arrays;
     use nalgebra::{DMatrix, DVector};
 
     const CELLS: usize = 9;
@@ -195,7 +196,8 @@ mod tests {
 
     fn law(rows: &[CellLawRow], edge: &[Vector]) -> LinearLaw {
         let mut law = LinearLaw::new(rows.len());
-        law.take(rows, edge);
+        let (rows_of_all, edges) = arrays(rows, edge);
+        law.take(&rows_of_all, &edges, rows.len());
         law
     }
 

@@ -14,7 +14,8 @@ pub use tangent::{FrictionChange, LEAST_CHANGE};
 
 use super::blocks::{Blocks, StripResponse};
 use super::contact::{Contact, work_of_product};
-use super::law::{Cell, CellLawRow, Scheme, Vector};
+use super::law::{Scheme, Vector};
+use super::law_arrays::{CellArrays, Components, LawArrays};
 use super::linear_law::{Change, LinearLaw};
 use crate::body::grid::Grid;
 use crate::body::influence::{self, Tables, Transform, Window};
@@ -26,6 +27,7 @@ use crate::numerics::single::WIDTH;
 use crate::settings::PatchSettings;
 use directions::Directions;
 use on_path::OnPath;
+use std::ops::Range;
 
 /// Response of the slip ahead of the cells to the shear.
 #[derive(Debug, Clone)]
@@ -95,8 +97,14 @@ pub struct Friction {
     load_single: [Vec<f32>; 2],
     scratch: influence::ProductScratch<f64>,
     scratch_single: influence::ProductScratch<f32>,
+    /// Data of the law of the cells.
+    cells: CellArrays,
+    /// Slip per shear that the leading edge adds to the cells.
+    edge: Components,
+    /// Slip between the cells of a strip.
+    slips: Vec<f64>,
     /// Linearised law of the cells.
-    rows: Vec<CellLawRow>,
+    rows: LawArrays,
     /// Linearised law in single precision, as it was when it was taken last.
     law: LinearLaw,
     step: Vec<f32>,
@@ -116,6 +124,19 @@ pub struct Friction {
 
 /// Least decimal digits of a correction that are counted, where it was asked for less.
 const LEAST_DIGITS: f64 = 0.3;
+
+/// Values at places after `length` times their change.
+#[inline(always)]
+fn move_along((values, change): (&[f64], &[f64]), places: Range<usize>, length: f64, out: &mut [f64]) {
+    if length == 0.0 {
+        out.copy_from_slice(&values[places]);
+        return;
+    }
+    let changed = values[places.clone()].iter().zip(&change[places]);
+    for (out, (value, change)) in out.iter_mut().zip(changed) {
+        *out = value + length * change;
+    }
+}
 
 /// Sum of a power of the unknowns of each run.
 fn work_of_blocks(contact: &Contact, power: u32) -> u64 {
@@ -142,7 +163,10 @@ impl Friction {
             load_single: single(),
             scratch: transform.scratch(),
             scratch_single: transform.scratch(),
-            rows: vec![CellLawRow::default(); total],
+            cells: CellArrays::new(total),
+            edge: std::array::from_fn(|_| vec![0.0; total]),
+            slips: vec![0.0; cells + 1],
+            rows: LawArrays::new(total),
             law: LinearLaw::new(total),
             step: vec![0.0; 2 * total],
             product: std::array::from_fn(|_| vec![0.0; total + WIDTH]),
@@ -243,7 +267,7 @@ impl Friction {
         };
         if residual <= problem.accepted {
             // The law of the cells at the last iterate, not at the trial that came after it.
-            self.update_rows(problem, &scheme, shear, 0.0);
+            self.start_rows(problem, &scheme, shear);
             return Ok(());
         }
         if let Some(smooth) = regularised {
@@ -255,7 +279,7 @@ impl Friction {
             self.work_limit = u64::MAX;
             let _ = self.newton(problem, &smooth, shear, rough, 1.0);
             self.remember(shear);
-            self.update_rows(problem, &smooth, shear, 0.0);
+            self.start_rows(problem, &smooth, shear);
             return Ok(());
         }
         Err(Error::TangentialNotConverged {
@@ -296,7 +320,7 @@ impl Friction {
                 .transform
                 .apply(&problem.response.double, &window, load, [x, y], &mut self.scratch);
         }
-        let mut size = self.update_rows(problem, scheme, shear, 0.0);
+        let mut size = self.start_rows(problem, scheme, shear);
         let mut largest = self.largest_residual(n);
         let roughly = (self.settings.reduction * largest).min(slack * tolerance);
         let tolerance = tolerance.max(roughly);
@@ -380,62 +404,102 @@ impl Friction {
     }
 
     fn largest_residual(&self, n: usize) -> f64 {
-        self.rows[..n]
-            .iter()
-            .flat_map(|row| row.residual)
-            .fold(0.0, |m: f64, r| r.abs().max(m))
+        let [x, y] = &self.rows.residual;
+        dense::largest(&x[..n]).max(dense::largest(&y[..n]))
+    }
+
+    /// Takes the data of the law that stay while the shear changes, and finds the law of all cells at this shear. Returns the length of the residual.
+    fn start_rows(&mut self, problem: &FrictionProblem, scheme: &Scheme, shear: &[Vec<f64>; 2]) -> f64 {
+        let n = problem.contact.cells();
+        let cells = &mut self.cells;
+        cells.bound[..n].copy_from_slice(&problem.bound[..n]);
+        for component in 0..2 {
+            for index in 0..n {
+                self.edge[component][index] = problem.edge[index][component];
+                cells.off_middle[component][index] = problem.off_middle[index][component];
+            }
+        }
+        for (scale, edge) in cells.scale.iter_mut().zip(&problem.edge[..n]) {
+            *scale = scheme.at_edge(*edge).scale;
+        }
+        self.update_rows(problem, scheme, shear, 0.0)
     }
 
     /// Updates the law of all cells to that after `length` times the correction. Returns the length of the residual.
     fn update_rows(&mut self, problem: &FrictionProblem, scheme: &Scheme, shear: &[Vec<f64>; 2], length: f64) -> f64 {
-        self.on_path.start();
-        let mut sum = 0.0;
-        let behind = if problem.response.forward { -1 } else { 1 };
-        let backward = problem.path.is_some() && problem.response.forward;
-        let runs = problem.contact.runs();
-        for r in 0..runs.len() {
-            let run = &runs[if backward { runs.len() - 1 - r } else { r }];
-            let places = run.places(problem.grid);
-            for k in 0..run.cells {
-                // A particle's friction follows from that of the cell before.
-                let k = if backward { run.cells - 1 - k } else { k };
-                let (index, place) = (run.offset + k, places.start + k);
-                let moved = |values: &[Vec<f64>; 2], changes: &[Vec<f64>; 2], place: usize| -> Vector {
-                    [0, 1].map(|component: usize| values[component][place] + length * changes[component][place])
-                };
-                let slip = |place: usize| {
-                    let response = moved(&self.response, &self.correction_response, place);
-                    [
-                        problem.free_slip[0][place] + response[0],
-                        problem.free_slip[1][place] + response[1],
-                    ]
-                };
-                let own = if length == 0.0 {
-                    [shear[0][place], shear[1][place]]
-                } else {
-                    moved(shear, &self.correction, place)
-                };
-                let edge = problem.edge[index];
-                let mut ahead = slip(place);
-                ahead[0] += edge[0] * own[0];
-                ahead[1] += edge[1] * own[1];
-                let cell = Cell {
-                    shear: own,
-                    ahead,
-                    behind: slip(place.wrapping_add_signed(behind)),
-                    off_middle: problem.off_middle[index],
-                    bound: problem.bound[index],
-                };
-                let scheme = scheme.at_edge(edge);
-                let row = &mut self.rows[index];
-                *row = match &problem.path {
-                    None => scheme.row(&cell),
-                    Some(path) => self.on_path.row(path, &scheme, index, cell),
-                };
-                sum += row.residual[0] * row.residual[0] + row.residual[1] * row.residual[1];
+        let n = problem.contact.cells();
+        self.move_cells(problem, shear, length);
+        let speeds = match &problem.path {
+            None => None,
+            Some(path) => {
+                self.on_path.find_bounds(path, scheme, n, &mut self.cells);
+                Some(&mut self.on_path.speeds)
             }
-        }
-        sum.sqrt()
+        };
+        self.rows.take(&self.cells, scheme, n, speeds);
+        let squares = self
+            .rows
+            .residual
+            .iter()
+            .map(|residual| dense::dot(&residual[..n], &residual[..n]));
+        squares.sum::<f64>().sqrt()
+    }
+
+    /// Shear and slip of all cells after `length` times the correction.
+    fn move_cells(&mut self, problem: &FrictionProblem, shear: &[Vec<f64>; 2], length: f64) {
+        let Friction {
+            cells,
+            edge,
+            correction,
+            correction_response,
+            response,
+            slips,
+            ..
+        } = self;
+        let (grid, n) = (problem.grid, problem.contact.cells());
+        let forward = problem.response.forward;
+        dense::vectorised(
+            #[inline(always)]
+            |_| {
+                for component in 0..2 {
+                    let shear = (&shear[component][..], &correction[component][..]);
+                    let response = (&response[component][..], &correction_response[component][..]);
+                    let free_slip = problem.free_slip[component];
+                    for run in problem.contact.runs() {
+                        let places = run.places(grid);
+                        move_along(
+                            shear,
+                            places.clone(),
+                            length,
+                            &mut cells.shear[component][run.indices()],
+                        );
+                        // Slip between the cells and at either end: ahead of one cell it is that behind the next one.
+                        let between = if forward {
+                            places.start - 1..places.end
+                        } else {
+                            places.start..places.end + 1
+                        };
+                        let slips = &mut slips[..=run.cells];
+                        move_along(response, between.clone(), length, slips);
+                        for (slip, free) in slips.iter_mut().zip(&free_slip[between]) {
+                            *slip += free;
+                        }
+                        let (to_rear, to_front) = (&slips[..run.cells], &slips[1..]);
+                        let (ahead, behind) = if forward {
+                            (to_front, to_rear)
+                        } else {
+                            (to_rear, to_front)
+                        };
+                        cells.ahead[component][run.indices()].copy_from_slice(ahead);
+                        cells.behind[component][run.indices()].copy_from_slice(behind);
+                    }
+                    let shear = &cells.shear[component][..n];
+                    for ((slip, edge), shear) in cells.ahead[component].iter_mut().zip(&edge[component]).zip(shear) {
+                        *slip += edge * shear;
+                    }
+                }
+            },
+        );
     }
 
     /// Inverts the strips' blocks. False where one is singular.
@@ -451,23 +515,26 @@ impl Friction {
         // but takes no longer, and the count is a measure of time.
         self.work += work_of_blocks(problem.contact, 3) / 3;
         self.iterations[2] += 1;
-        self.law.take(&self.rows[..problem.contact.cells()], problem.edge);
+        self.law.take(&self.rows, &self.edge, problem.contact.cells());
         self.blocks.invert(problem.contact, &self.law, &own)
     }
 
     /// Computes the correction of the shear on the grid.
     fn correct(&mut self, problem: &FrictionProblem, window: &Window, tolerance: f32) -> Solved {
         let n = problem.contact.cells();
-        self.law.take(&self.rows[..n], problem.edge);
-        for (index, row) in self.rows[..n].iter().enumerate() {
-            self.step[index] = -row.residual[0] as f32;
-            self.step[n + index] = -row.residual[1] as f32;
+        self.law.take(&self.rows, &self.edge, n);
+        if let Some(path) = &problem.path {
+            self.on_path.take_links(path, &self.rows, &self.edge, n);
+        }
+        for (step, residual) in self.step.chunks_exact_mut(n.max(1)).zip(&self.rows.residual) {
+            for (step, residual) in step.iter_mut().zip(residual) {
+                *step = -residual as f32;
+            }
         }
         let Friction {
             gmres,
             directions,
             blocks,
-            rows,
             law,
             step,
             product,
@@ -509,20 +576,7 @@ impl Friction {
             out_along.copy_from_slice(&product_along[..n]);
             out_across.copy_from_slice(&product_across[..n]);
             if let Some(path) = &problem.path {
-                for (index, place) in problem.contact.places(problem.grid).enumerate() {
-                    let at = |values: [&[f32]; 2], place: usize| values.map(|component| f64::from(component[place]));
-                    let (shear, mut ahead, edge) =
-                        (at(change.shear, index), at(change.slip, place), problem.edge[index]);
-                    ahead[0] += edge[0] * shear[0];
-                    ahead[1] += edge[1] * shear[1];
-                    let slip_behind = at(change.slip, place.wrapping_add_signed(behind));
-                    on_path.keep_slip_change(path, index, ahead, slip_behind);
-                }
-                on_path.follow(path, n, |index, friction| {
-                    let by_friction = path.pressure[index] * friction;
-                    out_along[index] += (rows[index].by_bound[0] * by_friction) as f32;
-                    out_across[index] += (rows[index].by_bound[1] * by_friction) as f32;
-                });
+                on_path.add_linked(path, (problem.contact, problem.grid), &change, [out_along, out_across]);
             }
         };
         let step = &mut step[..2 * n];
@@ -542,7 +596,7 @@ impl Friction {
 
     /// Coefficients μ of the cells of the last solve, where μ depends on slip, and the magnitude of the law's slip velocity, `m/s`.
     pub fn of_slip(&self) -> (&[NodeFriction], &[f64]) {
-        (&self.on_path.friction, &self.on_path.speed)
+        (&self.on_path.friction, &self.on_path.speeds.speed)
     }
 
     /// Response of the slip ahead of the cells on the grid, x and y, to the shear of the last solve, without the correction at the leading

@@ -2,7 +2,7 @@
 //! multiply with and invert. Neighbouring cells then go through one vector instruction.
 
 use super::contact::Contact;
-use super::law::{CellLawRow, Vector};
+use super::law_arrays::{Components, LawArrays, SpeedArrays};
 use crate::body::grid::Grid;
 use crate::numerics::dense;
 use crate::numerics::single::{WIDTH, wide, wide_mut};
@@ -19,6 +19,17 @@ pub struct LinearLaw {
     pub by_ahead: Coefficients,
     /// Derivatives by the slip behind.
     pub by_behind: Coefficients,
+}
+
+/// Magnitude of the cells' slip, linearised, in single precision.
+#[derive(Debug, Clone)]
+pub struct LinearSpeed {
+    /// Derivatives by the cell's own shear: what the leading edge adds to its slip.
+    by_shear: [Vec<f32>; 2],
+    /// Derivatives by the slip ahead, without what the leading edge adds.
+    by_ahead: [Vec<f32>; 2],
+    /// Derivatives by the slip behind.
+    by_behind: [Vec<f32>; 2],
 }
 
 /// Changes of shear and slip, along x and y.
@@ -44,60 +55,116 @@ impl LinearLaw {
         }
     }
 
-    /// Takes the rows of the law. `edge` is the slip per shear that the leading edge adds to a cell, along x and y.
-    pub fn take(&mut self, rows: &[CellLawRow], edge: &[Vector]) {
-        for (cell, (row, edge)) in rows.iter().zip(edge).enumerate() {
-            for i in 0..2 {
-                for (j, edge) in edge.iter().enumerate() {
-                    self.by_shear[i][j][cell] = (row.by_shear[i][j] + row.by_ahead[i][j] * edge) as f32;
-                    self.by_ahead[i][j][cell] = row.by_ahead[i][j] as f32;
-                    self.by_behind[i][j][cell] = row.by_behind[i][j] as f32;
-                }
-            }
-        }
-    }
-
-    /// Writes the change of the residual of all cells, along x and y, and values without meaning for a vector register beyond them.
-    pub fn multiply(&self, contact: &Contact, grid: &Grid, change: &Change, out: [&mut [f32]; 2]) {
+    /// Takes the law of so many cells. `edge` is the slip per shear that the leading edge adds to a cell.
+    pub fn take(&mut self, law: &LawArrays, edge: &Components, cells: usize) {
         dense::vectorised(
             #[inline(always)]
-            |fma| {
-                for (component, out) in out.into_iter().enumerate() {
-                    for run in contact.runs() {
-                        let ahead = run.places(grid).start;
-                        let behind = ahead.wrapping_add_signed(change.behind);
-                        // By whole registers: what one of them writes beyond the end of its run, the next run overwrites.
-                        for k in (0..run.cells).step_by(WIDTH) {
-                            let cell = run.offset + k;
-                            let mut sum = [0.0; WIDTH];
-                            for by in 0..2 {
-                                let slip = change.slip[by];
-                                let parts = [
-                                    (&self.by_shear, wide(change.shear[by], cell)),
-                                    (&self.by_ahead, wide(slip, ahead + k)),
-                                    (&self.by_behind, wide(slip, behind + k)),
-                                ];
-                                for (coefficients, change) in parts {
-                                    let coefficients = wide(&coefficients[component][by], cell);
-                                    for lane in 0..WIDTH {
-                                        sum[lane] =
-                                            fma.multiply_add_single(coefficients[lane], change[lane], sum[lane]);
-                                    }
-                                }
-                            }
-                            *wide_mut(out, cell) = sum;
+            |_| {
+                for i in 0..2 {
+                    for (j, edge) in edge.iter().enumerate() {
+                        let (shear, ahead) = (&law.by_shear[i][j][..cells], &law.by_ahead[i][j][..cells]);
+                        let sums = shear.iter().zip(ahead).zip(edge);
+                        for (out, ((shear, ahead), edge)) in self.by_shear[i][j].iter_mut().zip(sums) {
+                            *out = (shear + ahead * edge) as f32;
+                        }
+                        for (out, ahead) in self.by_ahead[i][j].iter_mut().zip(ahead) {
+                            *out = *ahead as f32;
+                        }
+                        for (out, behind) in self.by_behind[i][j].iter_mut().zip(&law.by_behind[i][j][..cells]) {
+                            *out = *behind as f32;
                         }
                     }
                 }
             },
         );
     }
+
+    /// Writes the change of the residual of all cells, along x and y, and values without meaning for a vector register beyond them.
+    pub fn multiply(&self, contact: &Contact, grid: &Grid, change: &Change, out: [&mut [f32]; 2]) {
+        for (component, out) in out.into_iter().enumerate() {
+            let by = [&self.by_shear, &self.by_ahead, &self.by_behind].map(|by| &by[component]);
+            multiply_row(by, contact, grid, change, out);
+        }
+    }
+}
+
+impl LinearSpeed {
+    /// Slip of up to so many cells, and values for a vector register beyond them.
+    pub fn new(cells: usize) -> LinearSpeed {
+        let zero = || std::array::from_fn(|_| vec![0.0; cells + WIDTH]);
+        LinearSpeed {
+            by_shear: zero(),
+            by_ahead: zero(),
+            by_behind: zero(),
+        }
+    }
+
+    /// Takes the derivatives of so many cells, as [`LinearLaw::take`] does.
+    pub fn take(&mut self, speeds: &SpeedArrays, edge: &Components, cells: usize) {
+        dense::vectorised(
+            #[inline(always)]
+            |_| {
+                for (j, edge) in edge.iter().enumerate() {
+                    let (ahead, behind) = (&speeds.by_ahead[j][..cells], &speeds.by_behind[j][..cells]);
+                    for (out, (ahead, edge)) in self.by_shear[j].iter_mut().zip(ahead.iter().zip(edge)) {
+                        *out = (ahead * edge) as f32;
+                    }
+                    for (out, ahead) in self.by_ahead[j].iter_mut().zip(ahead) {
+                        *out = *ahead as f32;
+                    }
+                    for (out, behind) in self.by_behind[j].iter_mut().zip(behind) {
+                        *out = *behind as f32;
+                    }
+                }
+            },
+        );
+    }
+
+    /// Writes the change of all cells, and values without meaning for a vector register beyond them.
+    pub fn multiply(&self, contact: &Contact, grid: &Grid, change: &Change, out: &mut [f32]) {
+        let by = [&self.by_shear, &self.by_ahead, &self.by_behind];
+        multiply_row(by, contact, grid, change, out);
+    }
+}
+
+/// The change of one quantity of all cells by its derivatives by shear, slip ahead and slip behind.
+fn multiply_row(by: [&[Vec<f32>; 2]; 3], contact: &Contact, grid: &Grid, change: &Change, out: &mut [f32]) {
+    dense::vectorised(
+        #[inline(always)]
+        |fma| {
+            for run in contact.runs() {
+                let ahead = run.places(grid).start;
+                let behind = ahead.wrapping_add_signed(change.behind);
+                // By whole registers: what one of them writes beyond the end of its run, the next run overwrites.
+                for k in (0..run.cells).step_by(WIDTH) {
+                    let cell = run.offset + k;
+                    let mut sum = [0.0; WIDTH];
+                    for component in 0..2 {
+                        let slip = change.slip[component];
+                        let changes = [
+                            wide(change.shear[component], cell),
+                            wide(slip, ahead + k),
+                            wide(slip, behind + k),
+                        ];
+                        for (by, change) in by.into_iter().zip(changes) {
+                            let by = wide(&by[component], cell);
+                            for lane in 0..WIDTH {
+                                sum[lane] = fma.multiply_add_single(by[lane], change[lane], sum[lane]);
+                            }
+                        }
+                    }
+                    *wide_mut(out, cell) = sum;
+                }
+            }
+        },
+    );
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mechanics::patch::law::{Matrix, multiply};
+    use crate::mechanics::patch::law::{CellLawRow, Matrix, Vector, multiply};
+    use crate::mechanics::patch::law_arrays::tests::arrays;
 
     /// The change of the residual of every cell is that of its row, with the leading edge in the slip ahead.
     #[test]
@@ -123,7 +190,8 @@ mod tests {
             .collect();
         let edge: Vec<Vector> = (0..n).map(|i| [0.3 * (i % 3) as f64, 0.1 * (i % 2) as f64]).collect();
         let mut law = LinearLaw::new(n);
-        law.take(&rows, &edge);
+        let (rows_of_all, edges) = arrays(&rows, &edge);
+        law.take(&rows_of_all, &edges, n);
         let values = |k: usize, number: usize| -> Vec<f32> { (0..number).map(|i| wave(k, i) as f32).collect() };
         let shear = [0, 1].map(|k| values(k, n + WIDTH));
         let slip = [2, 3].map(|k| values(k, grid.len() + WIDTH));

@@ -1,8 +1,13 @@
 //! Friction that depends on slip in the law of the cells: the bound of a cell follows from its slip, and where friction remembers, from
 //! that of the cells that its particles have come through.
 
-use crate::friction::path::{NodeFriction, Passed, PathLaw, PathNode};
-use crate::mechanics::patch::law::{Cell, CellLawRow, Scheme, Vector, dot, outer};
+use crate::body::grid::Grid;
+use crate::friction::path::{Link, NodeFriction, Passed, PathLaw, PathNode};
+use crate::mechanics::patch::contact::Contact;
+use crate::mechanics::patch::law::{Scheme, Vector, dot};
+use crate::mechanics::patch::law_arrays::{CellArrays, Components, LawArrays, SpeedArrays};
+use crate::mechanics::patch::linear_law::{Change, LinearSpeed};
+use crate::numerics::single::WIDTH;
 
 /// Law of μ of all cells, where it depends on slip.
 #[derive(Clone, Copy)]
@@ -18,83 +23,80 @@ pub struct PathOfCells<'a> {
 /// Coefficients μ of the cells, with the changes of μ and of the slip velocity.
 pub struct OnPath {
     pub(super) friction: Vec<NodeFriction>,
-    /// Magnitude of the law's slip, `m/s`.
-    pub(super) speed: Vec<f64>,
-    /// Derivatives of the magnitude by the slip ahead and behind.
-    by_slip: Vec<[Vector; 2]>,
-    /// Derivative of the magnitude by the slip w below which the law takes all slip ahead.
-    by_noise: Vec<f64>,
+    /// Magnitudes of the law's slip.
+    pub(super) speeds: SpeedArrays,
     /// Change of the magnitude.
     change: Vec<f64>,
-    /// Cell before, of those that [`OnPath::row`] has gone through.
-    before: Passed,
+    /// Magnitude linearised in single precision, for corrections; its change with values for a vector register beyond the cells; what links a cell to the
+    /// one before, and the derivatives of the law's residual by μ.
+    linear: LinearSpeed,
+    change_single: Vec<f32>,
+    links: Vec<Link<f32>>,
+    by_friction: [Vec<f32>; 2],
 }
 
 impl OnPath {
     pub(super) fn new(cells: usize) -> OnPath {
         OnPath {
             friction: vec![NodeFriction::default(); cells],
-            speed: vec![0.0; cells],
-            by_slip: vec![[[0.0; 2]; 2]; cells],
-            by_noise: vec![0.0; cells],
+            speeds: SpeedArrays::new(cells),
             change: vec![0.0; cells],
-            before: Passed::default(),
+            linear: LinearSpeed::new(cells),
+            change_single: vec![0.0; cells + WIDTH],
+            links: vec![Link::default(); cells],
+            by_friction: std::array::from_fn(|_| vec![0.0; cells]),
         }
     }
 
-    /// Begins a round over the cells.
-    pub(super) fn start(&mut self) {
-        self.before = Passed::default();
+    /// Finds the bounds of so many cells, which follow from their slip, in the order in which particles come to them. Their dependence on the slip of
+    /// the cells before is not in the bound's derivative.
+    pub(super) fn find_bounds(&mut self, path: &PathOfCells, scheme: &Scheme, count: usize, cells: &mut CellArrays) {
+        cells.speeds(scheme, count, &mut self.speeds);
+        let mut before = Passed::default();
+        for index in path.law.order(count) {
+            let (speed, pressure) = (self.speeds.speed[index], path.pressure[index]);
+            let friction = path.law.friction(&path.nodes[index], &before, speed, pressure);
+            before = friction.passed(speed);
+            cells.bound[index] = friction.coefficient * pressure;
+            self.speeds.bound_by_speed[index] = pressure * friction.by_speed();
+            self.friction[index] = friction;
+        }
     }
 
-    /// Law of a cell, to be asked for in the order in which particles come to the cells of a run. The cell's bound follows from its slip;
-    /// its dependence on the slip of the cells before is not in the row.
-    #[inline(always)]
-    pub(super) fn row(&mut self, path: &PathOfCells, scheme: &Scheme, index: usize, mut cell: Cell) -> CellLawRow {
-        let slip_of_law = scheme.slip(&cell);
-        let (slip, by_ahead, by_behind, slip_by_noise) = slip_of_law;
-        let speed = dot(slip, slip).sqrt();
-        // sᵀ/|s| times the slip's derivatives.
-        let along = |matrix: [Vector; 2]| {
-            [0, 1].map(|column: usize| {
-                if speed > 0.0 {
-                    (slip[0] * matrix[0][column] + slip[1] * matrix[1][column]) / speed
-                } else {
-                    0.0
-                }
-            })
-        };
-        let by_slip = [along(by_ahead), along(by_behind)];
-        let by_noise = if speed > 0.0 {
-            dot(slip, slip_by_noise) / speed
-        } else {
-            0.0
-        };
-        let pressure = path.pressure[index];
-        let friction = path.law.friction(&path.nodes[index], &self.before, speed, pressure);
-        self.before = friction.passed(speed);
-        (self.friction[index], self.speed[index]) = (friction, speed);
-        (self.by_slip[index], self.by_noise[index]) = (by_slip, by_noise);
-        cell.bound = friction.coefficient * pressure;
-        let mut row = scheme.row_at_slip(&cell, slip_of_law);
-        let own = row.by_bound.map(|by_bound| by_bound * pressure * friction.by_speed());
-        for (matrix, by_slip) in [&mut row.by_ahead, &mut row.by_behind].into_iter().zip(by_slip) {
-            for (line, added) in matrix.iter_mut().zip(outer(own, by_slip)) {
-                line[0] += added[0];
-                line[1] += added[1];
+    /// Takes for corrections how so many cells follow those before them.
+    pub(super) fn take_links(&mut self, path: &PathOfCells, rows: &LawArrays, edge: &Components, count: usize) {
+        if !path.law.remembers() {
+            return;
+        }
+        self.linear.take(&self.speeds, edge, count);
+        for (link, friction) in self.links[..count].iter_mut().zip(&self.friction) {
+            *link = friction.link().single();
+        }
+        for (out, by_bound) in self.by_friction.iter_mut().zip(&rows.by_bound) {
+            for ((out, by_bound), pressure) in out[..count].iter_mut().zip(by_bound).zip(path.pressure) {
+                *out = (by_bound * pressure) as f32;
             }
         }
-        for (total, own) in row.by_noise.iter_mut().zip(own) {
-            *total += own * by_noise;
-        }
-        row
     }
 
-    /// Keeps the change of a cell's slip velocity with that of the slip ahead and behind.
-    pub(super) fn keep_slip_change(&mut self, path: &PathOfCells, index: usize, ahead: Vector, behind: Vector) {
-        if path.law.remembers() {
-            let [by_ahead, by_behind] = self.by_slip[index];
-            self.change[index] = dot(by_ahead, ahead) + dot(by_behind, behind);
+    /// Adds to the change of the residual of so many cells, along x and y, what they take over from the cells before.
+    pub(super) fn add_linked(
+        &mut self,
+        path: &PathOfCells,
+        (contact, grid): (&Contact, &Grid),
+        change: &Change,
+        [along, across]: [&mut [f32]; 2],
+    ) {
+        if !path.law.remembers() {
+            return;
+        }
+        self.linear.multiply(contact, grid, change, &mut self.change_single);
+        let mut before = Passed::default();
+        for index in path.law.order(contact.cells()) {
+            let linked;
+            (linked, before) = self.links[index].change(&before, self.change_single[index]);
+            along[index] += self.by_friction[0][index] * linked;
+            across[index] += self.by_friction[1][index] * linked;
         }
     }
 
@@ -126,7 +128,7 @@ impl OnPath {
     /// Keeps the change of a cell's slip velocity with that of the slip ahead and behind and with that of w, whether or not friction
     /// remembers.
     pub(super) fn keep_slip_and_noise_change(&mut self, index: usize, ahead: Vector, behind: Vector, noise: f64) {
-        let [by_ahead, by_behind] = self.by_slip[index];
-        self.change[index] = dot(by_ahead, ahead) + dot(by_behind, behind) + self.by_noise[index] * noise;
+        let by = self.speeds.change(index);
+        self.change[index] = dot(by.by_ahead, ahead) + dot(by.by_behind, behind) + by.by_noise * noise;
     }
 }

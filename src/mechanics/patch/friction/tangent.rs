@@ -54,16 +54,19 @@ impl Friction {
             noise: problem.noise,
             regularisation: problem.regularisation,
         };
-        self.update_rows(problem, &scheme, shear, 0.0);
+        self.start_rows(problem, &scheme, shear);
         let n = problem.contact.cells();
         if problem.regularisation == 0.0 && problem.response.strip_kernels[0][problem.response.origin] == 0.0 {
             // Without a response of the slip nothing says what shear a cell without slip has: it keeps the one it has.
-            for row in self.rows[..n].iter_mut().filter(|row| row.sticks) {
-                *row = CellLawRow {
-                    by_shear: UNIT,
-                    sticks: true,
-                    ..CellLawRow::default()
-                };
+            let kept = CellLawRow {
+                by_shear: UNIT,
+                ..CellLawRow::default()
+            };
+            for index in 0..n {
+                // A cell that sticks does not feel its bound.
+                if self.rows.row(index).by_bound == [0.0; 2] {
+                    self.rows.set(index, &kept);
+                }
             }
         }
         self.inverted = self.invert_blocks(problem);
@@ -97,7 +100,7 @@ impl Friction {
         self.given.clear();
         for run in problem.contact.runs() {
             for (index, place) in run.indices().zip(run.places(grid)) {
-                let (row, edge, own) = (&self.rows[index], change.edge[index], at(shear, place));
+                let (row, edge, own) = (self.rows.row(index), change.edge[index], at(shear, place));
                 let slip = |place: usize| [change.free_slip[0][place], change.free_slip[1][place]];
                 let bound = change.bound[index];
                 self.given.push(sum([
@@ -128,8 +131,8 @@ impl Friction {
                     for component in 0..2 {
                         ahead[component] += problem.edge[index][component] * own[component];
                     }
-                    let row = &mut self.rows[index];
-                    row.residual = sum([
+                    let row = self.rows.row(index);
+                    let residual = sum([
                         self.given[index],
                         multiply(row.by_shear, own),
                         multiply(row.by_ahead, ahead),
@@ -137,6 +140,9 @@ impl Friction {
                         [0.0; 2],
                         [0.0; 2],
                     ]);
+                    for (all, own) in self.rows.residual.iter_mut().zip(residual) {
+                        all[index] = own;
+                    }
                     if problem.path.is_some() {
                         let (edge, shear) = (change.edge[index], at(shear, place));
                         let free = |place: usize, i: usize| change.free_slip[i][place];
@@ -153,9 +159,8 @@ impl Friction {
             if let Some(path) = &problem.path {
                 let rows = &mut self.rows;
                 self.on_path.follow(path, n, |index, friction| {
-                    let row = &mut rows[index];
-                    for (residual, by_bound) in row.residual.iter_mut().zip(row.by_bound) {
-                        *residual += by_bound * path.pressure[index] * friction;
+                    for (residual, by_bound) in rows.residual.iter_mut().zip(&rows.by_bound) {
+                        residual[index] += by_bound[index] * path.pressure[index] * friction;
                     }
                 });
             }
@@ -167,8 +172,8 @@ impl Friction {
                 return Ok(());
             }
             // In single precision a change of any size is of order 1.
-            for row in &mut self.rows[..n] {
-                row.residual = row.residual.map(|value| value / residual);
+            for own in &mut self.rows.residual {
+                own[..n].iter_mut().for_each(|value| *value /= residual);
             }
             self.correct(problem, &window, (change.tolerance * size / residual) as f32);
             for (tangent, correction) in tangent.iter_mut().zip(&self.correction) {
