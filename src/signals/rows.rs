@@ -145,7 +145,7 @@ macro_rules! inputs {
             /// All zero: the rates of inputs that are held.
             pub const ZERO: Inputs = Inputs { $($field: 0.0,)+ };
 
-            /// The inputs after `time` at the given rates of change. Written out, as [`Outputs::rates`] is.
+            /// The inputs after `time` at the given rates of change.
             pub fn advanced(&self, rates: &Inputs, time: f64) -> Inputs {
                 Inputs { $($field: self.$field + rates.$field * time,)+ }
             }
