@@ -259,9 +259,14 @@ impl<F: Fields> EngineState<F> {
                 continue;
             }
             let values = (row.get)(&self.fields).iter().zip((row.get)(after));
-            for (rate, (before, after)) in rates.iter_mut().zip(values) {
-                *rate = (after - before) / duration;
-            }
+            dense::vectorised(
+                #[inline(always)]
+                |_| {
+                    for (rate, (before, after)) in rates.iter_mut().zip(values) {
+                        *rate = (after - before) / duration;
+                    }
+                },
+            );
         }
         std::mem::swap(&mut self.fields, after);
     }
