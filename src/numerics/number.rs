@@ -10,7 +10,7 @@ pub trait Number:
     /// Answer to a question, for each number.
     type Answer: Copy;
 
-    /// A constant, as this number is.
+    /// A constant, side by side as often as this number.
     fn constant(self, value: f64) -> Self;
     /// The square root.
     fn root(self) -> Self;
@@ -19,7 +19,7 @@ pub trait Number:
     /// Whether it is at most as large as the other.
     fn is_at_most(self, other: Self) -> Self::Answer;
     /// Whether both hold.
-    fn both(self, one: Self::Answer, other: Self::Answer) -> Self::Answer;
+    fn both(one: Self::Answer, other: Self::Answer) -> Self::Answer;
     /// Takes the first where the answer is yes, otherwise the second.
     fn choose(answer: Self::Answer, yes: Self, no: Self) -> Self;
 }
@@ -44,7 +44,7 @@ impl Number for f64 {
         self <= other
     }
     #[inline(always)]
-    fn both(self, one: bool, other: bool) -> bool {
+    fn both(one: bool, other: bool) -> bool {
         one && other
     }
     #[inline(always)]
@@ -131,8 +131,8 @@ impl<S: Simd> Number for Register<S> {
         }
     }
     #[inline(always)]
-    fn both(self, one: Answers<S>, other: Answers<S>) -> Answers<S> {
-        let simd = self.simd;
+    fn both(one: Answers<S>, other: Answers<S>) -> Answers<S> {
+        let simd = one.simd;
         Answers {
             simd,
             mask: simd.and_m64s(one.mask, other.mask),

@@ -116,8 +116,8 @@ fn assemble(law: &LinearLaw, first: usize, n: usize, response: &StripResponse, b
                 let entries = &mut block[number * size..];
                 // By whole registers: what one of them writes beyond its part, the next part overwrites, and the next column.
                 for residual in 0..2 {
-                    let by_ahead = &law.by_ahead[residual][component];
-                    let by_behind = &law.by_behind[residual][component];
+                    let by_ahead = &law.rows[residual].by_ahead[component];
+                    let by_behind = &law.rows[residual].by_behind[component];
                     let entries = &mut entries[residual * n..];
                     for line in (0..n).step_by(WIDTH) {
                         let (by_ahead, by_behind) = (wide(by_ahead, first + line), wide(by_behind, first + line));
@@ -133,7 +133,7 @@ fn assemble(law: &LinearLaw, first: usize, n: usize, response: &StripResponse, b
                         }
                         *wide_mut(entries, line) = sum;
                     }
-                    entries[column] += law.by_shear[residual][component][first + column];
+                    entries[column] += law.rows[residual].by_shear[component][first + column];
                 }
                 *wide_mut(entries, 2 * n) = [0.0; WIDTH];
             }

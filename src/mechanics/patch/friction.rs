@@ -333,6 +333,7 @@ impl Friction {
             if self.work > limit {
                 return Err((iterations, largest));
             }
+            self.take_law(problem);
             let fresh = !self.inverted;
             if fresh {
                 self.inverted = self.invert_blocks(problem);
@@ -502,7 +503,16 @@ impl Friction {
         );
     }
 
-    /// Inverts the strips' blocks. False where one is singular.
+    /// Takes the linearised law of the cells in single precision, for the blocks and for corrections.
+    fn take_law(&mut self, problem: &FrictionProblem) {
+        let n = problem.contact.cells();
+        self.law.take(&self.rows, &self.edge, n);
+        if let Some(path) = &problem.path {
+            self.on_path.take_links(path, &self.rows, &self.edge, n);
+        }
+    }
+
+    /// Inverts the strips' blocks of the law that was taken. False where one is singular.
     fn invert_blocks(&mut self, problem: &FrictionProblem) -> bool {
         let response = problem.response;
         let own = StripResponse {
@@ -515,17 +525,12 @@ impl Friction {
         // but takes no longer, and the count is a measure of time.
         self.work += work_of_blocks(problem.contact, 3) / 3;
         self.iterations[2] += 1;
-        self.law.take(&self.rows, &self.edge, problem.contact.cells());
         self.blocks.invert(problem.contact, &self.law, &own)
     }
 
-    /// Computes the correction of the shear on the grid.
+    /// Computes the correction of the shear on the grid by the law that was taken.
     fn correct(&mut self, problem: &FrictionProblem, window: &Window, tolerance: f32) -> Solved {
         let n = problem.contact.cells();
-        self.law.take(&self.rows, &self.edge, n);
-        if let Some(path) = &problem.path {
-            self.on_path.take_links(path, &self.rows, &self.edge, n);
-        }
         for (step, residual) in self.step.chunks_exact_mut(n.max(1)).zip(&self.rows.residual) {
             for (step, residual) in step.iter_mut().zip(residual) {
                 *step = -residual as f32;

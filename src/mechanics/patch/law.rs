@@ -190,8 +190,8 @@ impl<N: Number> Scheme<N> {
         let by_behind = times(constant(0.5 * PASSING) * slope * square, half);
         let by_ahead = plus([-by_behind[0], -by_behind[1]], slope * difference, cell.ahead);
         let half_share = constant(0.5) * share;
-        // Otherwise all slip is taken ahead.
-        let passes = noise.both(
+        // Without slip ahead, or where w is infinite, all slip is taken ahead.
+        let passes = N::both(
             constant(0.0).is_less(square),
             difference.is_less(constant(f64::INFINITY)),
         );

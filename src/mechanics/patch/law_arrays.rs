@@ -182,6 +182,9 @@ impl<'a, S: Simd> LawTargets<'a, S> {
 
 /// Registers of the data.
 struct CellSources<'a, S: Simd> {
+    /// Number of registers that hold the cells.
+    count: usize,
+    noise: Register<S>,
     shear: [Source<'a, S>; 2],
     ahead: [Source<'a, S>; 2],
     behind: [Source<'a, S>; 2],
@@ -192,8 +195,16 @@ struct CellSources<'a, S: Simd> {
 
 impl<'a, S: Simd> CellSources<'a, S> {
     #[inline(always)]
-    fn new(simd: S, cells: &'a CellArrays, count: usize) -> CellSources<'a, S> {
+    fn new(simd: S, of: &Cells<'a>) -> CellSources<'a, S> {
+        let Cells {
+            arrays: cells,
+            noise,
+            count,
+        } = *of;
+        let count = count.div_ceil(S::F64_LANES);
         CellSources {
+            count,
+            noise: Register::new(simd, simd.splat_f64s(noise)),
             shear: Source::of_components(simd, &cells.shear, count),
             ahead: Source::of_components(simd, &cells.ahead, count),
             behind: Source::of_components(simd, &cells.behind, count),
@@ -205,10 +216,10 @@ impl<'a, S: Simd> CellSources<'a, S> {
 
     /// The cells of a register and their scheme.
     #[inline(always)]
-    fn at(&self, k: usize, noise: Register<S>) -> (Scheme<Register<S>>, Cell<Register<S>>) {
+    fn at(&self, k: usize) -> (Scheme<Register<S>>, Cell<Register<S>>) {
         let scheme = Scheme {
             scale: self.scale.at(k),
-            noise,
+            noise: self.noise,
             regularisation: 0.0,
         };
         let cell = Cell {
@@ -222,11 +233,17 @@ impl<'a, S: Simd> CellSources<'a, S> {
     }
 }
 
-/// [`CellArrays::speeds`] with the vectors of the machine.
-struct Speeds<'a> {
-    cells: &'a CellArrays,
+/// Cells whose law is computed: the first `count` of the arrays, with the slip w that they have in common.
+#[derive(Clone, Copy)]
+struct Cells<'a> {
+    arrays: &'a CellArrays,
     noise: f64,
     count: usize,
+}
+
+/// [`CellArrays::speeds`] with the vectors of the machine.
+struct Speeds<'a> {
+    of: Cells<'a>,
     speed: &'a mut [f64],
 }
 
@@ -235,12 +252,9 @@ impl WithSimd for Speeds<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
-        let count = self.count.div_ceil(S::F64_LANES);
-        let cells = CellSources::new(simd, self.cells, count);
-        let noise = Register::new(simd, simd.splat_f64s(self.noise));
-        let speed = target::<S>(self.speed, count);
-        for (k, speed) in speed.iter_mut().enumerate() {
-            let (scheme, cell) = cells.at(k, noise);
+        let cells = CellSources::new(simd, &self.of);
+        for (k, speed) in target::<S>(self.speed, cells.count).iter_mut().enumerate() {
+            let (scheme, cell) = cells.at(k);
             *speed = scheme.slip(&cell).speed().values;
         }
     }
@@ -248,9 +262,7 @@ impl WithSimd for Speeds<'_> {
 
 /// [`LawArrays::take`] of Coulomb's law with the vectors of the machine.
 struct CoulombRows<'a> {
-    cells: &'a CellArrays,
-    noise: f64,
-    count: usize,
+    of: Cells<'a>,
     speeds: Option<&'a mut SpeedArrays>,
     law: &'a mut LawArrays,
 }
@@ -260,13 +272,12 @@ impl WithSimd for CoulombRows<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
-        let count = self.count.div_ceil(S::F64_LANES);
-        let cells = CellSources::new(simd, self.cells, count);
-        let noise = Register::new(simd, simd.splat_f64s(self.noise));
+        let cells = CellSources::new(simd, &self.of);
+        let count = cells.count;
         let mut law = LawTargets::new(self.law, count);
         let Some(speeds) = self.speeds else {
             for k in 0..count {
-                let (scheme, cell) = cells.at(k, noise);
+                let (scheme, cell) = cells.at(k);
                 let slip = scheme.slip(&cell);
                 law.put(k, &scheme.coulomb_row(&cell, &slip));
             }
@@ -277,7 +288,7 @@ impl WithSimd for CoulombRows<'_> {
         let mut by_behind = Targets::new(&mut speeds.by_behind, count);
         let by_noise = target::<S>(&mut speeds.by_noise, count);
         for (k, by_noise) in by_noise.iter_mut().enumerate() {
-            let (scheme, cell) = cells.at(k, noise);
+            let (scheme, cell) = cells.at(k);
             let slip = scheme.slip(&cell);
             let mut row = scheme.coulomb_row(&cell, &slip);
             let change = slip.speed_change();
@@ -303,6 +314,15 @@ impl CellArrays {
         }
     }
 
+    /// Selects the first `count` cells, with the w of a scheme.
+    fn with(&self, scheme: &Scheme, count: usize) -> Cells<'_> {
+        Cells {
+            arrays: self,
+            noise: scheme.noise,
+            count,
+        }
+    }
+
     /// Data of a cell, and its scheme.
     fn cell(&self, scheme: &Scheme, index: usize) -> (Scheme, Cell) {
         let at = |values: &Components| [values[0][index], values[1][index]];
@@ -320,9 +340,7 @@ impl CellArrays {
     /// Finds the magnitude of the slip of so many cells.
     pub fn speeds(&self, scheme: &Scheme, count: usize, speeds: &mut SpeedArrays) {
         dense::with_vectors(Speeds {
-            cells: self,
-            noise: scheme.noise,
-            count,
+            of: self.with(scheme, count),
             speed: &mut speeds.speed,
         });
     }
@@ -346,9 +364,7 @@ impl LawArrays {
     pub fn take(&mut self, cells: &CellArrays, scheme: &Scheme, count: usize, mut speeds: Option<&mut SpeedArrays>) {
         if scheme.regularisation == 0.0 {
             dense::with_vectors(CoulombRows {
-                cells,
-                noise: scheme.noise,
-                count,
+                of: cells.with(scheme, count),
                 speeds,
                 law: self,
             });

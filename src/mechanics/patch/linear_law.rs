@@ -2,34 +2,27 @@
 //! multiply with and invert. Neighbouring cells then go through one vector instruction.
 
 use super::contact::Contact;
-use super::law_arrays::{Components, LawArrays, SpeedArrays};
+use super::law_arrays::{Components, LawArrays};
 use crate::body::grid::Grid;
 use crate::numerics::dense;
 use crate::numerics::single::{WIDTH, wide, wide_mut};
 
-/// Coefficients of a cell's law by component of the residual and component of what it is multiplied with.
-type Coefficients = [[Vec<f32>; 2]; 2];
-
-/// Linearised law of the cells.
+/// Linearised law of the cells, by component of the residual.
 #[derive(Debug, Clone)]
 pub struct LinearLaw {
-    /// Derivatives by the cell's own shear, what the leading edge adds to its slip included.
-    pub by_shear: Coefficients,
-    /// Derivatives by the slip ahead, without what the leading edge adds.
-    pub by_ahead: Coefficients,
-    /// Derivatives by the slip behind.
-    pub by_behind: Coefficients,
+    /// The components along x and y.
+    pub rows: [LinearRow; 2],
 }
 
-/// Magnitude of the cells' slip, linearised, in single precision.
+/// A quantity of the cells, linearised: its derivatives along x and y, with values for a vector register beyond the cells.
 #[derive(Debug, Clone)]
-pub struct LinearSpeed {
-    /// Derivatives by the cell's own shear: what the leading edge adds to its slip.
-    by_shear: [Vec<f32>; 2],
+pub struct LinearRow {
+    /// Derivatives by the cell's own shear, what the leading edge adds to its slip included.
+    pub by_shear: [Vec<f32>; 2],
     /// Derivatives by the slip ahead, without what the leading edge adds.
-    by_ahead: [Vec<f32>; 2],
+    pub by_ahead: [Vec<f32>; 2],
     /// Derivatives by the slip behind.
-    by_behind: [Vec<f32>; 2],
+    pub by_behind: [Vec<f32>; 2],
 }
 
 /// Changes of shear and slip, along x and y.
@@ -45,119 +38,103 @@ pub struct Change<'a> {
 }
 
 impl LinearLaw {
-    /// Law of up to so many cells, and values for a vector register beyond them.
+    /// Law of up to so many cells.
     pub fn new(cells: usize) -> LinearLaw {
-        let zero = || std::array::from_fn(|_| std::array::from_fn(|_| vec![0.0; cells + WIDTH]));
         LinearLaw {
-            by_shear: zero(),
-            by_ahead: zero(),
-            by_behind: zero(),
+            rows: std::array::from_fn(|_| LinearRow::new(cells)),
         }
     }
 
     /// Takes the law of so many cells. `edge` is the slip per shear that the leading edge adds to a cell.
     pub fn take(&mut self, law: &LawArrays, edge: &Components, cells: usize) {
-        dense::vectorised(
-            #[inline(always)]
-            |_| {
-                for i in 0..2 {
-                    for (j, edge) in edge.iter().enumerate() {
-                        let (shear, ahead) = (&law.by_shear[i][j][..cells], &law.by_ahead[i][j][..cells]);
-                        let sums = shear.iter().zip(ahead).zip(edge);
-                        for (out, ((shear, ahead), edge)) in self.by_shear[i][j].iter_mut().zip(sums) {
-                            *out = (shear + ahead * edge) as f32;
-                        }
-                        for (out, ahead) in self.by_ahead[i][j].iter_mut().zip(ahead) {
-                            *out = *ahead as f32;
-                        }
-                        for (out, behind) in self.by_behind[i][j].iter_mut().zip(&law.by_behind[i][j][..cells]) {
-                            *out = *behind as f32;
-                        }
-                    }
-                }
-            },
-        );
+        for (i, row) in self.rows.iter_mut().enumerate() {
+            row.take(Some(&law.by_shear[i]), &law.by_ahead[i], &law.by_behind[i], edge, cells);
+        }
     }
 
-    /// Writes the change of the residual of all cells, along x and y, and values without meaning for a vector register beyond them.
+    /// Writes the change of the residual of all cells, along x and y, as [`LinearRow::multiply`] does.
     pub fn multiply(&self, contact: &Contact, grid: &Grid, change: &Change, out: [&mut [f32]; 2]) {
-        for (component, out) in out.into_iter().enumerate() {
-            let by = [&self.by_shear, &self.by_ahead, &self.by_behind].map(|by| &by[component]);
-            multiply_row(by, contact, grid, change, out);
+        for (row, out) in self.rows.iter().zip(out) {
+            row.multiply(contact, grid, change, out);
         }
     }
 }
 
-impl LinearSpeed {
-    /// Slip of up to so many cells, and values for a vector register beyond them.
-    pub fn new(cells: usize) -> LinearSpeed {
+impl LinearRow {
+    /// Derivatives of up to so many cells.
+    pub fn new(cells: usize) -> LinearRow {
         let zero = || std::array::from_fn(|_| vec![0.0; cells + WIDTH]);
-        LinearSpeed {
+        LinearRow {
             by_shear: zero(),
             by_ahead: zero(),
             by_behind: zero(),
         }
     }
 
-    /// Takes the derivatives of so many cells, as [`LinearLaw::take`] does.
-    pub fn take(&mut self, speeds: &SpeedArrays, edge: &Components, cells: usize) {
+    /// Takes the derivatives of so many cells; none by the shear are 0. `edge` is the slip per shear that the leading edge adds to a cell.
+    pub fn take(
+        &mut self,
+        by_shear: Option<&Components>,
+        by_ahead: &Components,
+        by_behind: &Components,
+        edge: &Components,
+        cells: usize,
+    ) {
         dense::vectorised(
             #[inline(always)]
             |_| {
                 for (j, edge) in edge.iter().enumerate() {
-                    let (ahead, behind) = (&speeds.by_ahead[j][..cells], &speeds.by_behind[j][..cells]);
-                    for (out, (ahead, edge)) in self.by_shear[j].iter_mut().zip(ahead.iter().zip(edge)) {
-                        *out = (ahead * edge) as f32;
+                    let (ahead, behind) = (&by_ahead[j][..cells], &by_behind[j][..cells]);
+                    let at_edge = ahead.iter().zip(edge).map(|(ahead, edge)| ahead * edge);
+                    let outs = self.by_shear[j].iter_mut();
+                    match by_shear {
+                        Some(by_shear) => outs
+                            .zip(at_edge.zip(&by_shear[j]))
+                            .for_each(|(out, (at_edge, shear))| *out = (shear + at_edge) as f32),
+                        None => outs.zip(at_edge).for_each(|(out, at_edge)| *out = at_edge as f32),
                     }
-                    for (out, ahead) in self.by_ahead[j].iter_mut().zip(ahead) {
-                        *out = *ahead as f32;
-                    }
-                    for (out, behind) in self.by_behind[j].iter_mut().zip(behind) {
-                        *out = *behind as f32;
+                    for (out, values) in [(&mut self.by_ahead[j], ahead), (&mut self.by_behind[j], behind)] {
+                        for (out, value) in out.iter_mut().zip(values) {
+                            *out = *value as f32;
+                        }
                     }
                 }
             },
         );
     }
 
-    /// Writes the change of all cells, and values without meaning for a vector register beyond them.
+    /// Writes the change of the quantity of all cells, and values without meaning for a vector register beyond them.
     pub fn multiply(&self, contact: &Contact, grid: &Grid, change: &Change, out: &mut [f32]) {
-        let by = [&self.by_shear, &self.by_ahead, &self.by_behind];
-        multiply_row(by, contact, grid, change, out);
-    }
-}
-
-/// The change of one quantity of all cells by its derivatives by shear, slip ahead and slip behind.
-fn multiply_row(by: [&[Vec<f32>; 2]; 3], contact: &Contact, grid: &Grid, change: &Change, out: &mut [f32]) {
-    dense::vectorised(
-        #[inline(always)]
-        |fma| {
-            for run in contact.runs() {
-                let ahead = run.places(grid).start;
-                let behind = ahead.wrapping_add_signed(change.behind);
-                // By whole registers: what one of them writes beyond the end of its run, the next run overwrites.
-                for k in (0..run.cells).step_by(WIDTH) {
-                    let cell = run.offset + k;
-                    let mut sum = [0.0; WIDTH];
-                    for component in 0..2 {
-                        let slip = change.slip[component];
-                        let changes = [
-                            wide(change.shear[component], cell),
-                            wide(slip, ahead + k),
-                            wide(slip, behind + k),
-                        ];
-                        for (by, change) in by.into_iter().zip(changes) {
-                            let by = wide(&by[component], cell);
-                            for lane in 0..WIDTH {
-                                sum[lane] = fma.multiply_add_single(by[lane], change[lane], sum[lane]);
+        dense::vectorised(
+            #[inline(always)]
+            |fma| {
+                for run in contact.runs() {
+                    let ahead = run.places(grid).start;
+                    let behind = ahead.wrapping_add_signed(change.behind);
+                    // By whole registers: what one of them writes beyond the end of its run, the next run overwrites.
+                    for k in (0..run.cells).step_by(WIDTH) {
+                        let cell = run.offset + k;
+                        let mut sum = [0.0; WIDTH];
+                        for by in 0..2 {
+                            let slip = change.slip[by];
+                            let parts = [
+                                (&self.by_shear[by], wide(change.shear[by], cell)),
+                                (&self.by_ahead[by], wide(slip, ahead + k)),
+                                (&self.by_behind[by], wide(slip, behind + k)),
+                            ];
+                            for (derivatives, change) in parts {
+                                let derivatives = wide(derivatives, cell);
+                                for lane in 0..WIDTH {
+                                    sum[lane] = fma.multiply_add_single(derivatives[lane], change[lane], sum[lane]);
+                                }
                             }
                         }
+                        *wide_mut(out, cell) = sum;
                     }
-                    *wide_mut(out, cell) = sum;
                 }
-            }
-        },
-    );
+            },
+        );
+    }
 }
 
 #[cfg(test)]

@@ -6,7 +6,7 @@ use crate::friction::path::{Link, NodeFriction, Passed, PathLaw, PathNode};
 use crate::mechanics::patch::contact::Contact;
 use crate::mechanics::patch::law::{Scheme, Vector, dot};
 use crate::mechanics::patch::law_arrays::{CellArrays, Components, LawArrays, SpeedArrays};
-use crate::mechanics::patch::linear_law::{Change, LinearSpeed};
+use crate::mechanics::patch::linear_law::{Change, LinearRow};
 use crate::numerics::single::WIDTH;
 
 /// Law of μ of all cells, where it depends on slip.
@@ -27,11 +27,13 @@ pub struct OnPath {
     pub(super) speeds: SpeedArrays,
     /// Change of the magnitude.
     change: Vec<f64>,
-    /// Magnitude linearised in single precision, for corrections; its change with values for a vector register beyond the cells; what links a cell to the
-    /// one before, and the derivatives of the law's residual by μ.
-    linear: LinearSpeed,
+    /// Magnitude in single precision, for corrections: linearised.
+    linear: LinearRow,
+    /// Its change in a correction, with values for a vector register beyond the cells.
     change_single: Vec<f32>,
+    /// Derivatives by which a correction of μ follows from that of the cell before.
     links: Vec<Link<f32>>,
+    /// Derivatives of the law's residual by μ, along x and y.
     by_friction: [Vec<f32>; 2],
 }
 
@@ -41,7 +43,7 @@ impl OnPath {
             friction: vec![NodeFriction::default(); cells],
             speeds: SpeedArrays::new(cells),
             change: vec![0.0; cells],
-            linear: LinearSpeed::new(cells),
+            linear: LinearRow::new(cells),
             change_single: vec![0.0; cells + WIDTH],
             links: vec![Link::default(); cells],
             by_friction: std::array::from_fn(|_| vec![0.0; cells]),
@@ -63,12 +65,15 @@ impl OnPath {
         }
     }
 
-    /// Takes for corrections how so many cells follow those before them.
+    /// Takes for corrections the law by which so many cells follow those before them, where friction remembers.
     pub(super) fn take_links(&mut self, path: &PathOfCells, rows: &LawArrays, edge: &Components, count: usize) {
         if !path.law.remembers() {
             return;
         }
-        self.linear.take(&self.speeds, edge, count);
+        let SpeedArrays {
+            by_ahead, by_behind, ..
+        } = &self.speeds;
+        self.linear.take(None, by_ahead, by_behind, edge, count);
         for (link, friction) in self.links[..count].iter_mut().zip(&self.friction) {
             *link = friction.link().single();
         }
@@ -79,7 +84,7 @@ impl OnPath {
         }
     }
 
-    /// Adds to the change of the residual of so many cells, along x and y, what they take over from the cells before.
+    /// Adds to the change of the residual of all cells, along x and y, what they take over from the cells before, where friction remembers.
     pub(super) fn add_linked(
         &mut self,
         path: &PathOfCells,

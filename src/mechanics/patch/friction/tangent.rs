@@ -64,11 +64,12 @@ impl Friction {
             };
             for index in 0..n {
                 // A cell that sticks does not feel its bound.
-                if self.rows.row(index).by_bound == [0.0; 2] {
+                if self.rows.by_bound.iter().all(|by_bound| by_bound[index] == 0.0) {
                     self.rows.set(index, &kept);
                 }
             }
         }
+        self.take_law(problem);
         self.inverted = self.invert_blocks(problem);
         if self.inverted {
             Ok(())
