@@ -29,7 +29,7 @@ pub struct OnPath {
     change: Vec<f64>,
     /// Magnitude in single precision, for corrections: linearised.
     linear: LinearRow,
-    /// Its change in a correction, with values for a vector register beyond the cells.
+    /// Change of the magnitude in a correction, in single precision, with values for a vector register beyond the cells.
     change_single: Vec<f32>,
     /// Derivatives by which a correction of μ follows from that of the cell before.
     links: Vec<Link<f32>>,
