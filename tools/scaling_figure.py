@@ -71,7 +71,7 @@ def draw_patch() -> None:
         error.annotate(
             f"{cells_along:.0f} × {strips:.0f}",
             (x, y),
-            xytext=(5, 3 if strips > 11 else -10),
+            xytext=(5, 3 if 11 < strips < 42 else -10),
             textcoords="offset points",
             fontsize=8,
         )
