@@ -122,7 +122,7 @@ fn main() -> Result<(), Error> {
             .iter()
             .map(|(_, (nodes, strips))| (braking::patch_parameters(*nodes, *strips), &inputs)),
     );
-    let runs = track::fastest(ROUNDS, &models, |(parameters, inputs)| {
+    let runs = track::least(ROUNDS, &models, |(parameters, inputs)| {
         track::Run::new(parameters, inputs)
     });
     let times = |run: &track::Run| [0.5, 0.5, 0.999].map(|share| Some(run.quantile(share)));
