@@ -15,7 +15,7 @@ use crate::contact::{ContactState, ContactWorkspace, Operators};
 use crate::error::{Error, Result};
 use crate::geometry::hertz::HertzEllipse;
 use crate::geometry::profile::Profile;
-use crate::parameters::{ContactModel, Control, Parameters};
+use crate::parameters::{ContactModel, Control, Parameters, ProfileFiles};
 use crate::settings::Settings;
 use crate::signals::{Inputs, OUTPUTS, Outputs, Totals};
 use division::{Division, SubStep};
@@ -34,6 +34,8 @@ pub struct Model {
     parameters: Parameters,
     settings: Settings,
     operators: Operators,
+    /// Contents of the files that the profiles were read from.
+    files: ProfileFiles,
     /// Contact ellipse under the largest load; none with a line.
     largest_ellipse: Option<HertzEllipse>,
 }
@@ -115,18 +117,34 @@ impl Model {
     ///
     /// # Errors
     /// As [`Model::new`].
-    pub fn with_settings(parameters: Parameters, mut settings: Settings) -> Result<Model> {
+    pub fn with_settings(parameters: Parameters, settings: Settings) -> Result<Model> {
+        parameters.validate()?;
+        let files = ProfileFiles::read(&parameters)?;
+        Model::of_files(parameters, settings, files)
+    }
+
+    /// Builds the model as [`Model::with_settings`] does, with profiles from files that hold, or held, the given contents.
+    ///
+    /// # Errors
+    /// As [`Model::new`].
+    pub fn of_files(parameters: Parameters, mut settings: Settings, files: ProfileFiles) -> Result<Model> {
         parameters.validate()?;
         settings.step = settings.step.for_cells(&parameters);
-        let operators = Operators::new(&parameters)?;
+        let operators = Operators::new(&parameters, &files)?;
         let is_line = parameters.contact_model == ContactModel::Line;
         let largest_ellipse = (!is_line).then(|| parameters.hertz_ellipse(parameters.largest_load));
         Ok(Model {
             parameters,
             settings,
             operators,
+            files,
             largest_ellipse,
         })
+    }
+
+    /// Contents of the files that the profiles were read from. With them [`Model::of_files`] makes the same model again.
+    pub fn files(&self) -> &ProfileFiles {
+        &self.files
     }
 
     /// The parameters.

@@ -55,12 +55,6 @@ pub trait Engine: Sized + 'static {
     /// Solvers and buffers of the linearised mechanics, heat and wear.
     type Tangent;
 
-    /// Operators for the given parameters.
-    ///
-    /// # Errors
-    /// [`crate::error::Error::StiffnessNotPositiveDefinite`], [`crate::error::Error::DepthBasis`].
-    fn new(parameters: &Parameters) -> Result<Self>;
-
     /// Fields of a cold, unworn rail without contact; the wheel's temperature is 0 K.
     fn fields(&self) -> Self::Fields;
 

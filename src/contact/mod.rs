@@ -31,7 +31,7 @@ use crate::error::{Error, Result};
 #[cfg(feature = "verification")]
 use crate::friction::memory::Memory;
 use crate::geometry::profile::Profile;
-use crate::parameters::{ContactModel, Parameters};
+use crate::parameters::{ContactModel, Parameters, ProfileFiles};
 use crate::settings::Settings;
 use crate::signals::Outputs;
 use engine::Engine;
@@ -112,15 +112,15 @@ macro_rules! with_model {
 }
 
 impl Operators {
-    /// Computes meshes, compliance, thermal maps.
+    /// Computes meshes, compliance, thermal maps; of profiles in files from the contents of these.
     ///
     /// # Errors
-    /// [`Error::StiffnessNotPositiveDefinite`], [`Error::DepthBasis`].
-    pub fn new(parameters: &Parameters) -> Result<Operators> {
+    /// [`Error::StiffnessNotPositiveDefinite`], [`Error::DepthBasis`], a profile that does not serve.
+    pub fn new(parameters: &Parameters, files: &ProfileFiles) -> Result<Operators> {
         Ok(match parameters.contact_model {
-            ContactModel::Line => Operators::Line(LineOperators::new(parameters)?),
-            ContactModel::Patch => Operators::Patch(PatchOperators::new(parameters)?),
-            ContactModel::Profiles => Operators::Surface(SurfaceOperators::new(parameters)?),
+            ContactModel::Line => Operators::Line(LineOperators::build(parameters)?),
+            ContactModel::Patch => Operators::Patch(PatchOperators::build(parameters)?),
+            ContactModel::Profiles => Operators::Surface(SurfaceOperators::build(parameters, files)?),
         })
     }
 

@@ -10,7 +10,7 @@ use super::resources::Resources;
 use super::saved_states::SavedStates;
 use super::snapshot::Experiment;
 use crate::error;
-use crate::parameters::{Parameters, TEXT_PARAMETERS};
+use crate::parameters::{Parameters, ProfileFiles, TEXT_PARAMETERS};
 use crate::settings::Settings;
 use crate::signals::Inputs;
 use crate::wheel_rail::{ContactNode, Model, ProfileDepths, Profiles, State, SurfaceWindow, Workspace};
@@ -24,8 +24,8 @@ pub(super) struct Built {
 
 impl Built {
     /// Computes mesh, compliance and thermal maps.
-    pub(super) fn new(parameters: &Parameters, settings: Settings) -> error::Result<Built> {
-        let model = Model::with_settings(parameters.clone(), settings)?;
+    pub(super) fn new(parameters: &Parameters, settings: Settings, files: ProfileFiles) -> error::Result<Built> {
+        let model = Model::of_files(parameters.clone(), settings, files)?;
         let workspace = model.workspace();
         Ok(Built { model, workspace })
     }
@@ -57,10 +57,12 @@ pub struct Component {
     pub(super) rates: Inputs,
     /// The communication point, `s`.
     pub(super) time: f64,
-    /// Kept as long as the fixed parameters are the same, over a reset too.
+    /// Kept as long as the fixed parameters and the contents of the profiles' files are the same, over a reset too.
     pub(super) built: Option<Built>,
     /// Rail and contact at the communication point. In *initializationMode* computed when it is asked for.
     pub(super) state: Option<State>,
+    /// Contents of the profiles' files that the state was computed with: it keeps its profiles when files change. None without a state.
+    pub(super) files: Option<ProfileFiles>,
     /// Computed from `state` when they are asked for.
     pub(super) plots: Plots,
     pub(super) saved: SavedStates,
@@ -86,6 +88,7 @@ impl Component {
             time: 0.0,
             built: None,
             state: None,
+            files: None,
             plots: Plots::default(),
             saved: SavedStates::default(),
             texts: vec![CString::default(); TEXT_PARAMETERS.len()],
@@ -196,23 +199,27 @@ impl Component {
         self.rates = Inputs::ZERO;
         self.told = 0;
         self.time = 0.0;
-        self.state = None;
-        self.plots = Plots::default();
+        self.forget_solution();
         self.inform(Category::Events, |_| "reset to the start values".to_owned());
     }
 
-    /// Makes `built` the model of the given parameters; nothing is built anew where only tunable ones differ.
+    /// Makes `built` the model of the given parameters, with the profiles of the state, or, without one, with those that the files hold now; nothing is built
+    /// anew where only tunable parameters differ.
     pub(super) fn prepare(&mut self, parameters: &Parameters) -> error::Result<&mut Built> {
         let parameters = &*self.resources.located(parameters);
-        let reusable = self
-            .built
-            .take_if(|built| built.model.parameters().fixed_part() == parameters.fixed_part());
+        let files = match &self.files {
+            Some(files) => files.clone(),
+            None => ProfileFiles::read(parameters)?,
+        };
+        let reusable = self.built.take_if(|Built { model, .. }| {
+            model.parameters().fixed_part() == parameters.fixed_part() && *model.files() == files
+        });
         let built = match reusable {
             Some(mut built) => {
                 built.model.retune(parameters)?;
                 built
             }
-            None => Built::new(parameters, self.settings)?,
+            None => Built::new(parameters, self.settings, files)?,
         };
         Ok(self.built.insert(built))
     }
@@ -227,7 +234,9 @@ impl Component {
             inputs.check(&parameters).map_err(Failure::Model)?;
             let Built { model, workspace } = self.prepare(&parameters).map_err(Failure::Model)?;
             let state = model.initial_state(workspace, &inputs).map_err(Failure::Model)?;
+            let files = model.files().clone();
             self.state = Some(state);
+            self.files = Some(files);
         }
         self.state.as_ref().ok_or(Failure::NothingComputed)
     }
@@ -288,6 +297,7 @@ impl Component {
     /// Forgets the solution of the initialisation after a change of what it follows from.
     pub(super) fn forget_solution(&mut self) {
         self.state = None;
+        self.files = None;
         self.plots = Plots::default();
     }
 }

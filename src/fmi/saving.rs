@@ -1,12 +1,12 @@
 //! Saving and restoring an instance.
 
-use super::component::{Component, Plots};
+use super::component::{Built, Component, Plots};
 use super::failures::Failure;
 use super::logging::Category;
 use super::saved_states::Handle;
 use super::serialized::{self, Corruption};
 use super::snapshot::Snapshot;
-use crate::parameters::{REAL_PARAMETERS, TEXT_PARAMETERS};
+use crate::parameters::{Parameters, ProfileFiles, REAL_PARAMETERS, TEXT_PARAMETERS};
 use crate::signals::INPUTS;
 
 impl Component {
@@ -19,6 +19,7 @@ impl Component {
             rates: self.rates,
             time: self.time,
             state: self.state.clone(),
+            files: self.files.clone(),
         }
     }
 
@@ -31,15 +32,17 @@ impl Component {
         self.saved.keep(handle, snapshot)
     }
 
-    /// Restores a saved state. The model is built anew only where the fixed parameters have changed since.
+    /// Restores a saved state, with the profiles that it was saved with. The model is built anew only where these or the fixed parameters have
+    /// changed since.
     ///
     /// # Errors
     /// [`Failure::NullPointer`] or [`Failure::UnknownState`]; nothing is changed then.
     pub fn set_state(&mut self, handle: Handle) -> Result<(), Failure> {
         let snapshot = self.saved.find(handle)?.clone();
         if snapshot.state.is_some() {
-            self.prepare(&snapshot.parameters).map_err(Failure::Model)?;
+            self.prepare_with(&snapshot.files, &snapshot.parameters)?;
         }
+        self.files = snapshot.files;
         self.mode = snapshot.mode;
         self.experiment = snapshot.experiment;
         self.parameters = snapshot.parameters;
@@ -52,6 +55,15 @@ impl Component {
             format!("restored the state of t = {} s", component.time)
         });
         Ok(())
+    }
+
+    /// Makes the model of a saved state's profiles and the given parameters.
+    fn prepare_with(&mut self, files: &Option<ProfileFiles>, parameters: &Parameters) -> Result<&mut Built, Failure> {
+        let own = std::mem::replace(&mut self.files, files.clone());
+        let prepared = self.prepare(parameters).map(|_| ());
+        self.files = own;
+        prepared.map_err(Failure::Model)?;
+        self.built.as_mut().ok_or(Failure::NothingComputed)
     }
 
     /// Frees a saved state and sets the handle to null; a null handle has nothing to free.
@@ -94,8 +106,18 @@ impl Component {
         }
         if let Some(state) = &snapshot.state {
             let parameters = self.parameters.clone();
-            let built = self.prepare(&parameters).map_err(Failure::Model)?;
-            if !built.model.accepts(state) {
+            // The model of other profiles is set aside: the simulation goes on with it.
+            let own = self.built.take_if(|built| {
+                snapshot
+                    .files
+                    .as_ref()
+                    .is_some_and(|files| files != built.model.files())
+            });
+            let accepted = self
+                .prepare_with(&snapshot.files, &parameters)
+                .map(|built| built.model.accepts(state));
+            self.built = own.or(self.built.take());
+            if !accepted? {
                 return Err(Corruption::Content.into());
             }
         }

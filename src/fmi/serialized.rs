@@ -9,14 +9,14 @@
 //! | … | payload: [`Snapshot`] as postcard |
 //! | 4 | CRC-32 of everything before |
 //!
-//! Meshes and tables are not part of it: they follow from the parameters.
+//! Meshes and tables are not part of it: they follow from the parameters, and profiles in files from the contents of these, which are part of it.
 
 use super::snapshot::Snapshot;
 use crate::parameters::{INTEGER_PARAMETERS, Parameters, REAL_PARAMETERS, TEXT_PARAMETERS};
 use crate::signals::{INPUTS, OUTPUTS};
 
 const MAGIC: [u8; 8] = *b"WHLRAIL\0";
-const VERSION: u32 = 10;
+const VERSION: u32 = 11;
 const HEADER: usize = 8 + 4 + 8 + 8;
 const CHECKSUM: usize = 4;
 

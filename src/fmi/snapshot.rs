@@ -1,7 +1,7 @@
 //! Contents of a saved state.
 
 use super::modes::Mode;
-use crate::parameters::Parameters;
+use crate::parameters::{Parameters, ProfileFiles};
 use crate::signals::Inputs;
 use crate::wheel_rail::State;
 use serde::{Deserialize, Serialize};
@@ -33,4 +33,6 @@ pub struct Snapshot {
     pub time: f64,
     /// Rail and contact, once computed.
     pub state: Option<State>,
+    /// Contents of the profiles' files that the state was computed with.
+    pub files: Option<ProfileFiles>,
 }

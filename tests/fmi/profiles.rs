@@ -1,7 +1,11 @@
 //! Profiles through the interface: by place and motion of the wheelset, with texts as parameters.
 
 use super::importer::{Api, Client, ERROR, Fmi2, Fmi3, OK, Profiles, coarse, with_each_standard};
+use std::ffi::CString;
+use std::fs;
+use std::path::Path;
 use std::ptr::null_mut;
+use wheelrail::Profile;
 use wheelrail::signals::OUTPUTS;
 
 /// A right wheel on UIC60, ready to step.
@@ -14,12 +18,22 @@ fn running(api: &Api) -> Client<'_> {
 fn initializing(api: &Api) -> Client<'_> {
     let mut client = Client::new(api);
     client.contact = Profiles;
+    begin(&client);
+    client
+}
+
+fn begin(client: &Client) {
     client.expect(OK, client.set_integers(coarse(Profiles)));
     client.expect(OK, client.set_integers(&[("side", 2), ("wheel_heating", 2)]));
     client.expect(OK, client.set_text("rail_profile", c"UIC60"));
     client.expect(OK, client.set(&pose(0)));
     client.expect(OK, client.begin(0.0, Some(10.0)));
-    client
+}
+
+/// Takes the wheel's profile from a file.
+fn take_wheel(client: &Client, file: &Path) {
+    let path = CString::new(file.to_str().unwrap()).unwrap();
+    client.expect(OK, client.set_text("wheel_profile", &path));
 }
 
 /// A wheelset that moves towards the flange, with a lift-off on the way.
@@ -80,6 +94,60 @@ fn a_restored_state_repeats_the_bits() {
 }
 
 /// The column of the interface by a position is the difference of two runs from the same state.
+/// A saved state goes on with the profile that it was saved with, after the file has become another one, and when it is gone. What begins anew
+/// reads the file.
+#[test]
+fn a_saved_state_keeps_the_profile_of_its_file() {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("kept_profile");
+    fs::create_dir_all(&folder).unwrap();
+    let file = folder.join("wheel.prw");
+    let new = Profile::built_in("S1002").unwrap();
+    let depths = [[0.075, 0.0], [0.085, 2e-3], [0.105, 2e-3], [0.115, 0.0]];
+    let worn = new.worn_by(&depths).unwrap();
+    with_each_standard(|api| {
+        let with_wheel = || {
+            let client = initializing(api);
+            take_wheel(&client, &file);
+            client.expect(OK, client.exit());
+            client
+        };
+        new.write(&file).unwrap();
+        let client = with_wheel();
+        let start = drive(&client, 0..4);
+        let saved = client.save();
+        let bytes = client.serialize(saved);
+        let rest = drive(&client, 4..8);
+
+        worn.write(&file).unwrap();
+        let [other, alike] = [with_wheel(), with_wheel()];
+        let worn_start = drive(&other, 0..4);
+        assert_ne!(start, worn_start);
+        // Bytes that are read change nothing before they are restored.
+        drive(&alike, 0..4);
+        let mut handle = null_mut();
+        other.expect(OK, other.deserialize(&bytes, &mut handle));
+        assert_eq!(drive(&other, 4..6), drive(&alike, 4..6));
+        other.expect(OK, other.restore(handle));
+        assert_eq!(rest, drive(&other, 4..8));
+        // Another start reads the file as it is; the saved state leads back.
+        client.expect(OK, client.reset());
+        begin(&client);
+        take_wheel(&client, &file);
+        client.expect(OK, client.exit());
+        assert_eq!(worn_start, drive(&client, 0..4));
+        client.expect(OK, client.restore(saved));
+        assert_eq!(rest, drive(&client, 4..8));
+
+        fs::remove_file(&file).unwrap();
+        let elsewhere = initializing(api);
+        take_wheel(&elsewhere, &file);
+        let mut handle = null_mut();
+        elsewhere.expect(OK, elsewhere.deserialize(&bytes, &mut handle));
+        elsewhere.expect(OK, elsewhere.restore(handle));
+        assert_eq!(rest, drive(&elsewhere, 4..8));
+    });
+}
+
 #[test]
 fn derivatives_by_position_are_differences() {
     with_each_standard(|api| {

@@ -28,10 +28,6 @@ impl Engine for LineOperators {
     type Solvers = LineSolvers;
     type Tangent = LineTangent;
 
-    fn new(parameters: &Parameters) -> Result<LineOperators> {
-        LineOperators::build(parameters)
-    }
-
     fn fields(&self) -> LineFields {
         LineFields::new(self)
     }

@@ -34,10 +34,6 @@ impl Engine for PatchOperators {
     type Solvers = PatchSolvers;
     type Tangent = PatchTangent;
 
-    fn new(parameters: &Parameters) -> Result<PatchOperators> {
-        PatchOperators::build(parameters)
-    }
-
     fn fields(&self) -> PatchFields {
         PatchFields::new(self)
     }

@@ -78,10 +78,6 @@ impl Engine for SurfaceOperators {
     type Solvers = SurfaceSolvers;
     type Tangent = SurfaceTangent;
 
-    fn new(parameters: &Parameters) -> Result<SurfaceOperators> {
-        SurfaceOperators::build(parameters)
-    }
-
     fn fields(&self) -> SurfaceFields {
         SurfaceFields::new(self)
     }

@@ -6,12 +6,12 @@ use super::windows::{BREADTHS, LENGTHS, Place, Sizes};
 use crate::body::grid::Grid;
 use crate::body::half_space::HalfSpaces;
 use crate::contact::patch::operators::PatchOperators;
-use crate::error::{Error, Result};
+use crate::error::{Error, ProfileError, Result};
 use crate::geometry::profile::files::ReadOptions;
 use crate::geometry::profile::{Body, DepthGrid, Profile, WornHeight};
 use crate::geometry::rail::PlacedRail;
 use crate::geometry::unrolled::Wheel;
-use crate::parameters::{Parameters, ProfileSource, ProfileWear, Side};
+use crate::parameters::{Parameters, ProfileFiles, ProfileSource, ProfileWear, Side};
 
 /// Distance of the points of the rail's profile at which contacts are sought, `m`: less than the breadth of the smallest that carries
 /// an appreciable load.
@@ -82,14 +82,26 @@ impl GaugeFace {
 }
 
 impl SurfaceOperators {
-    /// Reads the profiles and computes the operators of all windows.
+    /// Makes the profiles, of the contents of their files where they are in such, and computes the operators of all windows.
     ///
     /// # Errors
     /// A profile that does not serve, [`crate::error::Error::DepthBasis`].
-    pub fn build(parameters: &Parameters) -> Result<SurfaceOperators> {
+    pub fn build(parameters: &Parameters, files: &ProfileFiles) -> Result<SurfaceOperators> {
         let profiles = [
-            profile("wheel_profile", &parameters.wheel_profile, Body::Wheel, parameters)?,
-            profile("rail_profile", &parameters.rail_profile, Body::Rail, parameters)?,
+            profile(
+                "wheel_profile",
+                &parameters.wheel_profile,
+                files.wheel.as_deref(),
+                Body::Wheel,
+                parameters,
+            )?,
+            profile(
+                "rail_profile",
+                &parameters.rail_profile,
+                files.rail.as_deref(),
+                Body::Rail,
+                parameters,
+            )?,
         ];
         let (rail, wheel) = placed(&profiles, parameters)?;
         let (half_length, half_breadth) = parameters.patch_window();
@@ -193,8 +205,14 @@ fn flange_tip(wheel: &Wheel) -> f64 {
     places.min_by(|a, b| height(*a).total_cmp(&height(*b))).unwrap_or(first)
 }
 
-/// Profile that a parameter names: one that is built in, or a file.
-fn profile(parameter: &'static str, text: &str, body: Body, parameters: &Parameters) -> Result<Profile> {
+/// Profile that the text of a parameter names: one that is built in, or one of a file with this content.
+fn profile(
+    parameter: &'static str,
+    text: &str,
+    content: Option<&str>,
+    body: Body,
+    parameters: &Parameters,
+) -> Result<Profile> {
     let profile = match ProfileSource::of(parameter, text)? {
         ProfileSource::BuiltIn(name) => Profile::built_in(name),
         ProfileSource::File(path) => {
@@ -203,7 +221,12 @@ fn profile(parameter: &'static str, text: &str, body: Body, parameters: &Paramet
                 smoothing: parameters.profile_smoothing,
                 ..ReadOptions::default()
             };
-            Profile::read(&path, &options)
+            content
+                .ok_or_else(|| ProfileError::File {
+                    path: path.display().to_string(),
+                    reason: "its content is not known".to_owned(),
+                })
+                .and_then(|content| Profile::of_file(&path, content, &options))
         }
     };
     let named = |reason| Error::NamedProfile {

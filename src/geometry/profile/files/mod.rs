@@ -139,8 +139,15 @@ impl Profile {
     /// # Errors
     /// The file cannot be read, is not of its format, does not say what it must, or is no profile of the body that is needed.
     pub fn read(path: &Path, options: &ReadOptions) -> Result<Profile, ProfileError> {
-        let text = text_of(path)?;
-        Profile::parse(&text, &name_of(path), Format::of(path, &text), options)
+        Profile::of_file(path, &text_of(path)?, options)
+    }
+
+    /// Profile from a file with this text; the path says name and format.
+    ///
+    /// # Errors
+    /// As [`Profile::read`].
+    pub fn of_file(path: &Path, text: &str, options: &ReadOptions) -> Result<Profile, ProfileError> {
+        Profile::parse(text, &name_of(path), Format::of(path, text), options)
     }
 
     /// Profile from the text of a file.
@@ -205,8 +212,11 @@ impl Profile {
     }
 }
 
-/// Text of a file; letters that are no UTF-8 are replaced.
-fn text_of(path: &Path) -> Result<String, ProfileError> {
+/// Text of a file that holds a profile; letters that are no UTF-8 are replaced.
+///
+/// # Errors
+/// [`ProfileError::File`].
+pub fn text_of(path: &Path) -> Result<String, ProfileError> {
     let failed = |reason: String| ProfileError::File {
         path: path.display().to_string(),
         reason,
