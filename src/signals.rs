@@ -401,6 +401,8 @@ pub const OUTPUTS: &[OutputSignal] = &{
 
 /// Rounding of a value at the end of a ramp, relative to the range.
 const ROUNDING: f64 = 1e-12;
+/// Rounding of a start value that an importer has interpolated, relative to the value: a few units of the last bit.
+const START_ROUNDING: f64 = 8.0 * f64::EPSILON;
 
 impl Outputs {
     /// The rows of the outputs that are sums over the steps.
@@ -453,8 +455,8 @@ impl InputSignal {
         check_range(self.name, value, minimum, maximum, self.unit, self.narrowed_by)
     }
 
-    /// Refuses a value other than the start value where the choices leave this input without effect. The model itself takes
-    /// any: only who asked the user for the inputs knows that one was meant.
+    /// Refuses a value other than the start value, rounding apart, where the choices leave this input without effect. The model
+    /// itself takes any: only who asked the user for the inputs knows that one was meant.
     ///
     /// # Errors
     /// [`Error::NotUsed`].
@@ -462,7 +464,8 @@ impl InputSignal {
         let Some(used_by) = self.used_by.filter(|used_by| used_by.chosen(parameters) != *used_by) else {
             return Ok(());
         };
-        if value == self.default {
+        // An importer that interpolates a column of start values rounds their last bits, as FMPy does: nobody meant another value.
+        if (value - self.default).abs() <= START_ROUNDING * self.default.abs() {
             return Ok(());
         }
         let (parameter, other_number, other) = used_by.described();

@@ -135,6 +135,31 @@ fn the_motion_follows_from_the_inputs_that_its_source_uses() {
     assert!(height.is_some_and(|signal| signal.check_used(1e-3, &by_height).is_ok()));
 }
 
+/// Start values as FMPy interpolates them between two equal rows, 1 or 2 units of the last bit off, are no others; a change that
+/// a user may mean is one.
+#[test]
+fn a_start_value_that_was_rounded_is_not_told_of() {
+    let parameters = Parameters::default();
+    for (name, interpolated) in [
+        ("rolling_radius", 0.4600000000000001),
+        ("transverse_curvature", 3.333333333333334),
+    ] {
+        let signal = INPUTS.iter().find(|signal| signal.name == name).expect("an input");
+        assert_ne!(interpolated, signal.default);
+        assert_eq!(signal.check_used(interpolated, &parameters), Ok(()), "{name}");
+        for changed in [signal.default * (1.0 + 1e-12), f64::NAN] {
+            assert!(signal.check_used(changed, &parameters).is_err(), "{name} = {changed}");
+        }
+    }
+    // A start value of 0 has no last bits.
+    let speed = INPUTS
+        .iter()
+        .find(|signal| signal.name == "spin_rate")
+        .expect("an input");
+    assert_eq!(speed.default, 0.0);
+    assert!(speed.check_used(1e-300, &parameters).is_err());
+}
+
 /// The contact models without which an input or an output is 0.
 #[test]
 fn the_end_of_a_description_names_the_contact_models() {

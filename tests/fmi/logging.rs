@@ -161,6 +161,30 @@ fn inputs_without_effect_are_told_of_once() {
     });
 }
 
+/// An importer that interpolates constant columns rounds their last bits, as FMPy does: nothing is told of them. A change of the
+/// value is.
+#[test]
+fn start_values_that_an_importer_has_rounded_are_not_told_of() {
+    with_each(|api, contact| {
+        let mut client = Client::new(api);
+        client.contact = contact;
+        client.make_coarse();
+        client.start();
+        let rounded = [
+            ("rolling_radius", 0.4600000000000001),
+            ("transverse_curvature", 3.333333333333334),
+        ];
+        client.expect(OK, client.set(&rounded));
+        client.expect(OK, client.step(0.0, 1e-3));
+        assert_eq!(client.journal.take(), []);
+        client.expect(OK, client.set(&[("rolling_radius", 0.4601)]));
+        client.expect(OK, client.step(1e-3, 1e-3));
+        let told = client.journal.take();
+        assert_eq!(told.len(), 1);
+        assert!(told[0].text.contains("rolling_radius = 0.4601 has no effect"));
+    });
+}
+
 #[test]
 fn categories_are_switched_one_by_one() {
     with_each_standard(|api| {
