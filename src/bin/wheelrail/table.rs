@@ -59,7 +59,30 @@ pub fn heading(name: &str, unit: &str) -> String {
 /// A table that is written row by row.
 pub struct Table {
     path: PathBuf,
-    writer: csv::Writer<Box<dyn Write>>,
+    writer: csv::Writer<WholeLines<Box<dyn Write>>>,
+}
+
+/// Writer that hands on whole lines alone. The buffer of a table is handed on when it is full, wherever a row stands then: who
+/// stops the program would find half a number at the end of the file, which reads as another number.
+struct WholeLines<W> {
+    out: W,
+    /// Beginning of a line whose end has not come yet.
+    begun: Vec<u8>,
+}
+
+impl<W: Write> Write for WholeLines<W> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.begun.extend_from_slice(bytes);
+        if let Some(end) = self.begun.iter().rposition(|byte| *byte == b'\n') {
+            self.out.write_all(&self.begun[..=end])?;
+            self.begun.drain(..=end);
+        }
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.out.flush()
+    }
 }
 
 impl Table {
@@ -74,12 +97,17 @@ impl Table {
             Some(path) => (path, Box::new(files::create(path).map_err(Error::file(path))?)),
             None => (Path::new("standard output"), Box::new(io::stdout().lock())),
         };
-        let mut table = Table {
-            path: path.to_owned(),
-            writer: csv::Writer::from_writer(out),
-        };
+        let mut table = Table::of(path, out);
         table.record(headings)?;
         Ok(table)
+    }
+
+    fn of(path: &Path, out: Box<dyn Write>) -> Table {
+        let begun = Vec::new();
+        Table {
+            path: path.to_owned(),
+            writer: csv::Writer::from_writer(WholeLines { out, begun }),
+        }
     }
 
     /// One row in which cells may be empty.
@@ -113,5 +141,49 @@ fn shortest(value: f64) -> String {
         format!("{value}")
     } else {
         format!("{value:e}")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::cell::RefCell;
+    use std::rc::Rc;
+
+    /// Calls that a file would get, each with its bytes as text.
+    struct Calls(Rc<RefCell<Vec<String>>>);
+
+    impl Write for Calls {
+        fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+            self.0.borrow_mut().push(String::from_utf8(bytes.to_vec()).unwrap());
+            Ok(bytes.len())
+        }
+
+        fn flush(&mut self) -> io::Result<()> {
+            Ok(())
+        }
+    }
+
+    /// Rows that fill the buffer many times: at no moment does the file end within one, and not every row is a call.
+    #[test]
+    fn a_file_is_given_whole_rows_alone() {
+        let calls = Rc::new(RefCell::new(Vec::new()));
+        let mut table = Table::of(Path::new("rows.csv"), Box::new(Calls(calls.clone())));
+        let rows = 5000;
+        for row in 0..rows {
+            table
+                .write([f64::from(row), 293.681_549_017, 1.0 / 3.0].into_iter())
+                .unwrap();
+        }
+        table.finish().unwrap();
+        let calls = calls.borrow();
+        assert!(calls.iter().all(|call| call.ends_with('\n')));
+        assert!((2..rows as usize / 100).contains(&calls.len()), "{}", calls.len());
+        let text = calls.concat();
+        assert_eq!(text.lines().count(), rows as usize);
+        assert!(
+            text.lines()
+                .all(|line| line.ends_with(",293.681549017,0.3333333333333333"))
+        );
     }
 }
