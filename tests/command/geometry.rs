@@ -157,7 +157,7 @@ fn what_cannot_be_is_refused() {
             &["geometry", "--from", "0.004", "--to", "-0.004"],
             "last displacement = -0.004: allowed is 0.004 to 0.2 m",
         ),
-        (&["profile", rough], "--y-to"),
+        (&["profile", rough], "--body"),
         (&["profile", "S1002", "--inclination", "0.025"], "a rail is needed"),
         (
             &["profile", "S1002", "--unit", "mm"],
@@ -199,6 +199,28 @@ fn what_cannot_be_is_refused() {
             "{arguments:?}: {beside}"
         );
         assert!(done.stdout.is_empty());
+    }
+}
+
+/// A file that does not say everything is asked for the option that says it.
+#[test]
+fn what_a_file_does_not_say_has_an_option() {
+    let (wheel, block) = (file("unsaid.csv"), file("block.csv"));
+    said(&["profile", "S1002", "-o", wheel.to_str().unwrap()]);
+    fs::write(&block, "y,z\n0,0\n4,1\n9,0\n").unwrap();
+    for (path, more, option) in [
+        (&wheel, &[][..], "--body rail|wheel"),
+        (&block, &["--body", "rail"], "--unit m|mm|in"),
+    ] {
+        let arguments = [&["profile", path.to_str().unwrap(), "--measures"], more].concat();
+        let done = wheelrail(&arguments);
+        let beside = String::from_utf8_lossy(&done.stderr).into_owned();
+        assert!(!done.status.success());
+        assert!(
+            beside.contains(&format!("`wheelrail profile FILE {option}`")),
+            "{beside}"
+        );
+        assert!(!beside.contains("--y-to"), "{beside}");
     }
 }
 

@@ -94,14 +94,23 @@ pub enum Error {
     Output(#[from] io::Error),
 }
 
-/// Returns how a file is made readable whose directions are not known.
-fn hint(error: &ProfileError) -> &'static str {
-    match error {
-        ProfileError::NotSaid { .. } => {
-            "; `wheelrail profile FILE --y-to …` has an option for it, and writes a file that says it itself"
-        }
-        _ => "",
-    }
+/// Returns how a file is made readable that does not say all that it must.
+fn hint(error: &ProfileError) -> String {
+    let ProfileError::NotSaid { option, .. } = error else {
+        return String::new();
+    };
+    // The reader's names of what `wheelrail profile` has options for.
+    let option = match *option {
+        "body" => "--body rail|wheel",
+        "unit" => "--unit m|mm|in",
+        "y_to" => "--y-to field|gauge",
+        "z_up" => "--z up|down",
+        "flange_back_position" => "--flange-back-position METRES",
+        _ => return String::new(),
+    };
+    format!(
+        "; as an option: `wheelrail profile FILE {option}`, which with `-o NEW.prw` (a rail: NEW.prr) writes a file that says it itself"
+    )
 }
 
 fn unit(text: &str) -> Result<LengthUnit, String> {
