@@ -202,6 +202,75 @@ fn what_cannot_be_is_refused() {
     }
 }
 
+/// No table takes the place of another one or of what is read, and none is begun where another one cannot be written.
+#[test]
+fn no_file_is_written_over() {
+    let (wheel, depths) = (file("own.prw"), file("own_depths.csv"));
+    let [new, missing] = ["new.csv", "missing/new.csv"].map(file);
+    fs::write(&depths, "arc_length [mm],depth [mm]\n75,0\n85,2\n105,2\n115,0\n").unwrap();
+    let [wheel, depths, new, missing] = [&wheel, &depths, &new, &missing].map(|path| path.to_str().unwrap());
+    said(&["profile", "S1002", "-o", wheel]);
+    let inputs = [wheel, depths].map(|path| (path, fs::read(path).unwrap()));
+    let twice = "--output is written to this file as well";
+    let read_as = |option: &str| format!("reads this file ({option})");
+    for (arguments, option, words) in [
+        (&["geometry", "-o", new, "--jumps", new][..], "--jumps", twice),
+        (&["geometry", "-o", new, "--outlines", new], "--outlines", twice),
+        (
+            &["geometry", "--wheel", wheel, "-o", wheel],
+            "--output",
+            &read_as("--wheel"),
+        ),
+        (
+            &["geometry", "--wheel-right", wheel, "-o", new, "--jumps", wheel],
+            "--jumps",
+            &read_as("--wheel-right"),
+        ),
+        (
+            &["geometry", "-o", new, "--outlines", missing],
+            "--outlines",
+            "missing is not there",
+        ),
+        (
+            &[
+                "geometry",
+                "-o",
+                new,
+                "--outlines",
+                "/dev/null",
+                "--outlines-at",
+                "0.05",
+            ],
+            "",
+            "beside its rail",
+        ),
+        (&["profile", wheel, "-o", wheel], "--output", &read_as("the profile")),
+        (
+            &["profile", "S1002", "--worn-by", depths, "-o", depths],
+            "--output",
+            &read_as("--worn-by"),
+        ),
+        (
+            &["profile", "S1002", "--measures", "--against", wheel, "-o", wheel],
+            "--output",
+            &read_as("--against"),
+        ),
+        (&["profile", "S1002", "-o", missing], "--output", "missing is not there"),
+    ] {
+        let done = wheelrail(arguments);
+        let beside = String::from_utf8_lossy(&done.stderr).into_owned();
+        assert_eq!(done.status.code(), Some(1), "{arguments:?}: {beside}");
+        assert!(
+            beside.contains(option) && beside.contains(words),
+            "{arguments:?}: {beside}"
+        );
+        assert!(!Path::new(new).exists(), "{arguments:?}");
+    }
+    for (path, content) in inputs {
+        assert_eq!(fs::read(path).unwrap(), content);
+    }
+}
+
 /// A file that does not say everything is asked for the option that says it.
 #[test]
 fn what_a_file_does_not_say_has_an_option() {

@@ -227,37 +227,122 @@ fn fields_that_cannot_be_written_are_refused() {
         &["--fields", missing.to_str().unwrap()],
         &["missing/fields.csv", "the folder", "missing is not there"],
     );
-    place.refused(
-        &["--fields", place.output.to_str().unwrap()],
-        &["--fields", "where the outputs go"],
-    );
-    // Through another name.
-    let around = place.output.parent().unwrap().join(".").join("out.csv");
-    place.refused(
-        &["--fields", around.to_str().unwrap()],
-        &["--fields", "where the outputs go"],
-    );
-    place.refused(
-        &["--fields", place.scenario.to_str().unwrap()],
-        &["--fields", "this is the scenario"],
-    );
 }
 
+/// What a run reads is not written over, by whatever option and name of the file; nor does one output overwrite another one. All
+/// is refused before anything is written.
 #[test]
-fn a_scenario_is_not_written_over() {
+fn no_file_is_written_over() {
     let place = Place::new("written_over", GOOD);
-    let place = Place {
-        output: place.scenario.clone(),
+    let folder = place.output.parent().unwrap();
+    let profile = folder.join("my.prw");
+    let made = Command::new(env!("CARGO_BIN_EXE_wheelrail"))
+        .args(["profile", "S1002", "-o", profile.to_str().unwrap()])
+        .output()
+        .unwrap();
+    assert!(made.status.success());
+    let preset = folder.join("mine.toml");
+    write(
+        &preset,
+        "title = \"Mine\"\nsource = \"a test\"\n[parameters]\nfriction_cold = 0.4\n",
+    )
+    .unwrap();
+    let around = folder.join(".").join("out.csv");
+    let new = folder.join("new.csv");
+    let [scenario, output, profile, preset, around, new] =
+        [&place.scenario, &place.output, &profile, &preset, &around, &new].map(|path| path.to_str().unwrap());
+    let inputs = [scenario, profile, preset].map(|path| (path, read_to_string(path).unwrap()));
+    let wheel = format!("wheel_profile={profile}");
+    let with_wheel = ["--set", "contact_model=3", "--set", "slip_source=2", "--set", &wheel];
+    for (options, parts) in [
+        (&["--fields", scenario][..], ["--fields", "the scenario"]),
+        (&["--profile-wear", scenario], ["--profile-wear", "the scenario"]),
+        (&["--fields", profile], ["--fields", "wheel_profile"]),
+        (&["--worn-wheel", profile], ["--worn-wheel", "wheel_profile"]),
+        (&["--fields", output], ["--fields", "--output is written to this file"]),
+        (&["--fields", around], ["--fields", "--output is written to this file"]),
+        (
+            &["--profile-wear", new, "--worn-wheel", new],
+            ["--worn-wheel", "--profile-wear is written to this file"],
+        ),
+        (
+            &["--fields", new, "--worn-rail", new],
+            ["--worn-rail", "--fields is written to this file"],
+        ),
+    ] {
+        place.refused(&[&with_wheel[..], options].concat(), &parts);
+        assert!(!Path::new(new).exists(), "{options:?}");
+    }
+    // Each input as where the outputs go.
+    for (path, read_as) in [
+        (scenario, "the scenario"),
+        (profile, "wheel_profile"),
+        (preset, "--preset"),
+    ] {
+        let onto = Place {
+            scenario: place.scenario.clone(),
+            output: PathBuf::from(path),
+        };
+        let done = onto.simulate(&[&with_wheel[..], &["--preset", preset]].concat());
+        let message = String::from_utf8(done.stderr).unwrap();
+        assert_eq!(done.status.code(), Some(1), "{message}");
+        assert!(message.contains(&format!("--output {path}")), "{message}");
+        assert!(message.contains(&format!("reads this file ({read_as})")), "{message}");
+    }
+    for (path, content) in inputs {
+        assert_eq!(read_to_string(path).unwrap(), content);
+    }
+}
+
+/// Other names of a file, links of both kinds, are seen through; a device is no file that could be lost.
+#[cfg(unix)]
+#[test]
+fn links_are_seen_through() {
+    let place = Place::new("links", GOOD);
+    let [hard, soft] = ["hard.csv", "soft.csv"].map(|name| place.output.with_file_name(name));
+    for link in [&hard, &soft] {
+        let _ = remove_file(link);
+    }
+    std::fs::hard_link(&place.scenario, &hard).unwrap();
+    std::os::unix::fs::symlink(&place.scenario, &soft).unwrap();
+    for link in [hard, soft] {
+        place.refused(&["--fields", link.to_str().unwrap()], &["--fields", "(the scenario)"]);
+        assert_eq!(read_to_string(&place.scenario).unwrap(), GOOD);
+    }
+    let nowhere = Place {
+        output: PathBuf::from("/dev/null"),
         ..place
     };
-    let output = place.simulate(&[]);
-    assert_eq!(output.status.code(), Some(1));
-    assert!(
-        String::from_utf8(output.stderr)
-            .unwrap()
-            .contains("this is the scenario")
-    );
-    assert_eq!(read_to_string(&place.scenario).unwrap(), GOOD);
+    assert!(nowhere.simulate(&["--fields", "/dev/null"]).status.success());
+}
+
+/// Files that are written at the end are tried at the start, and left as they were; a folder that is not there is named.
+#[test]
+fn files_for_worn_profiles_that_cannot_be_written_are_refused_at_once() {
+    // So many steps that the test would not end if they were taken first.
+    let place = Place::new("unwritable_wear", "time,normal_load\n0,60e3\n1e5,60e3\n");
+    let missing = place.output.with_file_name("missing");
+    let [file, folder] = [missing.join("q.prw"), missing.with_file_name("folder.prw")];
+    create_dir_all(&folder).unwrap();
+    let old = place.output.with_file_name("old.prw");
+    write(&old, "as it was").unwrap();
+    let fresh = place.output.with_file_name("fresh.prw");
+    let [file, folder, old, fresh] = [&file, &folder, &old, &fresh].map(|path| path.to_str().unwrap());
+    for option in ["--profile-wear", "--worn-wheel", "--worn-rail"] {
+        let refusals = [
+            (file, &["missing/q.prw: the folder", "missing is not there"][..]),
+            (folder, &["folder.prw", "directory"]),
+        ];
+        for (path, parts) in refusals {
+            place.refused(&[&PROFILES[..], &[option, path]].concat(), &[&[option], parts].concat());
+        }
+    }
+    for path in [old, fresh] {
+        let others = ["--worn-wheel", path, "--worn-rail", file];
+        place.refused(&[&PROFILES[..], &others].concat(), &["--worn-rail"]);
+    }
+    assert_eq!(read_to_string(old).unwrap(), "as it was");
+    assert!(!Path::new(fresh).exists());
 }
 
 /// The inputs that line and patch may have.

@@ -1,10 +1,11 @@
 //! `wheelrail geometry`: where a wheelset's wheels touch the rails, over its lateral displacement, without forces.
 
+use crate::files::{self, Files};
 use crate::profile;
 use crate::table::{self, Table, heading};
 use clap::Args;
-use std::path::PathBuf;
-use wheelrail::contact_geometry::{Conicity, Dimensions, Jump, Sweep, Touch, Wheelset};
+use std::path::{Path, PathBuf};
+use wheelrail::contact_geometry::{Conicity, Dimensions, Jump, Pose, Sweep, Touch, Wheelset};
 use wheelrail::{Body, Profile, ProfileError};
 
 /// Options of `geometry`.
@@ -90,6 +91,9 @@ pub enum Error {
     /// A profile that is neither built in nor a file.
     #[error(transparent)]
     Named(#[from] profile::Error),
+    /// A file that is not to be written, or cannot be.
+    #[error(transparent)]
+    Files(#[from] files::Error),
     /// A table that cannot be written.
     #[error(transparent)]
     Table(#[from] table::Error),
@@ -103,10 +107,15 @@ const AMPLITUDE: f64 = 3e-3;
 impl Geometry {
     /// Runs the command.
     pub fn run(&self) -> Result<(), Error> {
+        self.check_files()?;
         let wheelset = self.wheelset()?;
         let sweep = Sweep::new(&wheelset, [self.from, self.to], self.step, self.yaw)?;
         let motion = sweep.motion();
         let conicity = |amplitude: f64| motion.as_ref().and_then(|motion| motion.conicity(amplitude));
+        let outlines = self.outlines.as_deref();
+        let outlines = outlines.map(|path| Ok::<_, Error>((path, wheelset.at(self.outlines_at, self.yaw)?)));
+        let outlines = outlines.transpose()?;
+        // Only now that nothing can be refused any more, so that a refusal leaves no file behind.
         let mut out = Table::open(self.output.as_deref(), headings())?;
         for pose in &sweep.poses {
             let conicity = conicity(pose.lateral.abs());
@@ -128,11 +137,28 @@ impl Geometry {
         if let Some(path) = &self.jumps {
             jumps(path, &sweep.jumps)?;
         }
-        if let Some(path) = &self.outlines {
-            self.write_outlines(path, &wheelset)?;
+        if let Some((path, pose)) = &outlines {
+            write_outlines(path, &wheelset, pose)?;
         }
         summary(conicity(AMPLITUDE), &sweep.jumps);
         Ok(())
+    }
+
+    /// Refuses files that would overwrite a profile or each other, or that cannot be written.
+    fn check_files(&self) -> Result<(), Error> {
+        let mut files = Files::default();
+        for (option, name) in [
+            ("--rail", Some(&self.rail)),
+            ("--wheel", Some(&self.wheel)),
+            ("--rail-right", self.rail_right.as_ref()),
+            ("--wheel-right", self.wheel_right.as_ref()),
+        ] {
+            files.reads(option, name.and_then(|name| profile::file(name)));
+        }
+        files.writes("--output", self.output.as_deref());
+        files.writes("--jumps", self.jumps.as_deref());
+        files.writes("--outlines", self.outlines.as_deref());
+        Ok(files.check()?)
     }
 
     fn wheelset(&self) -> Result<Wheelset, Error> {
@@ -165,21 +191,6 @@ impl Geometry {
         };
         let wheelset = Wheelset::new([&rail, &rail_right], [&wheel, &wheel_right], &dimensions)?;
         Ok(if self.level { wheelset.level() } else { wheelset })
-    }
-
-    fn write_outlines(&self, path: &std::path::Path, wheelset: &Wheelset) -> Result<(), Error> {
-        let pose = wheelset.at(self.outlines_at, self.yaw)?;
-        let names = ["side", "body"].map(str::to_owned).into_iter();
-        let columns = names.chain(["y", "z"].map(|name| heading(name, "m")));
-        let mut table = Table::open(Some(path), columns)?;
-        for (side, name) in SIDES.iter().enumerate() {
-            for (body, points) in ["rail", "wheel"].iter().zip(wheelset.outlines(&pose, side)) {
-                for point in points {
-                    table.write_named(&[name, body], point.into_iter())?;
-                }
-            }
-        }
-        Ok(table.finish()?)
     }
 }
 
@@ -229,8 +240,23 @@ fn headings() -> impl Iterator<Item = String> {
         .chain(rest.into_iter().map(named))
 }
 
+/// Writes the outlines of rails and wheels at a pose.
+fn write_outlines(path: &Path, wheelset: &Wheelset, pose: &Pose) -> Result<(), Error> {
+    let names = ["side", "body"].map(str::to_owned).into_iter();
+    let columns = names.chain(["y", "z"].map(|name| heading(name, "m")));
+    let mut table = Table::open(Some(path), columns)?;
+    for (side, name) in SIDES.iter().enumerate() {
+        for (body, points) in ["rail", "wheel"].iter().zip(wheelset.outlines(pose, side)) {
+            for point in points {
+                table.write_named(&[name, body], point.into_iter())?;
+            }
+        }
+    }
+    Ok(table.finish()?)
+}
+
 /// Table of the jumps.
-fn jumps(path: &std::path::Path, jumps: &[Jump]) -> Result<(), Error> {
+fn jumps(path: &Path, jumps: &[Jump]) -> Result<(), Error> {
     let columns = ["lateral_displacement", "wheel_from", "wheel_to", "rail_from", "rail_to"];
     let columns = std::iter::once("side".to_owned()).chain(columns.map(|name| heading(name, "m")));
     let mut table = Table::open(Some(path), columns)?;

@@ -5,7 +5,7 @@ use clap::Args;
 use serde::Deserialize;
 use std::fs;
 use std::io::{self, Write};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use toml::Value;
 use wheelrail::{Error as ModelError, Parameters};
 
@@ -119,15 +119,19 @@ pub fn set(parameters: &mut Parameters, name: &str) -> Result<String, Error> {
     Ok(preset.title)
 }
 
+/// Path of the file that a name means, if it means one.
+pub fn file(name: &str) -> Option<&Path> {
+    let is_shipped = SHIPPED.iter().any(|(shipped, _)| *shipped == name);
+    (!is_shipped && name.ends_with(".toml")).then(|| Path::new(name))
+}
+
 fn text(name: &str) -> Result<String, Error> {
     if let Some((_, text)) = SHIPPED.iter().find(|(shipped, _)| *shipped == name) {
         return Ok((*text).to_owned());
     }
-    if !name.ends_with(".toml") {
-        return Err(Error::Unknown { name: name.to_owned() });
-    }
-    fs::read_to_string(name).map_err(|source| Error::File {
-        path: PathBuf::from(name),
+    let path = file(name).ok_or_else(|| Error::Unknown { name: name.to_owned() })?;
+    fs::read_to_string(path).map_err(|source| Error::File {
+        path: path.to_owned(),
         source,
     })
 }

@@ -1,5 +1,6 @@
 //! `wheelrail profile`: the profiles that are built in, and those of files, looked at or converted.
 
+use crate::files::{self, Files};
 use crate::names::did_you_mean;
 use crate::table::{self, Table, heading};
 use clap::{Args, ValueEnum};
@@ -86,6 +87,9 @@ pub enum Error {
         /// Names that may be meant.
         hint: String,
     },
+    /// A file that is not to be written, or cannot be.
+    #[error(transparent)]
+    Files(#[from] files::Error),
     /// A table that cannot be written.
     #[error(transparent)]
     Table(#[from] table::Error),
@@ -136,6 +140,11 @@ pub fn is_built_in(name: &str) -> bool {
         .any(|known| known.eq_ignore_ascii_case(name))
 }
 
+/// Path of the file that a name means, if none is built in of this name.
+pub fn file(name: &str) -> Option<&Path> {
+    (!is_built_in(name)).then(|| Path::new(name))
+}
+
 fn either(name: &str, options: &ReadOptions) -> Result<Profile, Error> {
     if is_built_in(name) {
         let given = [
@@ -176,6 +185,7 @@ impl Options {
             }
             return Ok(());
         };
+        self.check_files(name)?;
         let body = self.body.map(|body| match body {
             BodyName::Rail => Body::Rail,
             BodyName::Wheel => Body::Wheel,
@@ -218,6 +228,16 @@ impl Options {
             }
             (path, _) => write(path.as_deref(), &profile),
         }
+    }
+
+    /// Refuses an output that would overwrite what the command reads, or that cannot be written.
+    fn check_files(&self, name: &str) -> Result<(), Error> {
+        let mut files = Files::default();
+        files.reads("the profile", file(name));
+        files.reads("--worn-by", self.worn_by.as_deref());
+        files.reads("--against", self.against.as_deref().and_then(file));
+        files.writes("--output", self.output.as_deref());
+        Ok(files.check()?)
     }
 
     /// Writes the measures of a wheel, and its wear where a new profile is given: to be read, or as CSV where a file is given.

@@ -1,12 +1,13 @@
 //! `wheelrail simulate`: a scenario from CSV through the model, without FMI.
 
+use crate::files::{self, Files};
 use crate::progress::Progress;
 use crate::table::{self, Table, heading};
-use crate::{fields, files, names, preset, scenario, wear};
+use crate::{fields, names, preset, scenario, wear};
 use clap::Args;
-use std::fs;
 use std::path::PathBuf;
 use std::sync::Arc;
+use wheelrail::parameters::ProfileSource;
 use wheelrail::signals::{InputSignal, OutputSignal};
 use wheelrail::simulation::{self, Point, Schedule};
 use wheelrail::{ContactModel, Error as ModelError, INPUTS, Model, OUTPUTS, Outputs, Parameters, Simulation};
@@ -61,16 +62,9 @@ pub enum Error {
     /// A file that does not serve as a scenario.
     #[error(transparent)]
     Scenario(#[from] Box<scenario::Error>),
-    /// A file for two things.
-    #[error("{option} {path}: this is {other}")]
-    OneFile {
-        /// The option that names it.
-        option: &'static str,
-        /// The file.
-        path: PathBuf,
-        /// Other purpose that the file serves.
-        other: &'static str,
-    },
+    /// A file that is not to be written, or cannot be.
+    #[error(transparent)]
+    Files(#[from] files::Error),
     /// A communication step that cannot be.
     #[error("--step {step}: the communication step is a positive, finite number of seconds")]
     Step {
@@ -128,8 +122,8 @@ pub enum Error {
 impl Simulate {
     /// Runs the command.
     pub fn run(&self) -> Result<(), Error> {
-        self.check_files()?;
         let mut parameters = self.parameters()?;
+        self.check_files(&parameters)?;
         let start_value = Parameters::default().largest_load;
         let follows = parameters.largest_load == start_value && !self.sets("largest_load");
         let schedule = scenario::read(&self.scenario, &mut parameters, follows).map_err(Box::new)?;
@@ -151,7 +145,9 @@ impl Simulate {
         // Only now that nothing can be refused any more, so that a refusal leaves no file behind.
         let contact_model = simulation.model.parameters().contact_model;
         let columns = Columns::of(contact_model);
-        let (mut table, mut fields) = self.tables(&columns, contact_model)?;
+        let mut table = Table::create(&self.output, columns.headings())?;
+        let fields = self.fields.as_deref();
+        let mut fields = fields.map(|path| fields::create(path, contact_model)).transpose()?;
         columns.write(&mut table, &start, simulation.outputs())?;
 
         let count = steps.len();
@@ -222,43 +218,27 @@ impl Simulate {
         Ok(())
     }
 
-    /// The tables of results, or neither of them.
-    fn tables(&self, columns: &Columns, contact_model: ContactModel) -> Result<(Table, Option<Table>), Error> {
-        let table = Table::create(&self.output, columns.headings())?;
-        let create = |path| fields::create(path, contact_model);
-        match self.fields.as_deref().map(create).transpose() {
-            Ok(fields) => Ok((table, fields)),
-            Err(error) => {
-                // What cannot be removed either is left; the refusal is what matters.
-                let _ = fs::remove_file(&self.output);
-                Err(error.into())
+    /// Refuses files of results that would overwrite what the run reads or each other, or that cannot be written.
+    fn check_files(&self, parameters: &Parameters) -> Result<(), Error> {
+        let mut files = Files::default();
+        files.reads("the scenario", Some(&self.scenario));
+        for name in &self.preset {
+            files.reads("--preset", preset::file(name));
+        }
+        for (name, text) in [
+            ("rail_profile", &parameters.rail_profile),
+            ("wheel_profile", &parameters.wheel_profile),
+        ] {
+            if let ProfileSource::File(path) = ProfileSource::of(name, text).map_err(Error::Parameter)? {
+                files.reads(name, Some(&path));
             }
         }
-    }
-
-    /// Refuses one file for two things: the scenario would be lost.
-    fn check_files(&self) -> Result<(), Error> {
-        let refused = |option, path: &PathBuf, other| {
-            let path = path.clone();
-            Err(Error::OneFile { option, path, other })
-        };
-        if files::are_one(&self.output, &self.scenario) {
-            return refused("--output", &self.output, "the scenario");
-        }
+        files.writes("--output", Some(&self.output));
+        files.writes("--fields", self.fields.as_deref());
         for (option, path) in self.files_of_wear() {
-            match path {
-                Some(path) if files::are_one(path, &self.output) => {
-                    return refused(option, path, "where the outputs go");
-                }
-                Some(path) if files::are_one(path, &self.scenario) => return refused(option, path, "the scenario"),
-                _ => {}
-            }
+            files.writes(option, path.as_deref());
         }
-        match &self.fields {
-            Some(path) if files::are_one(path, &self.output) => refused("--fields", path, "where the outputs go"),
-            Some(path) if files::are_one(path, &self.scenario) => refused("--fields", path, "the scenario"),
-            _ => Ok(()),
-        }
+        Ok(files.check()?)
     }
 
     /// Refuses a step that is short beyond any sense: the run would not end.
