@@ -243,6 +243,87 @@ fn what_does_not_belong_together_is_refused() {
     assert!(message.contains("missing.fmu"), "{message}");
 }
 
+/// Whatever goes into the archive is not written over by it.
+#[test]
+fn no_file_is_written_over() {
+    let folder = folder("written_over");
+    let rail = folder.join("rail.prr");
+    write(&rail, "a rail").unwrap();
+    let own = folder.join("own.so");
+    let archive = packed(&folder, "first.fmu", &[]);
+    let [rail, own, archive] = [&rail, &own, &archive].map(|path| path.to_str().unwrap());
+    let picture = "modelDescription/model.png";
+    let notice = "modelDescription/licenses/license.txt";
+    for (options, output, other) in [
+        (&["--rail-profile", rail][..], rail, "--rail-profile"),
+        (&["--merge", archive], archive, "--merge"),
+        (&[], own, "--library"),
+        (&[], picture, "--description"),
+        (&[], notice, "--description"),
+    ] {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(output);
+        // The library is there from the packing above on.
+        let before = read(&path).unwrap();
+        let done = pack(&folder, &[options, &["--output", output]].concat());
+        let message = String::from_utf8(done.stderr).unwrap();
+        assert_eq!(done.status.code(), Some(1), "{message}");
+        let words = format!("--output {output}: the command reads this file ({other})");
+        assert!(message.contains(&words), "{message}");
+        assert!(read(&path).unwrap() == before, "{output} has changed");
+    }
+}
+
+/// Without `--library` it is that beside the program, as cargo leaves it, or that in `../library`, as `make` does; of two the one
+/// that was built last.
+#[test]
+fn the_library_is_found_where_the_build_puts_it() {
+    let folder = folder("found");
+    let [release, library] = ["release", "library"].map(|name| folder.join(name));
+    for folder in [&release, &library] {
+        let _ = std::fs::remove_dir_all(folder);
+        std::fs::create_dir_all(folder).unwrap();
+    }
+    // A link, as a copy could not be run while another test starts a program.
+    let program = release.join(format!("wheelrail{}", std::env::consts::EXE_SUFFIX));
+    std::fs::hard_link(env!("CARGO_BIN_EXE_wheelrail"), &program).unwrap();
+    let name = super::library_path().file_name().unwrap().to_owned();
+    let [beside, made] = [&release, &library].map(|folder| folder.join(&name));
+    let archive = folder.join("found.fmu");
+    let pack_in = |folder: &Path| {
+        let _ = std::fs::remove_file(&archive);
+        let mut command = Command::new(&program);
+        command.current_dir(folder).arg("pack").arg("--output").arg(&archive);
+        let done = command.output().unwrap();
+        assert_eq!(done.status.success(), archive.exists());
+        String::from_utf8(done.stderr).unwrap()
+    };
+    let sources = Path::new(env!("CARGO_MANIFEST_DIR"));
+
+    let message = pack_in(sources);
+    for part in [beside.to_str().unwrap(), made.to_str().unwrap(), "--library"] {
+        assert!(message.contains(part), "{message} lacks {part}");
+    }
+    copy(super::library_path(), &made).unwrap();
+    pack_in(sources);
+    assert_eq!(binaries(&archive), [own()]);
+    // One of older sources beside the program, and then a newer one.
+    write(&beside, "no GUID").unwrap();
+    let old = File::options().write(true).open(&beside).unwrap();
+    old.set_modified(std::time::UNIX_EPOCH).unwrap();
+    pack_in(sources);
+    assert_eq!(binaries(&archive), [own()]);
+    old.set_modified(std::time::SystemTime::now() + std::time::Duration::from_secs(60))
+        .unwrap();
+    let message = pack_in(sources);
+    assert!(message.contains(beside.to_str().unwrap()), "{message}");
+
+    // As installed, far from the sources.
+    let message = pack_in(&folder);
+    for part in ["--description modelDescription", "sources", "resources/my.prr"] {
+        assert!(message.contains(part), "{message} lacks {part}");
+    }
+}
+
 #[test]
 fn a_platform_is_named_before_its_file() {
     let folder = folder("usage");

@@ -3,6 +3,7 @@
 mod error;
 
 use crate::binary::{Binary, Platform};
+use crate::files::Files;
 use crate::standard::Standard;
 use clap::Args;
 use std::collections::{BTreeMap, BTreeSet};
@@ -19,10 +20,11 @@ pub use error::Error;
 /// Options of `pack`.
 #[derive(Args)]
 pub struct Pack {
-    /// The shared library of this platform.
-    #[arg(long, value_name = "FILE", default_value_os_t = default_library())]
-    library: PathBuf,
-    /// The folder with modelDescription.xml, documentation/, licenses/ and model.png.
+    /// The shared library of this platform; if not told, that beside this program or in the folder library beside its folder: the
+    /// one that was built last.
+    #[arg(long, value_name = "FILE")]
+    library: Option<PathBuf>,
+    /// The folder with modelDescription.xml, documentation/, licenses/ and model.png, which is among the sources.
     #[arg(long, value_name = "FOLDER", default_value = "modelDescription")]
     description: PathBuf,
     /// The version of FMI.
@@ -47,6 +49,8 @@ pub struct Pack {
 
 /// Entry of the archive that says what compiled each library.
 const BUILD: &str = "documentation/build.txt";
+/// Name of the file that FMI 3.0 has beside the description.
+const TERMINALS: &str = "terminalsAndIcons.xml";
 const NOT_RECORDED: &str = "not recorded";
 
 /// Name in the archive and content.
@@ -55,8 +59,14 @@ type Entries = BTreeMap<String, Vec<u8>>;
 impl Pack {
     /// Runs the command.
     pub fn run(&self) -> Result<(), Error> {
-        let entries = self.entries()?;
+        if !self.description.is_dir() {
+            let path = self.description.clone();
+            return Err(Error::NoDescription { path });
+        }
+        let library = self.library.clone().map_or_else(default_library, Ok)?;
         let path = self.output.clone().unwrap_or_else(|| self.fmi.default_output());
+        self.check_files(&library, &path)?;
+        let entries = self.entries(&library)?;
         if let Some(folder) = path.parent() {
             fs::create_dir_all(folder).map_err(|source| file_error(folder, source))?;
         }
@@ -70,7 +80,40 @@ impl Pack {
         Ok(())
     }
 
-    fn entries(&self) -> Result<Entries, Error> {
+    /// Refuses an archive that would overwrite something that is packed into it.
+    fn check_files(&self, library: &Path, output: &Path) -> Result<(), Error> {
+        let mut files = Files::default();
+        files.reads("--library", Some(library));
+        for (_, path) in &self.binary {
+            files.reads("--binary", Some(path));
+        }
+        for (option, paths) in [
+            ("--merge", &self.merge),
+            ("--rail-profile", &self.rail_profile),
+            ("--wheel-profile", &self.wheel_profile),
+        ] {
+            for path in paths {
+                files.reads(option, Some(path));
+            }
+        }
+        let described = self.description.join(self.fmi.folder());
+        for path in [
+            self.description.join("model.png"),
+            described.join("modelDescription.xml"),
+            described.join(TERMINALS),
+        ] {
+            files.reads("--description", Some(&path));
+        }
+        for folder in ["documentation", "licenses"] {
+            for (_, path) in files_of(&self.description.join(folder), "")? {
+                files.reads("--description", Some(&path));
+            }
+        }
+        files.writes("--output", Some(output));
+        Ok(files.check_apart()?)
+    }
+
+    fn entries(&self, library: &Path) -> Result<Entries, Error> {
         let folder = self.description.join(self.fmi.folder());
         let generated = self.fmi.model_description()?;
         let xml = fresh(&folder.join("modelDescription.xml"), &generated)?;
@@ -87,9 +130,8 @@ impl Pack {
                 entries.insert("model.png".to_owned(), picture);
             }
             Standard::Fmi3 => {
-                const FILE: &str = "terminalsAndIcons.xml";
-                let terminals = fresh(&folder.join(FILE), &terminals_and_icons()?)?;
-                entries.insert(format!("terminalsAndIcons/{FILE}"), terminals);
+                let terminals = fresh(&folder.join(TERMINALS), &terminals_and_icons()?)?;
+                entries.insert(format!("terminalsAndIcons/{TERMINALS}"), terminals);
                 entries.insert("terminalsAndIcons/icon.png".to_owned(), picture);
             }
         }
@@ -101,16 +143,16 @@ impl Pack {
                 add_profile(&mut entries, name, path)?;
             }
         }
-        let libraries = self.libraries(self.fmi.token_of(&generated), &xml)?;
+        let libraries = self.libraries(library, self.fmi.token_of(&generated), &xml)?;
         entries.insert(BUILD.to_owned(), libraries.build_lines().into_bytes());
         entries.extend(libraries.entries);
         entries.insert("modelDescription.xml".to_owned(), xml);
         Ok(entries)
     }
 
-    fn libraries(&self, guid: &str, xml: &[u8]) -> Result<Libraries, Error> {
+    fn libraries(&self, library: &Path, guid: &str, xml: &[u8]) -> Result<Libraries, Error> {
         let mut libraries = Libraries::new(self.fmi);
-        let own = (self.fmi.own_platform(), self.library.clone());
+        let own = (self.fmi.own_platform(), library.to_owned());
         let named = std::iter::once(&own).chain(&self.binary);
         let named = named.map(|(platform, path)| Ok((libraries.platform(platform, path)?, path)));
         for (platform, path) in named.collect::<Result<Vec<_>, Error>>()? {
@@ -260,16 +302,25 @@ fn read_archive(path: &Path) -> Result<Entries, Error> {
 
 /// Adds the files of a folder and of the folders in it.
 fn add_folder(entries: &mut Entries, folder: &Path, prefix: &str) -> Result<(), Error> {
+    for (name, path) in files_of(folder, prefix)? {
+        entries.insert(name, read(&path)?);
+    }
+    Ok(())
+}
+
+/// Files of a folder and of the folders in it, with their names in the archive.
+fn files_of(folder: &Path, prefix: &str) -> Result<Vec<(String, PathBuf)>, Error> {
+    let mut files = Vec::new();
     for item in fs::read_dir(folder).map_err(|source| file_error(folder, source))? {
         let item = item.map_err(|source| file_error(folder, source))?;
         let (path, name) = (item.path(), item.file_name().to_string_lossy().into_owned());
         if path.is_dir() {
-            add_folder(entries, &path, &format!("{prefix}{name}/"))?;
+            files.extend(files_of(&path, &format!("{prefix}{name}/"))?);
         } else if !name.starts_with('.') {
-            entries.insert(format!("{prefix}{name}"), read(&path)?);
+            files.push((format!("{prefix}{name}"), path));
         }
     }
-    Ok(())
+    Ok(files)
 }
 
 /// Adds a profile among the resources, under the name of its file.
@@ -342,14 +393,24 @@ fn archive_error(path: &Path, source: zip::result::ZipError) -> Error {
     }
 }
 
-/// Path where `cargo build --release --lib --no-default-features --features fmi` leaves the library.
-fn default_library() -> PathBuf {
+/// Path of the library that belongs to this program: beside it, where cargo leaves it, or in `../library`, where `make` does.
+/// Where there are both, the one that was built last: the other one is of older sources.
+fn default_library() -> Result<PathBuf, Error> {
     let name = format!(
         "{}wheelrail{}",
         std::env::consts::DLL_PREFIX,
         std::env::consts::DLL_SUFFIX
     );
-    Path::new("target/release").join(name)
+    let program = std::env::current_exe().map_err(|source| file_error(Path::new("wheelrail"), source))?;
+    let beside = program.with_file_name(&name);
+    let folder = program.parent().and_then(Path::parent).unwrap_or(Path::new(""));
+    let made = folder.join("library").join(&name);
+    let built = |path: &&PathBuf| fs::metadata(path).and_then(|found| found.modified()).ok();
+    let there = [&made, &beside].into_iter().filter(|path| path.is_file());
+    match there.max_by_key(built) {
+        Some(path) => Ok(path.clone()),
+        None => Err(Error::LibraryNotFound { beside, made }),
+    }
 }
 
 fn platform_and_file(text: &str) -> Result<(String, PathBuf), String> {

@@ -9,6 +9,27 @@ pub enum Error {
     /// The XML serializer.
     #[error("the model description could not be written as XML: {0}")]
     Xml(#[from] quick_xml::SeError),
+    /// An archive that is not to be written.
+    #[error(transparent)]
+    Files(#[from] crate::files::Error),
+    /// A folder of the sources that is not there: with an installed command line it never is.
+    #[error(
+        "--description {path}: this folder is not there; an FMU is packed from wheelrail's sources: run this in a clone of them, or name its folder modelDescription. To put a profile into an FMU that is there, as the Python package's (wheelrail.fmu_path()), add its file to a copy's folder resources: `zip my.fmu resources/my.prr`"
+    )]
+    NoDescription {
+        /// The folder.
+        path: PathBuf,
+    },
+    /// A library that is not where it is looked for.
+    #[error(
+        "there is no shared library for the FMU, neither {beside} nor {made}: `make library` in a clone of wheelrail builds it, or name one with --library"
+    )]
+    LibraryNotFound {
+        /// Path beside the program.
+        beside: PathBuf,
+        /// Path where `make` puts it.
+        made: PathBuf,
+    },
     /// A file that cannot be read or written.
     #[error("{path}: {source}")]
     File {
