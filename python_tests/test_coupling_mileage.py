@@ -3,9 +3,11 @@
 import importlib.util
 import json
 import os
+import pickle
 import re
 import subprocess
 import sys
+from contextlib import nullcontext
 from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
@@ -15,10 +17,10 @@ import mileage
 import numpy as np
 import pytest
 from curve_equilibrium import PULL, PULL_UNIT
-from curve_vehicle import VEHICLE
+from curve_vehicle import VEHICLE, WHEELS
 from dask_runs import local_file, read_component
-from helpers import FMU3, wheelrail
-from mileage_bogie import in_equilibrium
+from helpers import FMU3, REPOSITORY, wheelrail
+from mileage_bogie import NoEquilibriumError, in_equilibrium, no_equilibrium
 from mileage_line import (
     STRAIGHT,
     BadInputError,
@@ -177,6 +179,57 @@ def test_killed_run_goes_on(run, tmp_path, killed_half_way):
         for path in (state_file(folder, step), folder / f"classes_{step:04d}.parquet"):
             if path.exists():
                 assert (tmp_path / "broken" / path.name).read_bytes() == path.read_bytes(), path.name
+
+
+def test_program_of_the_page(tmp_path):
+    """Line and program of the page run as they stand there, but for a kilometre alone."""
+    page = (REPOSITORY / "docs" / "couplings" / "mileage.md").read_text()
+    (line,), (program,) = (re.findall(rf"```{kind}\n(.*?)```", page, re.DOTALL) for kind in ("text", "python"))
+    assert program.count("distance=50_000e3") == 1
+    (tmp_path / "line.csv").write_text(line)
+    short = program.replace("distance=50_000e3", "distance=1e3, samples=1, samples_straight=1")
+    (tmp_path / "mine.py").write_text(short)
+    (tmp_path / "studies").symlink_to(REPOSITORY / "studies")
+    done = subprocess.run([sys.executable, "mine.py"], cwd=tmp_path, capture_output=True, text=True, timeout=600)
+    assert done.returncode == 0, done.stderr
+    assert "step 1: 1 of 1 km" in done.stdout
+    assert read_state(state_file(tmp_path / "results" / "mine", 1)).depth.max() > 0.0
+
+
+class Workers:
+    """A client of Dask whose workers are this process: what they are given and return goes through pickle."""
+
+    def scatter(self, data, broadcast):
+        """Hand out data."""
+        return data
+
+    def submit(self, function, *arguments, pure):
+        """Call at once; an error would be logged at length by Dask."""
+        return pickle.loads(pickle.dumps(function(*arguments)))
+
+    def gather(self, results):
+        """Return them."""
+        return results
+
+
+def test_class_without_an_equilibrium(monkeypatch, tmp_path, component):
+    """A worker returns the error, the run raises it, and the command line says it in one line."""
+
+    def without(_fmu, _settings, _wheels, curve, _starts):
+        raise no_equilibrium(curve, (0.0, 0.0), 5e3)
+
+    monkeypatch.setattr("mileage_bogie.in_equilibrium", without)
+    words = r"^straight, \d+ km/h, cant 0 mm, rails off by 0.0 and 0.0 mm: no equilibrium found, 5000 N are left over$"
+    for client in (Workers(), None):
+        with pytest.raises(NoEquilibriumError, match=words):
+            march(client, mileage.small_plan(), tmp_path, component)
+    assert len(read_state(state_file(tmp_path, 0)).depth) == len(WHEELS)
+    monkeypatch.setattr(mileage, "client_for", lambda *_: nullcontext(Workers()))
+    monkeypatch.setattr(mileage, "WORK", tmp_path)
+    monkeypatch.setattr(sys, "argv", ["mileage", "--small"])
+    with pytest.raises(SystemExit) as caught:
+        mileage.main()
+    assert re.match(words.replace("^", "^mileage: "), caught.value.code)
 
 
 def test_mirrored_line_mirrors_the_wheels(run, component, tmp_path):

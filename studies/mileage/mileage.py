@@ -22,7 +22,7 @@ import pyarrow.parquet as pq
 from curve_vehicle import Wheel
 from dask_runs import add_options, client_for, is_done, read_component, write_table
 from helpers import FMU3, RESULTS, markdown_table, write_tables
-from mileage_bogie import rates
+from mileage_bogie import NoEquilibriumError, rates
 from mileage_line import BadInputError, main_line, read_line, read_vehicle, short_line, straight_line, wrong
 from mileage_march import Plan, march, read_state, state_file, to_compute, weighted
 from mileage_pictures import draw_curves, draw_depths, draw_laws, draw_measures, draw_profiles
@@ -274,17 +274,20 @@ def main():
             # What is wrong with either is said before anything is computed.
             NewWheel.of(plan.wheel)
             Wheel("left", FMU3, **plan.parameters).close()
-    except (BadInputError, ValueError, FileNotFoundError) as error:
+    except (ValueError, OSError) as error:
         sys.exit(f"mileage: {error}")
     name = chosen.name or ("small" if chosen.small else "own")
     if chosen.fresh:
         shutil.rmtree(WORK if plan is None else WORK / name, ignore_errors=True)
     component = read_component(FMU3)
-    with client_for(chosen.scheduler, chosen.workers, MODULES) as client:
-        if plan is None:
-            study(client, component)
-        else:
-            own_run(client, component, plan, name, limits)
+    try:
+        with client_for(chosen.scheduler, chosen.workers, MODULES) as client:
+            if plan is None:
+                study(client, component)
+            else:
+                own_run(client, component, plan, name, limits)
+    except NoEquilibriumError as error:
+        sys.exit(f"mileage: {error}")
 
 
 if __name__ == "__main__":

@@ -242,12 +242,13 @@ class WornBogie(Equilibrium):
 class NoEquilibriumError(RuntimeError):
     """Newton's method found no steady curving."""
 
-    def __init__(self, curve, offset, left):
-        """Say where, and what force is left [N]."""
-        super().__init__(
-            f"{curve.name}, {3.6 * curve.speed:.0f} km/h, cant {1e3 * curve.cant:.0f} mm, rails off by"
-            f" {1e3 * offset[0]:.1f} and {1e3 * offset[1]:.1f} mm: no equilibrium found, {left:.0f} N are left over"
-        )
+
+def no_equilibrium(curve, offset, left):
+    """Return the error that says where, and what force is left [N]; with a text alone, so that it can be pickled."""
+    return NoEquilibriumError(
+        f"{curve.name}, {3.6 * curve.speed:.0f} km/h, cant {1e3 * curve.cant:.0f} mm, rails off by"
+        f" {1e3 * offset[0]:.1f} and {1e3 * offset[1]:.1f} mm: no equilibrium found, {left:.0f} N are left over"
+    )
 
 
 @dataclass(frozen=True)
@@ -298,7 +299,7 @@ def in_equilibrium(fmu, settings, wheels, curve, starts):
     left, _, bogie.unknown = min(tries, key=lambda found: found[0])
     if left > ACCEPTED_MIDDLE:
         if starts is None:
-            raise NoEquilibriumError(curve, (0.0, 0.0), left)
+            raise no_equilibrium(curve, (0.0, 0.0), left)
         bogie.unknown = starts.for_wheels(0, wheels, settings.vehicle.wheel_radius)
     return bogie, left, sum(iterations for _, iterations, _ in tries)
 
@@ -376,10 +377,18 @@ def rates(component, digest, settings, wheels, curve, starts):
     bogie.close()
     reached = len(lefts)
     if 2 * reached < count:
-        raise NoEquilibriumError(curve, (0.0, 0.0), left)
+        raise no_equilibrium(curve, (0.0, 0.0), left)
     areas = [area / reached for area in areas]
     found = Starts(tuple(tuple(unknown.tolist()) for unknown in unknowns), depths_of(wheels))
     counts = {"missed": count - reached, "held": held, "iterations": iterations}
     seconds = {what: spent - before[what] for what, spent in TimedWheel.spent.items()}
     seconds["all"] = time.perf_counter() - began
     return {"area": areas, "rows": rows, "starts": found, "left": max(lefts), "seconds": seconds, **counts}
+
+
+def rates_or_error(*given):
+    """Return what `rates` does, or its error where there is no equilibrium: Dask would log at length what is raised."""
+    try:
+        return rates(*given)
+    except NoEquilibriumError as error:
+        return error

@@ -18,7 +18,7 @@ import numpy as np
 import pyarrow.parquet as pq
 from curve_vehicle import VEHICLE, WHEELS, Vehicle
 from dask_runs import is_done, stamp_of, write_table
-from mileage_bogie import Settings, Starts, rates
+from mileage_bogie import NoEquilibriumError, Settings, Starts, rates_or_error
 from mileage_line import by_size, is_its_own_mirror, named, wrong
 from mileage_wheels import NewWheel, smoothed
 
@@ -148,6 +148,11 @@ def march(client, plan, folder, component, report=say):
         The FMU as data and its digest.
     report
         Called with a line after each step.
+
+    Raises
+    ------
+    NoEquilibriumError
+        In a class of the line there is no steady curving; what was computed before is kept.
     """
     data, digest = component
     folder.mkdir(parents=True, exist_ok=True)
@@ -169,9 +174,12 @@ def march(client, plan, folder, component, report=say):
         pairs = zip(classes.values(), starts, strict=True)
         arguments = [(digest, plan.settings(), wheels, curve, start) for curve, start in pairs]
         if client:
-            results = client.gather([client.submit(rates, shared, *given, pure=False) for given in arguments])
+            results = client.gather([client.submit(rates_or_error, shared, *given, pure=False) for given in arguments])
         else:
-            results = [rates(shared, *given) for given in arguments]
+            results = [rates_or_error(shared, *given) for given in arguments]
+        for result in results:
+            if isinstance(result, NoEquilibriumError):
+                raise result
         raw = weighted(plan, classes.values(), results)
         rate = np.stack([smoothed(area, new.cell, plan.smoothing) for area in raw])
         growth = np.stack([new.depth_of(area, depth) for area, depth in zip(rate, progress.depth, strict=True)])
