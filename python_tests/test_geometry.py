@@ -47,6 +47,59 @@ def test_points_and_files(tmp_path):
         package.Profile.from_points(exact["y"], exact["z"], body="rail")
 
 
+def test_what_is_refused_names_what_was_given(tmp_path, monkeypatch):
+    """Words of the package, of no library below it; what the user gave, and no file that was made for the command."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "wheel.csv").write_text("y,z\n")
+    wheel, rail = package.Profile("S1002"), package.Profile("60E1", inclination=0.025)
+    points = package.Profile.from_points(rail.points["y"], rail.points["z"], body="rail")
+    assert repr(points) == "<Profile points: rail, given points>"
+    through, profile = package.Profile.from_points, package.Profile
+    for call, words in [
+        (lambda: through([0, 1, 2], [0, 1], body="rail"), "y has 3 values and z 2: as many of each are needed"),
+        (lambda: through([0, 1, np.nan], [0, 1, 2], body="rail"), r"y\[2\] = nan: a finite number is needed"),
+        (lambda: through(["a"], [0], body="rail"), "y: a list of numbers is needed"),
+        (lambda: through([0, 1, 2], [0, 1, 2], body="rail"), "^points: this is no rail"),
+        (lambda: through([0, 1], [0, 1], body="rial"), "body = 'rial': choose one of rail, wheel; did you mean rail"),
+        (lambda: wheel.worn_by([0.1, 0.11], [0, 1e-3, 0]), "depth has 3 values and arc_length 2: one for each place"),
+        (lambda: wheel.worn_by([[0.1]], 0.0), "arc_length has 2 dimensions: a list of numbers is needed"),
+        (lambda: wheel.worn_by([0.1, 0.2], [0.0, np.inf]), r"depth\[1\] = inf: a finite number is needed"),
+        (lambda: profile("S1002", body="weel"), "body = 'weel': choose one of rail, wheel; did you mean wheel"),
+        (lambda: profile("wheel.csv", unit="ft"), "unit = 'ft': choose one of m, mm, in"),
+        (lambda: profile("wheel.csv", part=0), "part = 0: 1 or more is needed"),
+        (lambda: profile("wheel.csv", smoothing=np.inf), "smoothing = inf: a finite number is needed"),
+        (lambda: rail.measures(), "^60E1 is the profile of a rail; a wheel is needed"),
+        (lambda: points.measures(), "^points is the profile of a rail; a wheel is needed"),
+        (lambda: wheel.worn_against(rail), "^60E1 is the profile of a rail; a wheel is needed"),
+        (lambda: package.contact_geometry(points, points), "^points is the profile of a rail; a wheel is needed"),
+    ]:
+        with pytest.raises(ValueError, match=words):
+            call()
+    for number in (lambda: profile("wheel.csv", part=1.5), lambda: package.contact_geometry(step="a")):
+        with pytest.raises(TypeError, match="number is needed"):
+            number()
+
+
+def test_files_that_cannot_be_opened(tmp_path, monkeypatch):
+    """Errors of the system are those of Python, with the file; nothing is said of the profile beside."""
+    monkeypatch.chdir(tmp_path)
+    wheel = package.Profile("S1002")
+    for call in (
+        lambda: wheel.write("nodir/x.prw"),
+        lambda: package.Profile("nodir/x.prw"),
+        lambda: wheel.worn_against("nodir/x.prw"),
+        lambda: package.contact_geometry("60E1", "nodir/x.prw"),
+    ):
+        with pytest.raises(FileNotFoundError, match=r"^\[Errno 2\] No such file or directory: 'nodir/x.prw'$"):
+            call()
+    for call in (lambda: wheel.write(tmp_path), lambda: package.Profile(tmp_path)):
+        with pytest.raises(IsADirectoryError, match=str(tmp_path)):
+            call()
+    wheel.write("x.prw")
+    wheel.write("x.prw")
+    assert package.Profile("x.prw").worn_area(wheel) == pytest.approx(0.0, abs=1e-11)
+
+
 def test_a_wheel_wears_and_is_measured(tmp_path):
     """Flange of S1002 as EN 13715 has it; a hollow of its tread and a thinner flange, in measures, area and file."""
     new = package.Profile("S1002")

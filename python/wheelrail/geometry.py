@@ -1,5 +1,7 @@
 """Profiles of wheels and rails, and where a wheelset touches its track, by the command line `wheelrail`."""
 
+import errno
+import numbers
 import os
 import re
 import shutil
@@ -17,11 +19,17 @@ import numpy as np
 import pandas as pd
 
 from .archive import PACKAGE, AnyPath
+from .arguments import finite
 from .units import heading
+from .variables import near
 
 NAME = "wheelrail.exe" if os.name == "nt" else "wheelrail"
 # Names of a file, by which the command knows what a profile is: with y to the field side and z as the format has it.
 ENDINGS = {"rail": ".prr", "wheel": ".prw"}
+
+# Options of a profile that are one of a few words.
+CHOICES = {"body": ("rail", "wheel"), "unit": ("m", "mm", "in", "inch")}
+CHOICES |= {"y_to": ("field", "gauge"), "z": ("up", "down")}
 
 # Numbers that `contact_geometry` takes by name.
 DIMENSIONS = ["gauge", "gauge_depth", "rail_inclination", "flange_back_distance", "flange_back_position"]
@@ -50,8 +58,15 @@ def command_path() -> Path:
     return Path(found)
 
 
-def run(*arguments: str) -> "subprocess.CompletedProcess[str]":
+def run(*arguments: str, named: Mapping[Path, str] | None = None) -> "subprocess.CompletedProcess[str]":
     """Call the command: its result on the standard output, and what it says beside on the standard error.
+
+    Parameters
+    ----------
+    *arguments
+        What it is given.
+    named
+        What errors call the files that were made for the call, as the user knows nothing of them.
 
     Raises
     ------
@@ -60,7 +75,11 @@ def run(*arguments: str) -> "subprocess.CompletedProcess[str]":
     """
     done = subprocess.run([command_path(), *arguments], capture_output=True, text=True, encoding="utf-8", check=False)
     if done.returncode != 0:
-        raise ValueError(done.stderr.strip().removeprefix("wheelrail: ") or f"{arguments[0]}: {done.returncode}")
+        # Before the error it may have said what the profile is.
+        text = done.stderr.strip().split("wheelrail: ")[-1] or f"{arguments[0]}: {done.returncode}"
+        for path, name in (named or {}).items():
+            text = text.replace(str(path), name).replace(path.name, name)
+        raise ValueError(text)
     return done
 
 
@@ -70,11 +89,73 @@ def built_in_names() -> tuple[str, ...]:
     return tuple(line.split()[0] for line in run("profile").stdout.splitlines())
 
 
+def file_of(profile: AnyPath) -> str:
+    """The name of a profile that is built in, or the path of a file, which is there and can be read.
+
+    Raises
+    ------
+    OSError
+        The file is not there, or cannot be read.
+    """
+    text = fspath(profile)
+    path = Path(text)
+    # Without an ending it may be the name of a built-in profile, misspelt: the command says which there are.
+    if text.casefold() not in map(str.casefold, built_in_names()) and (path.suffix or path.exists()):
+        with path.open("rb"):
+            pass
+    return text
+
+
+def places(name: str, values: Any) -> np.ndarray:
+    """A list of finite numbers, or a single one, as an array.
+
+    Raises
+    ------
+    ValueError
+        It is none.
+    """
+    try:
+        found = np.atleast_1d(np.asarray(values, dtype=float))
+    except (TypeError, ValueError):
+        raise ValueError(f"{name}: a list of numbers is needed") from None
+    if found.ndim > 1:
+        raise ValueError(f"{name} has {found.ndim} dimensions: a list of numbers is needed")
+    if (wrong := np.flatnonzero(~np.isfinite(found))).size:
+        raise ValueError(f"{name}[{wrong[0]}] = {found[wrong[0]]}: a finite number is needed")
+    return found
+
+
 def options(values: Mapping[str, Any]) -> list[str]:
-    """Options of the command from names and values, those that are None left out."""
+    """Options of the command from names and values, those that are None left out.
+
+    Raises
+    ------
+    ValueError
+        A word that is none of its choices, a number that is not finite.
+    TypeError
+        A value that is no number.
+    """
     given = {name: value for name, value in values.items() if value is not None}
-    texts = {name: str(value) if isinstance(value, str | int) else repr(float(value)) for name, value in given.items()}
-    return [f"--{name.replace('_', '-')}={text}" for name, text in texts.items()]
+    return [f"--{name.replace('_', '-')}={option(name, value)}" for name, value in given.items()]
+
+
+def option(name: str, value: Any) -> str:
+    """An option's value as the command reads it."""
+    if name in CHOICES:
+        if value not in CHOICES[name]:
+            hint = near(str(value), CHOICES[name])
+            raise ValueError(f"{name} = {value!r}: choose one of {', '.join(CHOICES[name])}{hint}")
+        return str(value)
+    if isinstance(value, np.generic):
+        value = value.item()
+    whole = name == "part"
+    if isinstance(value, bool) or not isinstance(value, numbers.Integral if whole else numbers.Real):
+        raise TypeError(f"{name} = {value!r}: a {'whole ' if whole else ''}number is needed")
+    if not np.isfinite(finite(name, value)):
+        raise ValueError(f"{name} = {value!r}: a finite number is needed")
+    if whole and value < 1:
+        raise ValueError(f"{name} = {value!r}: 1 or more is needed")
+    return str(value) if whole else repr(float(value))
 
 
 def table_of(path: Path) -> pd.DataFrame:
@@ -170,6 +251,8 @@ class Profile:
     ------
     ValueError
         It is no profile, or that of the other body.
+    OSError
+        The file is not there, or cannot be read.
 
     Examples
     --------
@@ -194,14 +277,14 @@ class Profile:
         """Read it."""
         given = {"body": body, "unit": unit, "y_to": y_to, "z": z, "part": part, "smoothing": smoothing}
         given |= {"flange_back_position": flange_back_position, "inclination": inclination}
-        self._read(["profile", fspath(profile), *options(given)])
+        self._read(["profile", file_of(profile), *options(given)])
         self._built_in = self.name if inclination is None and self.name in built_in_names() else None
 
-    def _read(self, arguments: list[str]) -> None:
-        """Take the profile of these arguments of the command."""
+    def _read(self, arguments: list[str], named: Mapping[Path, str] | None = None) -> None:
+        """Take the profile of these arguments of the command; errors call files as `run` does."""
         with tempfile.TemporaryDirectory() as folder:
             table = Path(folder) / "profile.csv"
-            said = run(*arguments, "--output", str(table)).stderr.strip()
+            said = run(*arguments, "--output", str(table), named=named).stderr.strip()
             self.points = table_of(table)
             # As a file that says itself how it is turned, for `contact_geometry` and `write`.
             found = re.fullmatch(r"(.*): (rail|wheel), (.*)", said)
@@ -224,12 +307,23 @@ class Profile:
             "rail" or "wheel".
         smoothing
             Wavelength of the smoothing: waves of this length are halved [m].
+
+        Raises
+        ------
+        ValueError
+            Another number of y than of z, one that is not finite, or the points are no profile of that body.
         """
-        rows = np.column_stack([np.asarray(y, dtype=float), np.asarray(z, dtype=float)])
+        columns = [places("y", y), places("z", z)]
+        if columns[0].size != columns[1].size:
+            raise ValueError(f"y has {columns[0].size} values and z {columns[1].size}: as many of each are needed")
+        given = options({"body": body, "y_to": "field", "z": "up", "smoothing": smoothing})
+        made = cls.__new__(cls)
         with tempfile.TemporaryDirectory() as folder:
             path = Path(folder) / "points.csv"
-            np.savetxt(path, rows, delimiter=",", header="y [m],z [m]", comments="")
-            return cls(path, body=body, y_to="field", z="up", smoothing=smoothing)
+            np.savetxt(path, np.column_stack(columns), delimiter=",", header="y [m],z [m]", comments="")
+            made._read(["profile", str(path), *given], {path: "points"})
+        made.name, made.source, made._built_in = "points", "given points", None
+        return made
 
     @staticmethod
     def built_in() -> list[str]:
@@ -237,9 +331,23 @@ class Profile:
         return list(built_in_names())
 
     def write(self, path: AnyPath) -> None:
-        """Write a file: SIMPACK (.prr, .prw), MiniProf (.ban, .whl, .mpt), VAMPIRE (.rai, .whe), or CSV of `points`."""
-        with tempfile.TemporaryDirectory() as folder:
-            run("profile", self.argument(Path(folder), "profile"), "--output", fspath(path))
+        """Write a file: SIMPACK (.prr, .prw), MiniProf (.ban, .whl, .mpt), VAMPIRE (.rai, .whe), or CSV of `points`.
+
+        Raises
+        ------
+        ValueError
+            The format has no profile of this body.
+        OSError
+            The file cannot be written.
+        """
+        path = Path(path)
+        if path.is_dir():
+            raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR), str(path))
+        with tempfile.TemporaryDirectory() as own, tempfile.TemporaryDirectory() as other:
+            written = Path(other) / path.name
+            self._run(Path(own), "--output", str(written), named={written: str(path)})
+            # Here, so that an error of the system is one of Python.
+            path.write_bytes(written.read_bytes())
 
     def worn_by(self, arc_length: Any, depth: Any) -> "Profile":
         """Profile that has worn by depths along its normal.
@@ -255,7 +363,8 @@ class Profile:
         Raises
         ------
         ValueError
-            The places do not ascend or lie beyond the profile; the depth reaches the radius of curvature.
+            The places do not ascend or lie beyond the profile, or have another number of depths; the depth reaches the
+            radius of curvature.
 
         Examples
         --------
@@ -264,15 +373,21 @@ class Profile:
         >>> round(1e3 * worn.measures().flange_height, 2)
         28.26
         """
-        places = np.atleast_1d(np.asarray(arc_length, dtype=float))
-        rows = np.column_stack([places, np.broadcast_to(np.asarray(depth, dtype=float), places.shape)])
+        along, depths = places("arc_length", arc_length), places("depth", depth)
+        if depths.size not in (1, along.size):
+            raise ValueError(
+                f"depth has {depths.size} values and arc_length {along.size}: one for each place is needed, or"
+                " one for all"
+            )
+        rows = np.column_stack([along, np.broadcast_to(depths, along.shape)])
         worn = Profile.__new__(Profile)
         with tempfile.TemporaryDirectory() as name:
             folder = Path(name)
             table = folder / "depths.csv"
             # As many digits as read back to the same number.
             np.savetxt(table, rows, fmt="%.17g", delimiter=",", header="arc_length [m],depth [m]", comments="")
-            worn._read(["profile", self.argument(folder, "profile"), f"--worn-by={table}"])
+            own = self.argument(folder, "profile")
+            worn._read(["profile", own, f"--worn-by={table}"], {Path(own): self.name, table: "the depths"})
         suffix = ", worn" if np.any(rows[:, 1]) and not self.source.endswith(", worn") else ""
         worn.name, worn.source, worn._built_in = self.name, self.source + suffix, None
         return worn
@@ -305,22 +420,30 @@ class Profile:
         ------
         ValueError
             One of both has no measures of a wheel.
+        OSError
+            The new profile's file is not there, or cannot be read.
         """
         with tempfile.TemporaryDirectory() as name:
             folder = Path(name)
-            other = new.argument(folder, "new") if isinstance(new, Profile) else fspath(new)
-            found = self._measured(folder, f"--against={other}")
+            other = new.argument(folder, "new") if isinstance(new, Profile) else file_of(new)
+            named = {Path(other): new.name} if isinstance(new, Profile) else {}
+            found = self._measured(folder, f"--against={other}", named=named)
         return WheelWear(**{key: value for key, value in found.items() if key in WheelWear.__annotations__})
 
     def worn_area(self, new: "AnyProfile") -> float:
         """Area of the cross-section that a wheel has lost against its new profile, as in `worn_against` [m²]."""
         return self.worn_against(new).worn_area
 
-    def _measured(self, folder: Path, *against: str) -> dict[str, float]:
+    def _measured(self, folder: Path, *against: str, named: Mapping[Path, str] | None = None) -> dict[str, float]:
         """What the command measures, by name."""
         table = folder / "measures.csv"
-        run("profile", self.argument(folder, "profile"), "--measures", *against, "--output", str(table))
+        self._run(folder, "--measures", *against, "--output", str(table), named=named)
         return {str(name): float(value) for name, value in table_of(table).iloc[0].items()}
+
+    def _run(self, folder: Path, *arguments: str, named: Mapping[Path, str] | None = None) -> None:
+        """Call the command for this profile, which errors call by its name."""
+        own = self.argument(folder, "profile")
+        run("profile", own, *arguments, named={Path(own): self.name, **(named or {})})
 
     def argument(self, folder: Path, name: str) -> str:
         """What the command is given for this profile: its name, or a file of the given name in a folder."""
@@ -388,6 +511,10 @@ def contact_geometry(
     ------
     ValueError
         A profile or a dimension does not serve; a wheel stands beside its rail.
+    TypeError
+        A dimension that there is not, or one that is no number.
+    OSError
+        A profile's file is not there, or cannot be read.
 
     Examples
     --------
@@ -402,20 +529,21 @@ def contact_geometry(
         folder = Path(name)
         given = {"rail": rail, "wheel": wheel, "rail_right": rail_right, "wheel_right": wheel_right}
         profiles = {
-            key: value.argument(folder, key) if isinstance(value, Profile) else fspath(value)
+            key: value.argument(folder, key) if isinstance(value, Profile) else file_of(value)
             for key, value in given.items()
             if value is not None
         }
-        places = {key: folder / f"{key}.csv" for key in ("output", "jumps", "outlines")}
+        named = {Path(profiles[key]): value.name for key, value in given.items() if isinstance(value, Profile)}
+        files = {key: folder / f"{key}.csv" for key in ("output", "jumps", "outlines")}
         if outlines_at is None:
-            del places["outlines"]
-        numbers = {"from": first, "to": last, "step": step, "yaw": yaw, "outlines_at": outlines_at, **dimensions}
-        files = {key: str(path) for key, path in places.items()}
-        said = run("geometry", *options(profiles | numbers | files), *(["--level"] if level else [])).stderr
-        table = table_of(places["output"])
-        table.attrs["jumps"] = table_of(places["jumps"]).to_dict("records")
+            del files["outlines"]
+        amounts = {"from": first, "to": last, "step": step, "yaw": yaw, "outlines_at": outlines_at, **dimensions}
+        texts = [f"--{key.replace('_', '-')}={text}" for key, text in (profiles | files).items()]
+        said = run("geometry", *texts, *options(amounts), *(["--level"] if level else []), named=named).stderr
+        table = table_of(files["output"])
+        table.attrs["jumps"] = table_of(files["jumps"]).to_dict("records")
         if outlines_at is not None:
-            table.attrs["outlines"] = table_of(places["outlines"]).to_dict("list")
+            table.attrs["outlines"] = table_of(files["outlines"]).to_dict("list")
     marker = "equivalent conicity at 3 mm: "
     table.attrs["conicity"] = next(
         (float(line.removeprefix(marker)) for line in said.splitlines() if line.startswith(marker)), None
