@@ -231,6 +231,8 @@ CURVES = {
     "control": (("lateral",), {"control": "penetration"}, "control = 'penetration': creep curves are over creepage at a load"),
     "input of another mode": (("lateral",), {"vehicle_speed": 20.0}, "vehicle_speed is given and not used"),
     "line": (("lateral",), {"contact_model": "line"}, "contact_model = 'line' has longitudinal creepage alone"),
+    "profiles": ((), {"contact_model": "profiles"}, "contact_model = 'profiles': creep curves are of 'line' and 'patch'; forces of profiles come from simulate("),
+    "profiles by number": ((), {"contact_model": 3, "slip_source": 2}, "contact_model = 3: creep curves are of 'line' and 'patch'"),
     "outputs": (("lateral",), {"outputs": "lateral_forc"}, "did you mean lateral_force"),
     "preset": (("lateral",), {"preset": "wett"}, "preset 'wett'"),
 }  # fmt: skip

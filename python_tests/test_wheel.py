@@ -39,6 +39,7 @@ print(json.dumps({
     "fmu": str(wheelrail.fmu_path()),
     "rows": len(manoeuvre),
     "force": list(curves[curves.driven == "longitudinal"].traction_force),
+    "friction": [float(limit) for table in (curves, spinning) for limit in table.friction_coefficient],
 }))
 """
 
@@ -194,6 +195,8 @@ def test_documentation_runs_where_there_is_only_pip(documented):
     assert answer["rows"] == 11001
     assert answer["force"][0] == pytest.approx(0.0, abs=1.0)
     assert answer["force"][-1] == pytest.approx(0.3 * 80e3, rel=0.01)
+    # The curves that one picture compares have one law of friction.
+    assert answer["friction"] == pytest.approx([0.3] * len(answer["friction"]))
     for picture in ("braking.png", "creep_curves.png", "geometry.png", "over_time.png", "patch.png"):
         assert (folder / picture).stat().st_size > 20_000
 

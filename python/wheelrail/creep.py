@@ -126,7 +126,8 @@ def creep_curves(
     fmu
         Another FMU than the package's own.
     **values
-        Parameters and constant inputs by name, the other creepages among them. `contact_model` is "patch" by default.
+        Parameters and constant inputs by name, the other creepages among them. `contact_model` is "patch" by default;
+        "line" is the other one that has creep curves.
 
     Returns
     -------
@@ -156,6 +157,13 @@ def creep_curves(
         if name in given:
             raise ValueError(f"{name} = {given[name]!r}: creep curves take it from {instead}")
     checked = start_values(fmu, {"contact_model": "patch", "normal_load": load, **given})
+    models = choices(known["contact_model"])
+    # Before what follows from it: the creepage of profiles is where the wheel stands and how fast it turns.
+    if checked["contact_model"] == models.get("profiles"):
+        raise ValueError(
+            f"contact_model = {given['contact_model']!r}: creep curves are of 'line' and 'patch'; forces of profiles"
+            " come from simulate(…, contact_model='profiles', slip_source='vehicle_speed')"
+        )
     for name, only in (("slip_source", "creepage"), ("control", "load")):
         if checked.get(name, choices(known[name])[only]) != choices(known[name])[only]:
             raise ValueError(f"{name} = {given[name]!r}: creep curves are over creepage at a load, {name}={only!r}")
@@ -169,7 +177,7 @@ def creep_curves(
     speed = finite("speed", speed)
     if not 0.0 < speed < math.inf:
         raise ValueError(f"speed = {speed!r}: a positive number of metres per second is needed")
-    line = checked["contact_model"] == choices(known["contact_model"])["line"]
+    line = checked["contact_model"] == models["line"]
     kinds = kinds_of(driven, line)
     fixed = {name: checked.pop(name, 0.0) for name in DRIVEN.values()}
     if line and (kinds != ("longitudinal",) or fixed["lateral_creepage"] or fixed["spin_creepage"]):
