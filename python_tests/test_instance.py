@@ -48,6 +48,8 @@ def in_a_process(program, *arguments):
     return done.stdout
 
 
+POINTS = "friction_table_points"
+
 # ---- the end ---------------------------------------------------------------------------------------------------------
 
 AFTER_THE_END = {
@@ -280,6 +282,25 @@ def test_values_and_names(running, either):
     assert made.parameters()["friction_table.coefficient"][:2] == [0.5, 0.3]
     with pytest.raises(ValueError, match=r"friction_table"):
         Instance(either, **{"friction_table.temperature": [300.0] * 50})
+
+
+def test_points_of_the_friction_table(either):
+    """Their lists say how many are used, where it is not given; what an instance has makes another one."""
+    table = {"friction_table.temperature": [300.0, 400.0, 600.0], "friction_table.coefficient": [0.45, 0.35, 0.2]}
+    law = {"friction_law": "table", "creepage": 0.2, "wheel_speed": 60.0, "step": 0.01, "stop_time": 0.1, "fmu": either}
+    said, counted = (wheelrail.simulate(parameters=table | points, **law) for points in ({}, {POINTS: 3}))
+    assert said["traction_force"].tolist() == counted["traction_force"].tolist()
+    fewer = wheelrail.simulate(parameters={name: of[:2] for name, of in table.items()}, **law)
+    assert fewer["traction_force"].iloc[-1] > 1.2 * said["traction_force"].iloc[-1]
+    made = Instance(either, friction_law="table", **table)
+    assert made.get(POINTS) == [3]
+    assert Instance(either, **made.parameters()).parameters() == made.parameters()
+    # Later one of them may be given alone, if it has as many.
+    made.set(**{"friction_table.temperature": [310.0, 400.0, 600.0]})
+    with pytest.raises(ValueError, match=r"has 2 values, and friction_table\.coefficient is not given and has 3"):
+        made.set(**{"friction_table.temperature": [310.0, 400.0]})
+    made.set(**{name: of[:2] for name, of in table.items()})
+    assert made.get(POINTS) == [2]
 
 
 def test_grids_of_a_patch_by_name(either):

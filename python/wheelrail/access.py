@@ -16,7 +16,17 @@ from .arguments import names_of, plain
 from .errors import SimulationError, SimulationWarning
 from .native import FMU3Component, Phase
 from .surface import formed, sources
-from .variables import PATCH_GRID, bounds, choices, near, shape, start_values, with_grid
+from .variables import (
+    FRICTION_TABLE,
+    PATCH_GRID,
+    TABLE_POINTS,
+    bounds,
+    choices,
+    near,
+    shape,
+    start_values,
+    with_grid,
+)
 from .wear import ProfileWear, WornProfiles, new_profile
 
 # Why a call cannot be, and what can.
@@ -149,7 +159,10 @@ class Access:
         }
         calls: dict[str, tuple[list[int], list[Any]]] = {}
         lengths = {}
-        for name, value in start_values(self.fmu, given).items():
+        used = None
+        if self.slave.phase is not Phase.INSTANTIATED and any(name in given for name in FRICTION_TABLE):
+            used = self._count(TABLE_POINTS)
+        for name, value in start_values(self.fmu, given, used).items():
             variable = self.variables[name]
             self._check_settable(variable)
             elements = value if isinstance(value, list) else [value]
@@ -169,6 +182,11 @@ class Access:
             self.slave.exitConfigurationMode()
         for kind in sorted(calls, key=lambda kind: kind in ("Real", "Float64")):
             getattr(self.slave, f"set{kind}")(*calls[kind])
+
+    def _count(self, name: str) -> int:
+        """A count as it is, within a call."""
+        ((getter, arguments),) = self._plan((name,))
+        return int(getattr(self.slave, getter)(*arguments)[0])
 
     def _fits(self, name: str, value: Any) -> bool:
         """Whether a value is surely one of a real input: the quick way for those that are set before each step."""

@@ -18,6 +18,11 @@ from .arguments import finite
 
 # Name under which a grid of the patch is chosen.
 PATCH_GRID = "patch_grid"
+# The table of friction coefficients: the lists of its points, and the parameter that says how many of them are used.
+FRICTION_TABLE = ("friction_table.temperature", "friction_table.coefficient")
+TABLE_POINTS = "friction_table_points"
+# Arrays that FMI 3.0 alone has: fields of a patch and of profiles, and these profiles.
+THIRD_ALONE = ("patch.", "surface.", "wheel_profile.", "rail_profile.")
 
 
 def variables(fmu: AnyPath | None = None) -> pd.DataFrame:
@@ -221,16 +226,26 @@ def with_grid(fmu: AnyPath, given: Mapping[str, Any]) -> dict[str, Any]:
     return values | grids[name]
 
 
-def start_values(fmu: AnyPath, given: Mapping[str, Any]) -> dict[str, Any]:
+def start_values(fmu: AnyPath, given: Mapping[str, Any], used: int | None = None) -> dict[str, Any]:
     """Parameters and constant inputs as the component takes them.
 
     The points of a table may be given in one: `{"friction_table.temperature": [300.0, 400.0]}`. A text may be a path.
-    `patch_grid` becomes the cells and strips of the grid of that name.
+    `patch_grid` becomes the cells and strips of the grid of that name. `friction_table_points` follows the lists of the
+    friction table where it is not given.
+
+    Parameters
+    ----------
+    fmu
+        The component.
+    given
+        Values by name.
+    used
+        Points of the friction table that are used so far; by default those that an instance starts with.
 
     Raises
     ------
     ValueError
-        An unknown name, a value that is none, is out of range, or has too many elements.
+        An unknown name, a value that is none, is out of range, or has too many or too few elements.
     TypeError
         A name that is no text, a value of a text that is none.
     """
@@ -252,13 +267,12 @@ def start_values(fmu: AnyPath, given: Mapping[str, Any]) -> dict[str, Any]:
             continue
         if not elements:
             raise ValueError(f"{name} = []: at least one value is needed")
-        count = sum(other.partition("[")[0] == name for other in known if other != name)
+        count = elements_of(known, name)
         if name in known:
             variable = settable(fmu, name, kinds)
             if not variable.dimensions:
                 raise ValueError(f"{name} is a single value, not {value!r}")
             starts = variable.start.split()
-            count = len(starts)
             # The rest of an array stays as it is.
             values[name] = [number(variable, element) for element in elements] + [
                 float(start) for start in starts[len(elements) :]
@@ -271,7 +285,66 @@ def start_values(fmu: AnyPath, given: Mapping[str, Any]) -> dict[str, Any]:
         if name not in known:
             for index, element in enumerate(elements, 1):
                 values[f"{name}[{index}]"] = number(settable(fmu, f"{name}[{index}]", kinds), element)
-    return values
+    return values | points_of_lists(known, given, used)
+
+
+def elements_of(known: Mapping[str, ModelVariable], name: str) -> int:
+    """How many elements an array has: as one variable in FMI 3.0, in FMI 2.0 a variable for each."""
+    if name in known:
+        return len(known[name].start.split()) if known[name].dimensions else 0
+    return sum(other.partition("[")[0] == name for other in known)
+
+
+def points_of_lists(
+    known: Mapping[str, ModelVariable], given: Mapping[str, Any], used: int | None = None
+) -> dict[str, int]:
+    """How many points of the friction table are used, where both of its lists are given and it is not.
+
+    A list of all points that there are, as `Instance.parameters` has it, goes with any number: what is behind is not
+    used.
+
+    Parameters
+    ----------
+    known
+        The component's variables by name.
+    given
+        Values by name, each of which the component takes.
+    used
+        Points that are used so far; by default those that an instance starts with.
+
+    Raises
+    ------
+    ValueError
+        The lists differ in their lengths, or from `friction_table_points`, or one is missing.
+    """
+    lists = {name: several(given.get(name)) for name in FRICTION_TABLE}
+    lengths = {name: len(elements) for name, elements in lists.items() if elements is not None}
+    if not lengths or TABLE_POINTS not in known:
+        return {}
+    if len(set(lengths.values())) > 1:
+        said = ", ".join(f"{name} has {length}" for name, length in lengths.items())
+        raise ValueError(f"{said} values: as many of each are needed, one for each point")
+    name, length = next(iter(lengths.items()))
+    every = elements_of(known, name)
+    if TABLE_POINTS in given:
+        points = number(known[TABLE_POINTS], given[TABLE_POINTS])
+        if length not in (points, every):
+            raise ValueError(
+                f"{TABLE_POINTS} = {points}, and {name} has {length} values: as many are needed; without"
+                f" {TABLE_POINTS} the lists say how many points there are"
+            )
+        return {}
+    before = int(known[TABLE_POINTS].start) if used is None else used
+    if len(lengths) < len(FRICTION_TABLE):
+        (other,) = set(FRICTION_TABLE) - set(lengths)
+        if length not in (before, every):
+            raise ValueError(f"{name} has {length} values, and {other} is not given and has {before}: give both lists")
+        return {}
+    least = int(bounds(known[TABLE_POINTS])[0])
+    if length < least:
+        raise ValueError(f"{name} has {length} value: {least} to {every} are needed, one for each point")
+    # Also where it is the number from before: in FMI 3.0 the lists go on with all points that there are.
+    return {TABLE_POINTS: length}
 
 
 def several(value: Any) -> list[Any] | None:
