@@ -151,6 +151,8 @@ SIMULATE = {
     "output that is none": (TABLE, {"outputs": "peak_temperatur"}, "there is no variable peak_temperatur; did you mean peak_temperature"),
     "outputs that are no names": (TABLE, {"outputs": [1]}, "outputs: 1 is no name of an output"),
     "outputs of a number": (TABLE, {"outputs": 1}, "outputs = 1: a name or a list of names is needed"),
+    "fields of FMI 3.0": (TABLE, {"outputs": ["patch.pressure"], "contact_model": 2}, "there is no variable patch.pressure in FMI 2.0: that of FMI 3.0 has patch.*, fmu=wheelrail.fmu_path('3.0'); simulate(…, fields=True) has the fields over time"),
+    "profile of FMI 3.0": (TABLE, {"outputs": "rail_profile.y"}, "that of FMI 3.0 has rail_profile.*, fmu=wheelrail.fmu_path('3.0')"),
     "outputs that count": (TABLE, {"outputs": ["solver.iterations"]}, "solver.iterations is a number that counts"),
     "progress": (TABLE, {"progress": 3}, "progress = 3: True, a title or a function"),
     "instance": (TABLE, {"instance": "contact"}, "instance = 'contact': an Instance is needed"),

@@ -117,6 +117,21 @@ def test_fields_of_the_patch(fmu3):
     assert np.array_equal(fields["y"], own["y"][:, 0])
 
 
+@pytest.mark.parametrize("version", ["fmu", "fmu3"])
+def test_fields_of_a_line(version, request):
+    """Those of an instance are those of `simulate`, by the same names, in either version of FMI."""
+    fmu = request.getfixturevalue(version)
+    table = {"time": [0.0, 0.02], "creepage": [0.0, 0.01]}
+    with wheelrail.Instance(fmu).start() as instance:
+        _, fields = wheelrail.simulate(table, fields=True, instance=instance, step=0.01)
+        own = instance.fields()
+    assert set(own) == set(fields.variables) - {"time"} == {*fields.data_vars, "x", "z"}
+    for name, values in own.items():
+        assert np.array_equal(values, fields[name].isel(time=-1) if "time" in fields[name].dims else fields[name]), name
+    assert own["pressure"].max() > 1e8
+    assert own["depth_temperature"].shape == own["z"].shape
+
+
 def test_fields_of_profiles(fmu3):
     """Each field over time, windows, strips and cells; the pressure adds up to the normal forces at each time."""
     result, fields = wheelrail.simulate(MOVING, fields=True, fmu=fmu3, outputs="contact.normal_force", **PROFILES)

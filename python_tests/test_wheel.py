@@ -327,7 +327,7 @@ def test_creep_curves(fmu):
     with pytest.raises(ValueError, match="longitudinal creepage alone"):
         wheelrail.creep_curves("lateral", fmu=fmu, contact_model="line")
     with pytest.raises(ValueError, match=r"take the FMU of FMI 3\.0"):
-        wheelrail.Instance(fmu).start().fields()
+        wheelrail.Instance(fmu, contact_model="patch").start().fields()
     with pytest.raises(ValueError, match="did you mean lateral"):
         wheelrail.creep_curves("laterl", fmu=fmu)
 

@@ -15,14 +15,14 @@ from fmpy.model_description import ModelVariable
 from .arguments import names_of, plain
 from .errors import SimulationError, SimulationWarning
 from .native import FMU3Component, Phase
-from .surface import formed, sources
+from .surface import LINE, formed, sources
 from .variables import (
     FRICTION_TABLE,
     PATCH_GRID,
     TABLE_POINTS,
     bounds,
     choices,
-    near,
+    missing,
     shape,
     start_values,
     with_grid,
@@ -119,7 +119,7 @@ class Access:
             raise TypeError(f"the name of a variable is a text, not {name!r}")
         variable = self.variables.get(name) or (self.variables.get(f"{name}[1]") if settable else None)
         if variable is None:
-            raise ValueError(f"there is no variable {name}{near(name, self.variables)}")
+            raise ValueError(missing(self.fmu, name, self.variables))
         return variable
 
     # ---- values ------------------------------------------------------------------------------------------------------
@@ -352,45 +352,55 @@ class Access:
         )
 
     def fields(self) -> dict[str, np.ndarray]:
-        """Fields of a patch or of profiles as they are now: FMI 3.0 alone has them.
+        """Fields of the contact as they are now; those of a patch and of profiles FMI 3.0 alone has.
 
         Those of a patch are what `plots.patch_fields` draws, those of profiles what `plots.surface_fields` does.
 
         Returns
         -------
         dict of numpy.ndarray
-            Of a patch, as arrays of strips by cells: places `x`, `y` [m], `pressure`, `shear_x`, `shear_y` [Pa],
-            `slip_x`, `slip_y` [m/s], `temperature` [K], `wear_depth` [m]. Of profiles, as arrays of windows by strips
-            by cells, the contacts in their order first: `pressure`, `shear_x`, `shear_s` [Pa], `slip_x`, `slip_s`
-            [m/s], `friction_coefficient` [1], `temperature` [K], `wear_depth` [m]; places `x` of windows by cells,
-            `arc_length`, `y`, `z` [m], `inclination` [rad] of windows by strips; sizes of the cells `cell_length`,
+            Of a line: places `x` [m], `pressure`, `shear` [Pa], `slip` [m/s], `temperature` [K], `wear_depth` [m];
+            into the depth below the hottest point `z` [m], `depth_temperature` [K]. Of a patch, as arrays of strips by
+            cells: places `x`, `y` [m], `pressure`, `shear_x`, `shear_y` [Pa], `slip_x`, `slip_y` [m/s], `temperature`
+            [K], `wear_depth` [m]. Of profiles, as arrays of windows by strips by cells, the contacts in their order
+            first: `pressure`, `shear_x`, `shear_s` [Pa], `slip_x`, `slip_s` [m/s], `friction_coefficient` [1],
+            `temperature` [K], `wear_depth` [m]; places `x` of windows by cells, `arc_length`, `y`, `z` [m],
+            `inclination` [rad] of windows by strips; sizes of the cells `cell_length`,
             `strip_breadth` [m], 0 of a window that there is not; both profiles in the track `wheel_y`, `wheel_z`,
             `rail_y`, `rail_z` [m].
 
         Raises
         ------
         ValueError
-            An FMU of FMI 2.0, or a line contact.
+            The FMU has none: of FMI 2.0, where the contact is a patch or one of profiles.
         SimulationError
             As `get`.
         """
         self.slave.check()
         names = [name for name, variable in self.variables.items() if name.startswith("patch.") and variable.dimensions]
-        if not names:
-            raise ValueError(f"{self.fmu} has no fields of patch and profiles: take the FMU of FMI 3.0")
         with self._calls("fields"):
-            models = choices(self.variables["contact_model"])
+            models = choices(self._variable("contact_model"))
             model = self.get("contact_model")
+            if model == [models["line"]]:
+                return self._line_fields()
+            if not names:
+                raise ValueError(f"{self.fmu} has no fields of patch and profiles: take the FMU of FMI 3.0")
             own = sources(self.variables)
             if own and model == [models["profiles"]]:
                 return {short: formed(self.get(name), over, self.lengths) for short, (name, over) in own.items()}
-            if model != [models["patch"]]:
-                raise ValueError(
-                    "a line contact has no fields: they are those of contact_model = 'patch' or 'profiles'"
-                )
             found = {
                 name.removeprefix("patch."): np.reshape(self.get(name), shape(self.variables[name], self.lengths))
                 for name in names
             }
         x, y = np.meshgrid(found.pop("x"), found.pop("y"))
         return {"x": x, "y": y, **found}
+
+    def _line_fields(self) -> dict[str, np.ndarray]:
+        """Fields of a line, with the places along it and into the depth."""
+        found = {}
+        for name in dict.fromkeys(name.partition("[")[0] for name in self.variables):
+            for prefix, short, places in LINE:
+                if name.startswith(prefix):
+                    own = name.removeprefix(prefix)
+                    found[own if own in places else short + own] = np.array(self.get(name))
+        return found

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from .instance import Instance
-from .surface import PLACES, formed, sizes, sources
+from .surface import LINE, PATCH, PLACES, formed, sizes, sources
 from .variables import near, unit
 
 if TYPE_CHECKING:
@@ -18,10 +18,6 @@ if TYPE_CHECKING:
 
 # Largest size of the fields of a run.
 MOST_BYTES = 16 * 2**30
-# Prefix in the component's names, prefix in the data set, places. A line has profiles along the rail and into the
-# depth; a patch has cells.
-LINE = (("profile.", "", ("x",)), ("depth.", "depth_", ("z",)))
-PATCH = (("patch.", "", ("y", "x")),)
 
 
 def needs_xarray() -> None:

@@ -1,9 +1,13 @@
-"""Fields of a contact of profiles: cells of its windows on the unrolled surface of the rail, profiles in the track."""
+"""Where the fields of each contact are: of a line and a patch; of profiles, cells of windows on the unrolled rail."""
 
 from collections.abc import Iterable, Mapping, Sequence
 
 import numpy as np
 
+# Prefix in the component's names, prefix in the fields' names, places. A line has profiles along the rail and into the
+# depth; a patch has cells.
+LINE = (("profile.", "", ("x",)), ("depth.", "depth_", ("z",)))
+PATCH = (("patch.", "", ("y", "x")),)
 PREFIX = "surface."
 # Contacts in their order first, then windows that carry nothing.
 WINDOWS = 4

@@ -98,6 +98,17 @@ def near(name: str, names: Iterable[str]) -> str:
     return f"; did you mean {' or '.join(close)}?" if close else ""
 
 
+def missing(fmu: AnyPath, name: str, names: Iterable[str]) -> str:
+    """What is said of a variable that an FMU does not have."""
+    prefix = next((prefix for prefix in THIRD_ALONE if name.startswith(prefix)), None)
+    if prefix is not None and description(fmu).fmiVersion.startswith("2"):
+        return (
+            f"there is no variable {name} in FMI 2.0: that of FMI 3.0 has {prefix}*, fmu=wheelrail.fmu_path('3.0');"
+            " simulate(…, fields=True) has the fields over time"
+        )
+    return f"there is no variable {name}{near(name, names)}"
+
+
 def settable(fmu: AnyPath, name: str, causalities: tuple[str, ...]) -> ModelVariable:
     """The variable of a name that may be set.
 
@@ -110,7 +121,7 @@ def settable(fmu: AnyPath, name: str, causalities: tuple[str, ...]) -> ModelVari
     if name not in known:
         candidates = [other for other, variable in known.items() if variable.causality in causalities]
         candidates += [PATCH_GRID] if "parameter" in causalities else []
-        raise ValueError(f"there is no variable {name}{near(name, candidates)}")
+        raise ValueError(missing(fmu, name, candidates))
     variable = known[name]
     if variable.causality not in causalities:
         by_name_alone = variable.causality in ("parameter", "structuralParameter") and causalities == ("input",)
@@ -390,7 +401,7 @@ def outputs_named(fmu: AnyPath, names: str | Iterable[str] | None) -> list[str]:
         if not isinstance(name, str):
             raise TypeError(f"outputs: {name!r} is no name of an output")
         if name not in known and name not in points:
-            raise ValueError(f"there is no variable {name}{near(name, points)}")
+            raise ValueError(missing(fmu, name, points))
         chosen += [name] if name in known else points[name]
     for name in chosen:
         if known[name].type not in ("Real", "Float64"):
