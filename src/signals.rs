@@ -178,11 +178,11 @@ inputs! {
     /// Depth of wear of the rail entering at the leading edge of the strip: leaving_wear_depth of the wheel in
     /// front
     incoming_wear_depth: "m" shown in "µm", start 0.0, range [0.0, 1e-2], nominal 1e-7;
-    /// Lateral creepage: lateral velocity of the wheel relative to the rail over the speed of its axle, positive to the
-    /// left in the direction of x with z upward
+    /// Lateral creepage: lateral velocity of the wheel relative to the rail, positive to the left in the direction of x with z
+    /// upward, over the speed of its axle, which is negative in reverse
     lateral_creepage "η": "1", by creepage, start 0.0, range [-10.0, 10.0], nominal 1e-2, only [patch];
-    /// Spin creepage: angular velocity of the wheel relative to the rail about the upward normal over the speed of its
-    /// axle, positive anticlockwise seen from above
+    /// Spin creepage: angular velocity of the wheel relative to the rail about the upward normal, positive anticlockwise seen
+    /// from above, over the speed of its axle, which is negative in reverse
     spin_creepage "φ": "1/m", by creepage, start 0.0, range [-1e3, 1e3], nominal 1.0, only [patch];
     /// Lateral velocity of the wheel relative to the rail, where contact_model is profiles that of the centre of the wheelset,
     /// positive to the left
@@ -237,11 +237,12 @@ outputs! {
     traction_force "T": "N" shown in "kN", Instantaneous, nominal 1e4;
     /// Torque of the contact forces on the wheel about its axle
     friction_torque: "N.m" shown in "kN.m", Instantaneous, nominal 1e4;
-    /// Largest absolute temperature of the rail surface
+    /// Largest absolute temperature of the rail surface: of a line over all the rail that it follows, also ahead of the contact,
+    /// otherwise over the contact windows
     peak_temperature: "K" shown in "degC", Instantaneous, at least 0.0, nominal 300.0;
     /// Friction force over normal load
     traction_coefficient: "1", Instantaneous, nominal 0.1;
-    /// Creepage (wheel_speed*wheel_radius - V)/V of the last step
+    /// Creepage (wheel_speed*wheel_radius - V)/V of the last step, over 0.001 m/s in the direction of V where |V| is less
     slip_creepage "ξ": "1", Instantaneous, nominal 1e-2;
     /// Penetration of the undeformed wheel into the undeformed rail, 0 when lifted
     penetration "δ": "m" shown in "µm", Instantaneous, nominal 1e-4;
@@ -289,7 +290,7 @@ outputs! {
     contact_breadth: "m" shown in "mm", Instantaneous, at least 0.0, nominal 1e-2, only [patch, profiles];
     /// Area of the contact
     contact_area: "m2" shown in "mm2", Instantaneous, at least 0.0, nominal 1e-4, only [patch, profiles];
-    /// Wear number: creep forces and spin moment times their creepages, work per distance rolled
+    /// Wear number: power of creep forces and spin moment over the speed |V|, taken to be 0.001 m/s at least
     wear_number "Tγ": "N", Instantaneous, nominal 100.0, only [patch, profiles];
     /// Force of the contacts on the wheelset along the track, positive forward
     force_x "F_x": "N" shown in "kN", Instantaneous, nominal 1e4, only [patch, profiles];
@@ -352,13 +353,14 @@ contact_outputs! {
     lateral_force: "N" shown in "kN", nominal 1e4;
     /// Moment of the shear traction of a contact on the wheel about the normal of the contact, away from the rail
     spin_moment: "N.m", nominal 10.0;
-    /// Longitudinal creepage at the centre of a contact, positive where the wheel turns faster than it rolls
+    /// Longitudinal creepage at the centre of a contact, positive where the wheel turns faster than it rolls, in either direction;
+    /// creepages are over V, of 0.001 m/s at least
     longitudinal_creepage: "1", nominal 1e-2;
-    /// Lateral creepage at the centre of a contact in its plane: velocity of the wheel relative to the rail over the speed of
-    /// the axle, positive to the left
+    /// Lateral creepage at the centre of a contact in its plane: velocity of the wheel relative to the rail, positive to the
+    /// left, over the speed V of the axle, which is negative in reverse
     lateral_creepage: "1", nominal 1e-2;
-    /// Spin creepage of a contact: angular velocity of the wheel relative to the rail about the normal of the contact over the
-    /// speed of the axle
+    /// Spin creepage of a contact: angular velocity of the wheel relative to the rail about the normal of the contact, positive
+    /// anticlockwise, over the speed V of the axle, which is negative in reverse
     spin_creepage: "1/m", nominal 1.0;
     /// Length of a contact along the rail
     length: "m" shown in "mm", at least 0.0, nominal 1e-2;
@@ -372,7 +374,7 @@ contact_outputs! {
     peak_temperature: "K" shown in "degC", at least 0.0, nominal 300.0;
     /// Power dissipated by friction in a contact
     friction_power: "W" shown in "kW", at least 0.0, nominal 1e4;
-    /// Wear number of a contact: creep forces and spin moment times their creepages, work per distance rolled
+    /// Wear number of a contact: power of creep forces and spin moment over the speed |V|, taken to be 0.001 m/s at least
     wear_number: "N", nominal 100.0;
     /// Damage by rolling contact fatigue that a contact does to the rail with one passage: of its wear number, 1 being that at which cracks begin;
     /// negative where it wears more off than fatigue damages

@@ -54,6 +54,8 @@ pub struct OneContact {
     pub peak_rise: f64,
     /// Friction power, `W`.
     pub friction_power: f64,
+    /// Power of creep forces and spin moment over |V|, `N`.
+    pub wear_number: f64,
     /// Damage to the points of the rail.
     pub damage: PointDamage,
 }

@@ -1,7 +1,6 @@
 //! The outputs, from the integrals over a contact.
 
 use super::integrals::Integrals;
-use super::on_wheelset::OneContact;
 use super::problem::StepConditions;
 use super::rim;
 use crate::damage;
@@ -66,7 +65,7 @@ impl Integrals {
         outputs.wear_number = (outputs.traction_force * motion.rigid_slip
             - outputs.lateral_force * motion.lateral_speed
             - outputs.spin_moment * motion.spin_rate)
-            / motion.rolling_speed.abs().max(LEAST_CREEPAGE_SPEED);
+            / creepage_speed(motion.rolling_speed).abs();
         outputs.rcf_damage = damage::rolling_contact_fatigue(parameters, outputs.wear_number);
     }
 
@@ -90,7 +89,7 @@ impl Integrals {
         outputs.spin_moment = contacts.iter().map(|contact| contact.spin_moment).sum();
         outputs.contact_breadth = self.contact_breadth;
         outputs.contact_area = self.contact_area;
-        outputs.wear_number = contacts.iter().map(OneContact::wear_number).sum();
+        outputs.wear_number = contacts.iter().map(|contact| contact.wear_number).sum();
         for (written, contact) in outputs.contact.iter_mut().zip(contacts) {
             *written = ContactOutputs {
                 rail_position: contact.positions[0],
@@ -110,8 +109,8 @@ impl Integrals {
                 peak_pressure: contact.peak_pressure,
                 peak_temperature: ambient + contact.peak_rise,
                 friction_power: contact.friction_power,
-                wear_number: contact.wear_number(),
-                rcf_damage: damage::rolling_contact_fatigue(parameters, contact.wear_number()),
+                wear_number: contact.wear_number,
+                rcf_damage: damage::rolling_contact_fatigue(parameters, contact.wear_number),
                 surface_fatigue_index: contact.damage.surface_fatigue_index(),
                 austenite_depth: contact.damage.austenite_depth,
             };
@@ -139,7 +138,7 @@ impl Integrals {
             friction_torque: -(traction_force * inputs.radius(parameters) + load * offset),
             peak_temperature: ambient + self.peak_rise,
             traction_coefficient: -sums.per_pressure(sums.shear),
-            slip_creepage: creepage(&motion),
+            slip_creepage: motion.rigid_slip / creepage_speed(motion.rolling_speed),
             penetration: self.penetration,
             contact_length: self.contact_length,
             contact_offset: offset,
@@ -212,21 +211,9 @@ pub fn damping(parameters: &Parameters, speed: f64) -> f64 {
     }
 }
 
-/// Speed at which the divisor of the creepage is held near rest, so that it stays finite, `m/s`.
-pub const LEAST_CREEPAGE_SPEED: f64 = 1e-3;
-
-/// (ω r₀ − V)/V.
-fn creepage(motion: &Motion) -> f64 {
-    let Motion {
-        rolling_speed,
-        rigid_slip,
-        ..
-    } = *motion;
-    if rolling_speed.abs() >= LEAST_CREEPAGE_SPEED {
-        rigid_slip / rolling_speed
-    } else if rolling_speed < 0.0 {
-        -rigid_slip / LEAST_CREEPAGE_SPEED
-    } else {
-        rigid_slip / LEAST_CREEPAGE_SPEED
-    }
+/// Speed that creepages are taken over: V, with its sign, held at a millimetre per second near rest, so that they stay finite, `m/s`.
+pub fn creepage_speed(speed: f64) -> f64 {
+    const LEAST: f64 = 1e-3;
+    let direction = if speed < 0.0 { -1.0 } else { 1.0 };
+    direction * speed.abs().max(LEAST)
 }

@@ -254,8 +254,8 @@ parameters! {
     wheel_transverse_curvature: f64 = real { "1/m", 0.0, -1e3, 1e3 }
     /// Number of cells along the contact window, used where contact_model is patch or profiles; with patch_strips it makes a grid,
     /// of which three have a name, patch_grid on the command line, in presets and in Python, here with the largest error in steady
-    /// rolling, of F_x and F_y over mu*F_N and of M_z over mu*F_N*sqrt(a*b), and the median time of a patch's step on a rough
-    /// track: fast 8 x 8 (error 0.011, 0.06 ms), default 34 x 21 (error 0.003, 0.6 ms), fine 48 x 31 (error 0.0019, 1.6 ms)
+    /// rolling with a spin phi*sqrt(a*b) of up to 0.004, of F_x and F_y over mu*F_N and of M_z over mu*F_N*sqrt(a*b), and the median
+    /// time of a patch's step on a rough track: fast 8 x 8 (error 0.011, 0.06 ms), default 34 x 21 (error 0.003, 0.6 ms), fine 48 x 31 (error 0.0019, 1.6 ms)
     patch_nodes: usize = length { 34, 8, 201 }
     /// Number of strips across the contact window, used where contact_model is patch or profiles; of the grids that have a name,
     /// with error and time as at patch_nodes: fast 8 (error 0.011, 0.06 ms), default 21 (error 0.003, 0.6 ms), fine 31 (error

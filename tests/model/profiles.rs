@@ -88,6 +88,58 @@ fn the_other_side_is_the_mirror_image() {
     assert_eq!(one.contact[0].lateral_force, -other.contact[0].lateral_force);
 }
 
+/// A wheelset that turns around and goes the other way: the same motion, seen ahead with the other wheel in front. Longitudinal creepage is positive
+/// where the wheel turns faster than it rolls in either direction, as that of the wheel as a whole; the wear number is work either way.
+#[test]
+fn reverse_is_forward_seen_from_the_other_end() {
+    let [left, right] = [Side::Left, Side::Right].map(|side| Model::new(bodies(side)).unwrap());
+    let radius = left.parameters().wheel_radius;
+    let forward = Inputs {
+        wheel_speed: 20.05 / radius,
+        vehicle_speed: 20.0,
+        lateral_speed: 0.01,
+        ..inputs([3.0, -0.0003, 0.0, 0.0])
+    };
+    let reverse = Inputs {
+        wheel_speed: -forward.wheel_speed,
+        vehicle_speed: -forward.vehicle_speed,
+        lateral_speed: -forward.lateral_speed,
+        lateral_displacement: -forward.lateral_displacement,
+        roll_angle: -forward.roll_angle,
+        ..forward
+    };
+    let (ahead, back) = (start(&left, &forward).outputs, start(&right, &reverse).outputs);
+    let [ahead_contact, back_contact] = [ahead.contact[0], back.contact[0]];
+    for (name, forward, reverse) in [
+        ("force_x", ahead.force_x, -back.force_x),
+        ("force_y", ahead.force_y, -back.force_y),
+        ("slip_creepage", ahead.slip_creepage, back.slip_creepage),
+        ("wear_number", ahead.wear_number, back.wear_number),
+        (
+            "longitudinal_creepage",
+            ahead_contact.longitudinal_creepage,
+            back_contact.longitudinal_creepage,
+        ),
+        (
+            "lateral_creepage",
+            ahead_contact.lateral_creepage,
+            back_contact.lateral_creepage,
+        ),
+        (
+            "spin_creepage",
+            ahead_contact.spin_creepage,
+            -back_contact.spin_creepage,
+        ),
+    ] {
+        // The strips are counted from the other end, and single precision rounds otherwise.
+        assert!(
+            (forward - reverse).abs() <= 1e-6 * forward.abs(),
+            "{name}: {forward} {reverse}"
+        );
+    }
+    assert!(ahead_contact.longitudinal_creepage > 0.0 && ahead.wear_number > 0.0);
+}
+
 /// The wheelset's height under a load carries the load where it is given.
 #[test]
 fn a_given_height_carries_the_load_that_belongs_to_it() {

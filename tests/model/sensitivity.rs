@@ -74,6 +74,48 @@ fn sensitivities_of_a_patch_at_standstill() {
     }
 }
 
+/// About a standstill of a wheel that slides, and heats, slopes by the vehicle's speed are those of a change that can be told from it. The
+/// slowest modes of heat pass from rest to motion within nanometres per second: their slope there had made 1.2e7 of 1.1e4 N s/m.
+#[test]
+fn slopes_by_the_vehicles_speed_about_a_standstill_are_those_of_a_slow_motion() {
+    let line = Parameters {
+        slip_source: SlipSource::VehicleSpeed,
+        ..Parameters::default()
+    };
+    for parameters in [line, patch(SlipSource::VehicleSpeed, Wheel::Elastic)] {
+        let contact = parameters.contact_model;
+        let radius = parameters.wheel_radius;
+        let model = Model::new(parameters).unwrap();
+        let mut workspace = model.workspace();
+        let sliding = |vehicle_speed: f64| Inputs {
+            wheel_speed: 0.5 / radius,
+            vehicle_speed,
+            ..Inputs::default()
+        };
+        let before = settle(&model, &mut workspace, &sliding(0.0), 1e-3).unwrap();
+        let mut step = |speed| step_from(&model, &mut workspace, &before, &sliding(speed), 1e-3).unwrap();
+        let h = 1e-3;
+        let (behind, here, ahead) = (step(-h), step(0.0), step(h));
+        let row = INPUTS.iter().position(|input| input.name == "vehicle_speed").unwrap();
+        let slopes = model.output_sensitivities(&mut workspace, &here, row..row + 1).unwrap()[0];
+        for name in [
+            "traction_force",
+            "friction_torque",
+            "friction_power",
+            "peak_temperature",
+        ] {
+            let output = OUTPUTS.iter().find(|output| output.name == name).unwrap();
+            let difference = slope(output, [&ahead, &behind], 2.0 * h);
+            let slope = (output.get)(&slopes);
+            // A mode's source moves by half a cell between rest and motion: a part of a cell over the contact's length.
+            assert!(
+                (slope / difference - 1.0).abs() < 0.03,
+                "{contact:?} {name}: {slope} {difference}"
+            );
+        }
+    }
+}
+
 /// A lifted wheel leaves a rail that cools and moves on.
 #[test]
 fn sensitivities_of_a_lifted_patch() {

@@ -8,21 +8,13 @@ use super::profile_wear;
 use crate::contact::engine::Engine;
 use crate::contact::integrals::{Integrals, NodeSums};
 use crate::contact::on_wheelset::{OnWheelset, OneContact};
-use crate::contact::outputs::{LEAST_CREEPAGE_SPEED, damping};
+use crate::contact::outputs::{creepage_speed, damping};
 use crate::contact::patch;
 use crate::contact::patch::operators::PatchOperators;
 use crate::contact::rim::ContactHeat;
 use crate::damage::PointDamage;
 use crate::friction::coulomb;
 use crate::geometry::unrolled::PlacedWheel;
-
-impl OneContact {
-    /// Wear number: creep forces and spin moment times their creepages, `N`.
-    pub fn wear_number(&self) -> f64 {
-        let [along, across, spin] = self.creepages;
-        self.friction[0] * along - self.friction[1] * across - self.spin_moment * spin
-    }
-}
 
 /// Integrals of the given fields under the problem's conditions.
 pub fn integrals(problem: &SurfaceProblem, fields: &SurfaceFields, bodies: &Bodies) -> Integrals {
@@ -157,13 +149,12 @@ fn on_wheelset(problem: &SurfaceProblem, fields: &SurfaceFields, bodies: &Bodies
             all.moment[2] += x * force[0];
         }
         let tangent = point.tangent();
-        let speed = pose.motion.velocity[0].abs().max(LEAST_CREEPAGE_SPEED);
-        contact.creepages = [
-            -ahead / speed,
-            (y * tangent[0] + z * tangent[1]) / speed,
-            wheel.spin(&point, &pose.motion) / speed,
-        ];
+        let speed = creepage_speed(pose.motion.velocity[0]);
+        let [across, spin] = [y * tangent[0] + z * tangent[1], wheel.spin(&point, &pose.motion)];
+        contact.creepages = [-ahead / speed, across / speed, spin / speed];
         contact.spin_moment = friction_moment - x * contact.friction[1] + arc * contact.friction[0];
+        let power = -contact.friction[0] * ahead - contact.friction[1] * across - contact.spin_moment * spin;
+        contact.wear_number = power / speed.abs();
         contact.size = [extent.length, extent.breadth];
         contact.area = extent.area;
         contact.peak_pressure = crate::numerics::dense::largest(&own.pressure) * patch.operators.scales.pressure;
