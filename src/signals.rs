@@ -242,7 +242,7 @@ outputs! {
     peak_temperature: "K" shown in "degC", Instantaneous, at least 0.0, nominal 300.0;
     /// Friction force over normal load
     traction_coefficient: "1", Instantaneous, nominal 0.1;
-    /// Creepage (wheel_speed*wheel_radius - V)/V of the last step, over 0.001 m/s in the direction of V where |V| is less
+    /// Creepage (wheel_speed*wheel_radius - V)/V of the last step, over 0.001 m/s in the direction of V where V is slower
     slip_creepage "ξ": "1", Instantaneous, nominal 1e-2;
     /// Penetration of the undeformed wheel into the undeformed rail, 0 when lifted
     penetration "δ": "m" shown in "µm", Instantaneous, nominal 1e-4;
@@ -290,7 +290,7 @@ outputs! {
     contact_breadth: "m" shown in "mm", Instantaneous, at least 0.0, nominal 1e-2, only [patch, profiles];
     /// Area of the contact
     contact_area: "m2" shown in "mm2", Instantaneous, at least 0.0, nominal 1e-4, only [patch, profiles];
-    /// Wear number: power of creep forces and spin moment over the speed |V|, taken to be 0.001 m/s at least
+    /// Wear number: power of creep forces and spin moment over the speed, of 0.001 m/s at least
     wear_number "Tγ": "N", Instantaneous, nominal 100.0, only [patch, profiles];
     /// Force of the contacts on the wheelset along the track, positive forward
     force_x "F_x": "N" shown in "kN", Instantaneous, nominal 1e4, only [patch, profiles];
@@ -374,7 +374,7 @@ contact_outputs! {
     peak_temperature: "K" shown in "degC", at least 0.0, nominal 300.0;
     /// Power dissipated by friction in a contact
     friction_power: "W" shown in "kW", at least 0.0, nominal 1e4;
-    /// Wear number of a contact: power of creep forces and spin moment over the speed |V|, taken to be 0.001 m/s at least
+    /// Wear number of a contact: power of creep forces and spin moment over the speed, of 0.001 m/s at least
     wear_number: "N", nominal 100.0;
     /// Damage by rolling contact fatigue that a contact does to the rail with one passage: of its wear number, 1 being that at which cracks begin;
     /// negative where it wears more off than fatigue damages
