@@ -142,7 +142,8 @@ impl Model {
         })
     }
 
-    /// Contents of the files that the profiles were read from. With them [`Model::of_files`] makes the same model again.
+    /// Contents of the files that the profiles were read from, to be kept with a [`State`] that outlives the process: with them [`Model::of_files`] makes the
+    /// model again that the state belongs to, whatever has become of the files.
     pub fn files(&self) -> &ProfileFiles {
         &self.files
     }
