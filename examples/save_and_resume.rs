@@ -37,6 +37,7 @@ pub fn both_ways() -> Result<[State; 2], Box<dyn Error>> {
     }
 
     // In another process, say: a model of the same parameters, the bytes, and the rest of the way.
+    // (A model with profiles from files keeps their contents, `Model::profile_contents`, for `Model::with_contents` here: files change.)
     let state: State = postcard::from_bytes(&bytes)?;
     let mut resumed = Simulation::resume(Model::new(Parameters::default())?.into(), state)?;
     for step in steps.skip(500) {

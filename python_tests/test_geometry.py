@@ -51,6 +51,7 @@ def test_what_is_refused_names_what_was_given(tmp_path, monkeypatch):
     """Words of the package, of no library below it; what the user gave, and no file that was made for the command."""
     monkeypatch.chdir(tmp_path)
     (tmp_path / "wheel.csv").write_text("y,z\n")
+    (tmp_path / "my_rail.prr").write_text("no profile\n")
     wheel, rail = package.Profile("S1002"), package.Profile("60E1", inclination=0.025)
     points = package.Profile.from_points(rail.points["y"], rail.points["z"], body="rail")
     assert repr(points) == "<Profile points: rail, given points>"
@@ -72,6 +73,9 @@ def test_what_is_refused_names_what_was_given(tmp_path, monkeypatch):
         (lambda: points.measures(), "^points is the profile of a rail; a wheel is needed"),
         (lambda: wheel.worn_against(rail), "^60E1 is the profile of a rail; a wheel is needed"),
         (lambda: package.contact_geometry(points, points), "^points is the profile of a rail; a wheel is needed"),
+        # A file of the user's keeps its name, however the files are called that are made for the command.
+        (lambda: package.contact_geometry(rail, "my_rail.prr"), "^my_rail.prr"),
+        (lambda: rail.write("60E1.whl"), "^60E1.whl: a file of this ending holds a wheel"),
     ]:
         with pytest.raises(ValueError, match=words):
             call()

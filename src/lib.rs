@@ -138,7 +138,7 @@ pub use geometry::profile::{Body, CurvePoint, HeightFunction, Profile, WheelMeas
 pub use geometry::wheelset as contact_geometry;
 pub use parameters::{
     ContactModel, Control, FrictionLaw, INTEGER_PARAMETERS, MeshKind, NormalSolver, Parameters, PatchGeometry,
-    REAL_PARAMETERS, Side, SlipSource, TEXT_PARAMETERS, Wheel, WheelHeating,
+    ProfileContents, REAL_PARAMETERS, Side, SlipSource, TEXT_PARAMETERS, Wheel, WheelHeating,
 };
 pub use settings::Settings;
 pub use signals::{ContactOutputs, INPUTS, Inputs, OUTPUTS, Outputs};

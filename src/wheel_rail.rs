@@ -15,7 +15,7 @@ use crate::contact::{ContactState, ContactWorkspace, Operators};
 use crate::error::{Error, Result};
 use crate::geometry::hertz::HertzEllipse;
 use crate::geometry::profile::Profile;
-use crate::parameters::{ContactModel, Control, Parameters, ProfileFiles};
+use crate::parameters::{ContactModel, Control, Parameters, ProfileContents};
 use crate::settings::Settings;
 use crate::signals::{Inputs, OUTPUTS, Outputs, Totals};
 use division::{Division, SubStep};
@@ -34,8 +34,8 @@ pub struct Model {
     parameters: Parameters,
     settings: Settings,
     operators: Operators,
-    /// Contents of the files that the profiles were read from.
-    files: ProfileFiles,
+    /// Contents of the files that hold the profiles.
+    contents: ProfileContents,
     /// Contact ellipse under the largest load; none with a line.
     largest_ellipse: Option<HertzEllipse>,
 }
@@ -118,34 +118,35 @@ impl Model {
     /// # Errors
     /// As [`Model::new`].
     pub fn with_settings(parameters: Parameters, settings: Settings) -> Result<Model> {
+        // First, so that what is read is named by parameters that can be.
         parameters.validate()?;
-        let files = ProfileFiles::read(&parameters)?;
-        Model::of_files(parameters, settings, files)
+        let contents = ProfileContents::read(&parameters)?;
+        Model::with_contents(parameters, settings, contents)
     }
 
-    /// Builds the model as [`Model::with_settings`] does, with profiles from files that hold, or held, the given contents.
+    /// Builds the model as [`Model::with_settings`] does, but for profiles in files, which are made of these contents; no file is read.
     ///
     /// # Errors
-    /// As [`Model::new`].
-    pub fn of_files(parameters: Parameters, mut settings: Settings, files: ProfileFiles) -> Result<Model> {
+    /// As [`Model::new`], and [`Error::NamedProfile`] where a parameter names a file and there is no content of it.
+    pub fn with_contents(parameters: Parameters, mut settings: Settings, contents: ProfileContents) -> Result<Model> {
         parameters.validate()?;
         settings.step = settings.step.for_cells(&parameters);
-        let operators = Operators::new(&parameters, &files)?;
+        let operators = Operators::new(&parameters, &contents)?;
         let is_line = parameters.contact_model == ContactModel::Line;
         let largest_ellipse = (!is_line).then(|| parameters.hertz_ellipse(parameters.largest_load));
         Ok(Model {
             parameters,
             settings,
             operators,
-            files,
+            contents,
             largest_ellipse,
         })
     }
 
-    /// Contents of the files that the profiles were read from, to be kept with a [`State`] that outlives the process: with them [`Model::of_files`] makes the
-    /// model again that the state belongs to, whatever has become of the files.
-    pub fn files(&self) -> &ProfileFiles {
-        &self.files
+    /// Contents of the files that hold its profiles, to be kept with a [`State`] that outlives the process: with them [`Model::with_contents`] makes the model
+    /// again that the state belongs to, whatever has become of the files.
+    pub fn profile_contents(&self) -> &ProfileContents {
+        &self.contents
     }
 
     /// The parameters.

@@ -76,7 +76,7 @@ def run(*arguments: str, named: Mapping[Path, str] | None = None) -> "subprocess
     done = subprocess.run([command_path(), *arguments], capture_output=True, text=True, encoding="utf-8", check=False)
     if done.returncode != 0:
         # Before the error it may have said what the profile is.
-        text = done.stderr.strip().split("wheelrail: ")[-1] or f"{arguments[0]}: {done.returncode}"
+        text = re.split("^wheelrail: ", done.stderr.strip(), flags=re.MULTILINE)[-1] or f"{arguments[0]}: {done.returncode}"
         for path, name in (named or {}).items():
             text = text.replace(str(path), name).replace(path.name, name)
         raise ValueError(text)
@@ -336,7 +336,7 @@ class Profile:
         Raises
         ------
         ValueError
-            The format has no profile of this body.
+            The ending is that of files of the other body.
         OSError
             The file cannot be written.
         """
@@ -446,10 +446,11 @@ class Profile:
         run("profile", own, *arguments, named={Path(own): self.name, **(named or {})})
 
     def argument(self, folder: Path, name: str) -> str:
-        """What the command is given for this profile: its name, or a file of the given name in a folder."""
+        """What the command is given for this profile: its name, or a file for the given purpose in a folder."""
         if self._built_in is not None:
             return self._built_in
-        path = folder / f"{name}{ENDINGS[self.body]}"
+        # No file of the user's is likely to be called so: errors are told with the profile's name in its place.
+        path = folder / f"wheelrail-given-{name}{ENDINGS[self.body]}"
         path.write_text(self._text, encoding="utf-8")
         return str(path)
 

@@ -349,7 +349,10 @@ def points_of_lists(
     if len(lengths) < len(FRICTION_TABLE):
         (other,) = set(FRICTION_TABLE) - set(lengths)
         if length not in (before, every):
-            raise ValueError(f"{name} has {length} values, and {other} is not given and has {before}: give both lists")
+            raise ValueError(
+                f"{name} has {length} values, and {other} is not given and has {before}: give both lists in one call, or"
+                f" {TABLE_POINTS} = {length} before"
+            )
         return {}
     least = int(bounds(known[TABLE_POINTS])[0])
     if length < least:

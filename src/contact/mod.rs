@@ -31,7 +31,7 @@ use crate::error::{Error, Result};
 #[cfg(feature = "verification")]
 use crate::friction::memory::Memory;
 use crate::geometry::profile::Profile;
-use crate::parameters::{ContactModel, Parameters, ProfileFiles};
+use crate::parameters::{ContactModel, Parameters, ProfileContents};
 use crate::settings::Settings;
 use crate::signals::Outputs;
 use engine::Engine;
@@ -116,11 +116,11 @@ impl Operators {
     ///
     /// # Errors
     /// [`Error::StiffnessNotPositiveDefinite`], [`Error::DepthBasis`], a profile that does not serve.
-    pub fn new(parameters: &Parameters, files: &ProfileFiles) -> Result<Operators> {
+    pub fn new(parameters: &Parameters, contents: &ProfileContents) -> Result<Operators> {
         Ok(match parameters.contact_model {
             ContactModel::Line => Operators::Line(LineOperators::build(parameters)?),
             ContactModel::Patch => Operators::Patch(PatchOperators::build(parameters)?),
-            ContactModel::Profiles => Operators::Surface(SurfaceOperators::build(parameters, files)?),
+            ContactModel::Profiles => Operators::Surface(SurfaceOperators::build(parameters, contents)?),
         })
     }
 

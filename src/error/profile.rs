@@ -23,6 +23,16 @@ pub enum ProfileError {
         /// "rail" or "wheel".
         needed: &'static str,
     },
+    /// A name whose ending is that of the other body's files.
+    #[error("{name}: a file of this ending holds a {other}, and the profile is that of a {body}")]
+    OtherEnding {
+        /// Name of the file.
+        name: String,
+        /// "rail" or "wheel".
+        other: &'static str,
+        /// "rail" or "wheel".
+        body: &'static str,
+    },
     /// A place that the profile does not reach.
     #[error(
         "{name}: {what} = {} mm: the profile reaches from {} to {} mm",

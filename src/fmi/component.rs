@@ -10,7 +10,7 @@ use super::resources::Resources;
 use super::saved_states::SavedStates;
 use super::snapshot::Experiment;
 use crate::error;
-use crate::parameters::{Parameters, ProfileFiles, TEXT_PARAMETERS};
+use crate::parameters::{Parameters, ProfileContents, TEXT_PARAMETERS};
 use crate::settings::Settings;
 use crate::signals::Inputs;
 use crate::wheel_rail::{ContactNode, Model, ProfileDepths, Profiles, State, SurfaceWindow, Workspace};
@@ -24,8 +24,8 @@ pub(super) struct Built {
 
 impl Built {
     /// Computes mesh, compliance and thermal maps.
-    pub(super) fn new(parameters: &Parameters, settings: Settings, files: ProfileFiles) -> error::Result<Built> {
-        let model = Model::of_files(parameters.clone(), settings, files)?;
+    pub(super) fn new(parameters: &Parameters, settings: Settings, contents: ProfileContents) -> error::Result<Built> {
+        let model = Model::with_contents(parameters.clone(), settings, contents)?;
         let workspace = model.workspace();
         Ok(Built { model, workspace })
     }
@@ -61,8 +61,9 @@ pub struct Component {
     pub(super) built: Option<Built>,
     /// Rail and contact at the communication point. In *initializationMode* computed when it is asked for.
     pub(super) state: Option<State>,
-    /// Contents of the profiles' files that the state was computed with: it keeps its profiles when files change. None without a state.
-    pub(super) files: Option<ProfileFiles>,
+    /// Contents of the profiles' files once the initialisation has read them: the state keeps its profiles when files change. Read anew after a reset,
+    /// and where a parameter may name others.
+    pub(super) contents: Option<ProfileContents>,
     /// Computed from `state` when they are asked for.
     pub(super) plots: Plots,
     pub(super) saved: SavedStates,
@@ -88,7 +89,7 @@ impl Component {
             time: 0.0,
             built: None,
             state: None,
-            files: None,
+            contents: None,
             plots: Plots::default(),
             saved: SavedStates::default(),
             texts: vec![CString::default(); TEXT_PARAMETERS.len()],
@@ -200,26 +201,36 @@ impl Component {
         self.told = 0;
         self.time = 0.0;
         self.forget_solution();
+        self.contents = None;
         self.inform(Category::Events, |_| "reset to the start values".to_owned());
     }
 
-    /// Makes `built` the model of the given parameters, with the profiles of the state, or, without one, with those that the files hold now; nothing is built
-    /// anew where only tunable parameters differ.
+    /// Makes `built` the model of the given parameters, with the profiles of the state; at first, with those that the files hold. Nothing is built anew where
+    /// only tunable parameters differ.
     pub(super) fn prepare(&mut self, parameters: &Parameters) -> error::Result<&mut Built> {
-        let parameters = &*self.resources.located(parameters);
-        let files = match &self.files {
-            Some(files) => files.clone(),
-            None => ProfileFiles::read(parameters)?,
+        let contents = match &self.contents {
+            Some(contents) => contents.clone(),
+            None => ProfileContents::read(&self.resources.located(parameters))?,
         };
+        self.prepare_of(contents, parameters)
+    }
+
+    /// Makes `built` that model with profiles in files of these contents; no file is read.
+    pub(super) fn prepare_of(
+        &mut self,
+        contents: ProfileContents,
+        parameters: &Parameters,
+    ) -> error::Result<&mut Built> {
+        let parameters = &*self.resources.located(parameters);
         let reusable = self.built.take_if(|Built { model, .. }| {
-            model.parameters().fixed_part() == parameters.fixed_part() && *model.files() == files
+            model.parameters().fixed_part() == parameters.fixed_part() && *model.profile_contents() == contents
         });
         let built = match reusable {
             Some(mut built) => {
                 built.model.retune(parameters)?;
                 built
             }
-            None => Built::new(parameters, self.settings, files)?,
+            None => Built::new(parameters, self.settings, contents)?,
         };
         Ok(self.built.insert(built))
     }
@@ -234,9 +245,9 @@ impl Component {
             inputs.check(&parameters).map_err(Failure::Model)?;
             let Built { model, workspace } = self.prepare(&parameters).map_err(Failure::Model)?;
             let state = model.initial_state(workspace, &inputs).map_err(Failure::Model)?;
-            let files = model.files().clone();
+            let contents = model.profile_contents().clone();
             self.state = Some(state);
-            self.files = Some(files);
+            self.contents = Some(contents);
         }
         self.state.as_ref().ok_or(Failure::NothingComputed)
     }
@@ -297,7 +308,6 @@ impl Component {
     /// Forgets the solution of the initialisation after a change of what it follows from.
     pub(super) fn forget_solution(&mut self) {
         self.state = None;
-        self.files = None;
         self.plots = Plots::default();
     }
 }

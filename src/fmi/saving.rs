@@ -1,12 +1,12 @@
 //! Saving and restoring an instance.
 
-use super::component::{Built, Component, Plots};
+use super::component::{Component, Plots};
 use super::failures::Failure;
 use super::logging::Category;
 use super::saved_states::Handle;
 use super::serialized::{self, Corruption};
 use super::snapshot::Snapshot;
-use crate::parameters::{Parameters, ProfileFiles, REAL_PARAMETERS, TEXT_PARAMETERS};
+use crate::parameters::{REAL_PARAMETERS, TEXT_PARAMETERS};
 use crate::signals::INPUTS;
 
 impl Component {
@@ -19,7 +19,7 @@ impl Component {
             rates: self.rates,
             time: self.time,
             state: self.state.clone(),
-            files: self.files.clone(),
+            contents: self.contents.clone(),
         }
     }
 
@@ -40,9 +40,11 @@ impl Component {
     pub fn set_state(&mut self, handle: Handle) -> Result<(), Failure> {
         let snapshot = self.saved.find(handle)?.clone();
         if snapshot.state.is_some() {
-            self.prepare_with(&snapshot.files, &snapshot.parameters)?;
+            let contents = snapshot.contents.clone().unwrap_or_default();
+            self.prepare_of(contents, &snapshot.parameters)
+                .map_err(Failure::Model)?;
         }
-        self.files = snapshot.files;
+        self.contents = snapshot.contents;
         self.mode = snapshot.mode;
         self.experiment = snapshot.experiment;
         self.parameters = snapshot.parameters;
@@ -55,15 +57,6 @@ impl Component {
             format!("restored the state of t = {} s", component.time)
         });
         Ok(())
-    }
-
-    /// Makes the model of a saved state's profiles and the given parameters.
-    fn prepare_with(&mut self, files: &Option<ProfileFiles>, parameters: &Parameters) -> Result<&mut Built, Failure> {
-        let own = std::mem::replace(&mut self.files, files.clone());
-        let prepared = self.prepare(parameters).map(|_| ());
-        self.files = own;
-        prepared.map_err(Failure::Model)?;
-        self.built.as_mut().ok_or(Failure::NothingComputed)
     }
 
     /// Frees a saved state and sets the handle to null; a null handle has nothing to free.
@@ -106,16 +99,13 @@ impl Component {
         }
         if let Some(state) = &snapshot.state {
             let parameters = self.parameters.clone();
-            // The model of other profiles is set aside: the simulation goes on with it.
-            let own = self.built.take_if(|built| {
-                snapshot
-                    .files
-                    .as_ref()
-                    .is_some_and(|files| files != built.model.files())
-            });
+            let contents = snapshot.contents.clone().unwrap_or_default();
+            // The simulation goes on with its own profiles until the state is restored: a model of others is made for the check alone.
+            let own = self.built.take_if(|built| *built.model.profile_contents() != contents);
             let accepted = self
-                .prepare_with(&snapshot.files, &parameters)
-                .map(|built| built.model.accepts(state));
+                .prepare_of(contents, &parameters)
+                .map(|built| built.model.accepts(state))
+                .map_err(Failure::Model);
             self.built = own.or(self.built.take());
             if !accepted? {
                 return Err(Corruption::Content.into());

@@ -1,7 +1,7 @@
 //! Contents of a saved state.
 
 use super::modes::Mode;
-use crate::parameters::{Parameters, ProfileFiles};
+use crate::parameters::{Parameters, ProfileContents};
 use crate::signals::Inputs;
 use crate::wheel_rail::State;
 use serde::{Deserialize, Serialize};
@@ -34,5 +34,5 @@ pub struct Snapshot {
     /// Rail and contact, once computed.
     pub state: Option<State>,
     /// Contents of the profiles' files that the state was computed with.
-    pub files: Option<ProfileFiles>,
+    pub contents: Option<ProfileContents>,
 }

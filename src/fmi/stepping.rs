@@ -159,7 +159,7 @@ mod tests {
     use super::*;
     use crate::fmi::logging::{Journal, Rules};
     use crate::fmi::resources::Resources;
-    use crate::parameters::{ContactModel, ProfileFiles, WheelHeating};
+    use crate::parameters::{ContactModel, ProfileContents, WheelHeating};
     use crate::settings::Settings;
     use crate::settings::limits::{LIMITS, Limit, PATCH_LIMITS};
     use crate::signals::Outputs;
@@ -183,7 +183,7 @@ mod tests {
     }
 
     fn limit(component: &mut Component, settings: Settings) {
-        component.built = Some(Built::new(&component.parameters, settings, ProfileFiles::default()).unwrap());
+        component.built = Some(Built::new(&component.parameters, settings, ProfileContents::default()).unwrap());
     }
 
     fn outputs(component: &mut Component) -> Outputs {

@@ -171,6 +171,7 @@ impl Component {
         }
         if any {
             self.forget_solution();
+            self.contents = None;
         }
         self.parameters = parameters;
         Ok(())
@@ -200,6 +201,7 @@ impl Component {
         if let Cow::Owned(parameters) = parameters {
             self.parameters = parameters;
             self.forget_solution();
+            self.contents = None;
         }
         Ok(())
     }

@@ -5,7 +5,7 @@
 //! read; `rows` has the macros that make these three of one declaration.
 //! `choices` are the types of those that choose, `derived` what follows from the values by a formula, `validation` what must
 //! hold between them, `text` what a text must be, `source` what
-//! that of a profile names, `profile_files` what is in the files; `grids` are names for pairs of `patch_nodes` and `patch_strips`.
+//! that of a profile names, `profile_contents` what is in its file; `grids` are names for pairs of `patch_nodes` and `patch_strips`.
 
 // First, because `table` is written in its macros.
 #[macro_use]
@@ -14,7 +14,7 @@ mod rows;
 mod choices;
 mod derived;
 mod grids;
-mod profile_files;
+mod profile_contents;
 mod range;
 mod source;
 mod table;
@@ -27,7 +27,7 @@ pub use choices::{
     Wheel, WheelHeating, WheelWearLaw,
 };
 pub use grids::{PATCH_GRID, PatchGrid};
-pub use profile_files::ProfileFiles;
+pub use profile_contents::ProfileContents;
 pub use range::check_range;
 pub use source::{ProfileSource, path_of};
 pub use table::{

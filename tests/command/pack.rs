@@ -243,6 +243,18 @@ fn what_does_not_belong_together_is_refused() {
     assert!(message.contains("missing.fmu"), "{message}");
 }
 
+fn copy_folder(source: &Path, to: &Path) {
+    std::fs::create_dir_all(to).unwrap();
+    for entry in std::fs::read_dir(source).unwrap().map(Result::unwrap) {
+        let to = to.join(entry.file_name());
+        if entry.file_type().unwrap().is_dir() {
+            copy_folder(&entry.path(), &to);
+        } else {
+            std::fs::copy(entry.path(), to).unwrap();
+        }
+    }
+}
+
 /// Whatever goes into the archive is not written over by it.
 #[test]
 fn no_file_is_written_over() {
@@ -252,24 +264,30 @@ fn no_file_is_written_over() {
     let own = folder.join("own.so");
     let archive = packed(&folder, "first.fmu", &[]);
     let [rail, own, archive] = [&rail, &own, &archive].map(|path| path.to_str().unwrap());
-    let picture = "modelDescription/model.png";
-    let notice = "modelDescription/licenses/license.txt";
+    // A copy: were it written over, it would not be the project's own.
+    let description = folder.join("description");
+    copy_folder(
+        &Path::new(env!("CARGO_MANIFEST_DIR")).join("modelDescription"),
+        &description,
+    );
+    let [picture, notice] = ["model.png", "licenses/license.txt"].map(|name| description.join(name));
+    let [picture, notice, description] = [&picture, &notice, &description].map(|path| path.to_str().unwrap());
     for (options, output, other) in [
         (&["--rail-profile", rail][..], rail, "--rail-profile"),
         (&["--merge", archive], archive, "--merge"),
         (&[], own, "--library"),
-        (&[], picture, "--description"),
-        (&[], notice, "--description"),
+        (&["--description", description], picture, "--description"),
+        (&["--description", description], notice, "--description"),
     ] {
-        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(output);
+        let path = Path::new(output);
         // The library is there from the packing above on.
-        let before = read(&path).unwrap();
+        let before = read(path).unwrap();
         let done = pack(&folder, &[options, &["--output", output]].concat());
         let message = String::from_utf8(done.stderr).unwrap();
         assert_eq!(done.status.code(), Some(1), "{message}");
         let words = format!("--output {output}: the command reads this file ({other})");
         assert!(message.contains(&words), "{message}");
-        assert!(read(&path).unwrap() == before, "{output} has changed");
+        assert!(read(path).unwrap() == before, "{output} has changed");
     }
 }
 

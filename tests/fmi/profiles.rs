@@ -93,7 +93,6 @@ fn a_restored_state_repeats_the_bits() {
     });
 }
 
-/// The column of the interface by a position is the difference of two runs from the same state.
 /// A saved state goes on with the profile that it was saved with, after the file has become another one, and when it is gone. What begins anew
 /// reads the file.
 #[test]
@@ -138,7 +137,14 @@ fn a_saved_state_keeps_the_profile_of_its_file() {
         client.expect(OK, client.restore(saved));
         assert_eq!(rest, drive(&client, 4..8));
 
+        // An initialisation reads it once, whatever inputs it tries.
+        let trying = initializing(api);
+        take_wheel(&trying, &file);
+        trying.get("force_x");
         fs::remove_file(&file).unwrap();
+        trying.expect(OK, trying.set(&[("normal_load", 30e3)]));
+        assert!((trying.get("force_z") / 30e3 - 1.0).abs() < 1e-3);
+
         let elsewhere = initializing(api);
         take_wheel(&elsewhere, &file);
         let mut handle = null_mut();
@@ -148,6 +154,7 @@ fn a_saved_state_keeps_the_profile_of_its_file() {
     });
 }
 
+/// The column of the interface by a position is the difference of two runs from the same state.
 #[test]
 fn derivatives_by_position_are_differences() {
     with_each_standard(|api| {

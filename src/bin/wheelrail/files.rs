@@ -118,15 +118,20 @@ fn open(path: &Path, options: &OpenOptions) -> io::Result<File> {
 
 /// Opens a file for writing and leaves it as it was.
 fn try_to_write(path: &Path) -> io::Result<()> {
-    let found = fs::metadata(path);
     // Who waits at the other end of a pipe would take the trial for the end.
-    if found.as_ref().is_ok_and(|found| !found.is_file() && !found.is_dir()) {
+    if fs::metadata(path).is_ok_and(|found| !found.is_file() && !found.is_dir()) {
         return Ok(());
     }
-    open(path, OpenOptions::new().append(true).create(true))?;
-    if found.is_err() {
-        // A link to a file that was not there stays: the file goes.
-        fs::remove_file(fs::canonicalize(path)?)?;
+    // Only a file that the trial itself has made goes again; where that is not allowed, it stays, empty.
+    if open(path, OpenOptions::new().write(true).create_new(true)).is_ok() {
+        let _ = fs::remove_file(path);
+        return Ok(());
+    }
+    let is_link_to_nothing = fs::symlink_metadata(path).is_ok() && fs::metadata(path).is_err();
+    open(path, OpenOptions::new().append(true).create(is_link_to_nothing))?;
+    if is_link_to_nothing {
+        // The link stays.
+        let _ = fs::canonicalize(path).and_then(fs::remove_file);
     }
     Ok(())
 }

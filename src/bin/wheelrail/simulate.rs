@@ -225,10 +225,12 @@ impl Simulate {
         for name in &self.preset {
             files.reads("--preset", preset::file(name));
         }
-        for (name, text) in [
+        let profiles = [
             ("rail_profile", &parameters.rail_profile),
             ("wheel_profile", &parameters.wheel_profile),
-        ] {
+        ];
+        let is_read = parameters.contact_model == ContactModel::Profiles;
+        for (name, text) in profiles.into_iter().filter(|_| is_read) {
             if let ProfileSource::File(path) = ProfileSource::of(name, text).map_err(Error::Parameter)? {
                 files.reads(name, Some(&path));
             }

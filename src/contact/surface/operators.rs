@@ -11,7 +11,7 @@ use crate::geometry::profile::files::ReadOptions;
 use crate::geometry::profile::{Body, DepthGrid, Profile, WornHeight};
 use crate::geometry::rail::PlacedRail;
 use crate::geometry::unrolled::Wheel;
-use crate::parameters::{Parameters, ProfileFiles, ProfileSource, ProfileWear, Side};
+use crate::parameters::{Parameters, ProfileContents, ProfileSource, ProfileWear, Side};
 
 /// Distance of the points of the rail's profile at which contacts are sought, `m`: less than the breadth of the smallest that carries
 /// an appreciable load.
@@ -86,19 +86,19 @@ impl SurfaceOperators {
     ///
     /// # Errors
     /// A profile that does not serve, [`crate::error::Error::DepthBasis`].
-    pub fn build(parameters: &Parameters, files: &ProfileFiles) -> Result<SurfaceOperators> {
+    pub fn build(parameters: &Parameters, contents: &ProfileContents) -> Result<SurfaceOperators> {
         let profiles = [
             profile(
                 "wheel_profile",
                 &parameters.wheel_profile,
-                files.wheel.as_deref(),
+                contents.wheel.as_deref(),
                 Body::Wheel,
                 parameters,
             )?,
             profile(
                 "rail_profile",
                 &parameters.rail_profile,
-                files.rail.as_deref(),
+                contents.rail.as_deref(),
                 Body::Rail,
                 parameters,
             )?,

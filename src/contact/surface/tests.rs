@@ -16,7 +16,7 @@ use crate::contact::surface::fields::SurfaceFields;
 use crate::contact::{ContactState, ContactWorkspace};
 use crate::geometry::rail::PlacedRail;
 use crate::geometry::unrolled::{PlacedWheel, RailPoint, WheelsetPosition};
-use crate::parameters::{ContactModel, Control, Parameters, ProfileFiles, ProfileWear, Side, SlipSource};
+use crate::parameters::{ContactModel, Control, Parameters, ProfileContents, ProfileWear, Side, SlipSource};
 use crate::settings::Settings;
 use crate::signals::{INPUTS, Inputs};
 use crate::torture::random::Random;
@@ -86,7 +86,7 @@ fn seen(operators: &SurfaceOperators, bodies: (&PlacedRail, &PlacedWheel), place
 #[test]
 fn the_change_of_the_geometry_is_its_difference() {
     let parameters = parameters(Control::Height);
-    let operators = SurfaceOperators::build(&parameters, &ProfileFiles::default()).unwrap();
+    let operators = SurfaceOperators::build(&parameters, &ProfileContents::default()).unwrap();
     for lateral in [1e-3, 5e-3] {
         let inputs = displaced(lateral);
         let state = run(&parameters, &inputs, 0);
@@ -153,7 +153,7 @@ fn the_change_of_the_geometry_is_its_difference() {
 #[test]
 fn the_gap_is_that_of_the_wheel_over_each_cell() {
     let parameters = parameters(Control::Height);
-    let operators = SurfaceOperators::build(&parameters, &ProfileFiles::default()).unwrap();
+    let operators = SurfaceOperators::build(&parameters, &ProfileContents::default()).unwrap();
     let (mut cells, mut largest) = (0, 0f64);
     for lateral in [1e-3, 5e-3] {
         let inputs = displaced(lateral);
@@ -194,7 +194,7 @@ fn the_gap_is_that_of_the_wheel_over_each_cell() {
 #[test]
 fn a_distance_is_guessed_from_the_one_beside_it() {
     let parameters = parameters(Control::Height);
-    let operators = SurfaceOperators::build(&parameters, &ProfileFiles::default()).unwrap();
+    let operators = SurfaceOperators::build(&parameters, &ProfileContents::default()).unwrap();
     let (mut points, mut largest, mut least) = (0, 0.0_f64, f64::INFINITY);
     for lateral in [1e-3, 5e-3] {
         let inputs = displaced(lateral);
@@ -244,7 +244,7 @@ fn the_wheel_is_found_between_the_walls_of_its_grooves() {
         wheel_profile_wear: ProfileWear::On,
         ..parameters(Control::Load)
     };
-    let operators = SurfaceOperators::build(&parameters, &ProfileFiles::default()).unwrap();
+    let operators = SurfaceOperators::build(&parameters, &ProfileContents::default()).unwrap();
     let worn = worn_wheel(&operators, 2e-3..12e-3, |cell| if cell % 4 < 2 { 2e-3 } else { 0.0 });
     let bodies = worn.of(&operators);
     let wheel = PlacedWheel::new(
@@ -284,7 +284,7 @@ fn steep_walls_of_a_worn_wheel_do_not_reach_into_the_rail() {
         wheel_profile_wear: ProfileWear::On,
         ..parameters(Control::Load)
     };
-    let operators = SurfaceOperators::build(&parameters, &ProfileFiles::default()).unwrap();
+    let operators = SurfaceOperators::build(&parameters, &ProfileContents::default()).unwrap();
     let worn = worn_wheel(&operators, 2e-3..12e-3, |cell| if cell % 4 < 2 { DEPTH } else { 0.0 });
     let bodies = worn.of(&operators);
     let mut walls = 0;
@@ -337,7 +337,7 @@ fn rough_bodies_have_a_window_where_they_touch_first() {
         ..parameters(Control::Load)
     };
     let settings = Settings::default();
-    let operators = SurfaceOperators::build(&parameters, &ProfileFiles::default()).unwrap();
+    let operators = SurfaceOperators::build(&parameters, &ProfileContents::default()).unwrap();
     let mut solvers = operators.solvers(&settings);
     let mut random = Random::new(1, 0);
     solvers.worn = worn_wheel(&operators, -30e-3..30e-3, |_| random.between(0.0, 3e-4));
@@ -364,7 +364,7 @@ fn rough_bodies_have_a_window_where_they_touch_first() {
 fn the_approach_of_a_small_load_does_not_grow_with_it() {
     let parameters = parameters(Control::Load);
     let settings = Settings::default();
-    let operators = SurfaceOperators::build(&parameters, &ProfileFiles::default()).unwrap();
+    let operators = SurfaceOperators::build(&parameters, &ProfileContents::default()).unwrap();
     let mut solvers = operators.solvers(&settings);
     let inputs = displaced(1e-3);
     let mut before = SurfaceFields::new(&operators);
@@ -388,7 +388,7 @@ fn the_approach_of_a_small_load_does_not_grow_with_it() {
 fn a_pressure_that_is_held_knows_no_separation() {
     let parameters = parameters(Control::Load);
     let settings = Settings::default();
-    let operators = SurfaceOperators::build(&parameters, &ProfileFiles::default()).unwrap();
+    let operators = SurfaceOperators::build(&parameters, &ProfileContents::default()).unwrap();
     let mut solvers = operators.solvers(&settings);
     let inputs = displaced(1e-3);
     let problem = problem(&operators, (&parameters, &settings), inputs);
@@ -412,7 +412,7 @@ fn a_pressure_that_is_held_knows_no_separation() {
 #[test]
 fn windows_displace_each_other_as_their_cells_do() {
     let parameters = parameters(Control::Load);
-    let operators = SurfaceOperators::build(&parameters, &ProfileFiles::default()).unwrap();
+    let operators = SurfaceOperators::build(&parameters, &ProfileContents::default()).unwrap();
     let inputs = Inputs {
         normal_load: 20e3,
         vertical_displacement: 0.0,
@@ -467,7 +467,7 @@ fn windows_displace_each_other_as_their_cells_do() {
 #[test]
 fn a_cell_displaces_another_window_as_a_point_force() {
     let parameters = parameters(Control::Load);
-    let operators = SurfaceOperators::build(&parameters, &ProfileFiles::default()).unwrap();
+    let operators = SurfaceOperators::build(&parameters, &ProfileContents::default()).unwrap();
     let inputs = Inputs {
         normal_load: 20e3,
         vertical_displacement: 0.0,
@@ -531,7 +531,7 @@ fn a_cell_displaces_another_window_as_a_point_force() {
 #[test]
 fn a_window_that_moves_keeps_heat_and_worn_volume() {
     let parameters = parameters(Control::Load);
-    let operators = SurfaceOperators::build(&parameters, &ProfileFiles::default()).unwrap();
+    let operators = SurfaceOperators::build(&parameters, &ProfileContents::default()).unwrap();
     let state = run(&parameters, &displaced(3e-3), 5);
     let before = fields(&state);
     let (window, place) = before.used().next().unwrap();
@@ -581,7 +581,7 @@ fn the_volume_of_the_cells_is_that_of_the_law() {
         ..parameters(Control::Load)
     };
     let model = Model::new(parameters.clone()).unwrap();
-    let operators = SurfaceOperators::build(&parameters, &ProfileFiles::default()).unwrap();
+    let operators = SurfaceOperators::build(&parameters, &ProfileContents::default()).unwrap();
     let mut workspace = model.workspace();
     let mut state = model.initial_state(&mut workspace, &displaced(3e-3)).unwrap();
     for step in 0..30 {

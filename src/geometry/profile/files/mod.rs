@@ -142,18 +142,18 @@ impl Profile {
         Profile::of_file(path, &text_of(path)?, options)
     }
 
-    /// Profile from a file with this text; the path says name and format.
+    /// Profile from the text of a file, whose path says name and format.
     ///
     /// # Errors
-    /// As [`Profile::read`].
-    pub fn of_file(path: &Path, text: &str, options: &ReadOptions) -> Result<Profile, ProfileError> {
+    /// As [`Profile::parse`].
+    pub(crate) fn of_file(path: &Path, text: &str, options: &ReadOptions) -> Result<Profile, ProfileError> {
         Profile::parse(text, &name_of(path), Format::of(path, text), options)
     }
 
     /// Profile from the text of a file.
     ///
     /// # Errors
-    /// As [`Profile::read`].
+    /// The text is not of its format, does not say what it must, or is no profile of the body that is needed.
     pub fn parse(text: &str, name: &str, format: Format, options: &ReadOptions) -> Result<Profile, ProfileError> {
         let raw = match format {
             Format::Simpack => simpack::read(text, name)?,
@@ -161,13 +161,7 @@ impl Profile {
             Format::Vampire => vampire::read(text, name, options.part)?,
             Format::Columns => columns::read(text, name)?,
         };
-        let ending = name.rsplit('.').next().unwrap_or_default().to_ascii_lowercase();
-        let by_name = match ending.as_str() {
-            "prr" | "ban" | "rai" => Some(Body::Rail),
-            "prw" | "whl" | "whe" => Some(Body::Wheel),
-            _ => None,
-        };
-        let body = match (raw.body.or(by_name), options.body) {
+        let body = match (raw.body.or(body_of(name)), options.body) {
             (Some(found), Some(needed)) if found != needed => {
                 return Err(ProfileError::OtherBody {
                     name: name.to_owned(),
@@ -216,7 +210,7 @@ impl Profile {
 ///
 /// # Errors
 /// [`ProfileError::File`].
-pub fn text_of(path: &Path) -> Result<String, ProfileError> {
+pub(crate) fn text_of(path: &Path) -> Result<String, ProfileError> {
     let failed = |reason: String| ProfileError::File {
         path: path.display().to_string(),
         reason,
@@ -232,6 +226,16 @@ pub fn text_of(path: &Path) -> Result<String, ProfileError> {
     let bytes = std::fs::read(path).map_err(|error| failed(error.to_string()))?;
     // Titles of stations are in all kinds of alphabets; numbers are not.
     Ok(String::from_utf8_lossy(&bytes).into_owned())
+}
+
+/// Body that the end of a file's name stands for.
+fn body_of(name: &str) -> Option<Body> {
+    let ending = name.rsplit('.').next().unwrap_or_default().to_ascii_lowercase();
+    match ending.as_str() {
+        "prr" | "ban" | "rai" => Some(Body::Rail),
+        "prw" | "whl" | "whe" => Some(Body::Wheel),
+        _ => None,
+    }
 }
 
 /// Name of a file without its folder.

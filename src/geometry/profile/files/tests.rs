@@ -73,6 +73,16 @@ fn files_are_written_by_the_end_of_their_names() {
         wheel.write(&path).unwrap();
         assert_same(&Profile::read(&path, &options).unwrap(), &wheel);
     }
+    // What could not be read again is not written.
+    for ending in ["prr", "ban", "RAI"] {
+        let path = folder.join(format!("wheel.{ending}"));
+        let error = wheel.write(&path).unwrap_err().to_string();
+        assert_eq!(
+            error,
+            format!("wheel.{ending}: a file of this ending holds a rail, and the profile is that of a wheel")
+        );
+        assert!(!path.exists());
+    }
     std::fs::remove_dir_all(&folder).unwrap();
     let error = wheel.write(&folder.join("wheel.prw")).unwrap_err().to_string();
     assert!(error.contains("wheel.prw"), "{error}");

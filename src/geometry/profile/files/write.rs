@@ -1,6 +1,6 @@
 //! Profiles into files, each as its reader reads it back.
 
-use super::Format;
+use super::{Format, body_of, name_of};
 use crate::error::ProfileError;
 use crate::geometry::profile::{Body, Profile};
 use std::fmt::Write;
@@ -16,8 +16,16 @@ impl Profile {
     /// VAMPIRE's (`.rai`, `.whe`) or, with any other one, as a table of y and z in `mm`, y to the field side and z upward.
     ///
     /// # Errors
-    /// The file cannot be written.
+    /// The end of the name is that of the other body's files, which could not be read again; the file cannot be written.
     pub fn write(&self, path: &Path) -> Result<(), ProfileError> {
+        let name = name_of(path);
+        if let Some(other) = body_of(&name).filter(|body| *body != self.body()) {
+            return Err(ProfileError::OtherEnding {
+                name,
+                other: other.name(),
+                body: self.body().name(),
+            });
+        }
         let ending = path
             .extension()
             .map(|ending| ending.to_string_lossy().to_ascii_lowercase());

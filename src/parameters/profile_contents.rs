@@ -9,23 +9,23 @@ use std::sync::Arc;
 /// Contents of the files that [`Parameters::wheel_profile`] and [`Parameters::rail_profile`] name; none of a profile that is built in, and
 /// none of a contact without profiles. A saved state carries them, as the files may have changed or be gone where it is restored.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub struct ProfileFiles {
+pub struct ProfileContents {
     /// Text of the wheel's file.
     pub wheel: Option<Arc<str>>,
     /// Text of the rail's file.
     pub rail: Option<Arc<str>>,
 }
 
-impl ProfileFiles {
+impl ProfileContents {
     /// Reads the files that the parameters name.
     ///
     /// # Errors
     /// [`Error::Text`], or [`Error::NamedProfile`] where a file cannot be read.
-    pub fn read(parameters: &Parameters) -> Result<ProfileFiles> {
+    pub fn read(parameters: &Parameters) -> Result<ProfileContents> {
         if parameters.contact_model != ContactModel::Profiles {
-            return Ok(ProfileFiles::default());
+            return Ok(ProfileContents::default());
         }
-        Ok(ProfileFiles {
+        Ok(ProfileContents {
             wheel: read("wheel_profile", &parameters.wheel_profile)?,
             rail: read("rail_profile", &parameters.rail_profile)?,
         })
