@@ -76,7 +76,10 @@ def run(*arguments: str, named: Mapping[Path, str] | None = None) -> "subprocess
     done = subprocess.run([command_path(), *arguments], capture_output=True, text=True, encoding="utf-8", check=False)
     if done.returncode != 0:
         # Before the error it may have said what the profile is.
-        text = re.split("^wheelrail: ", done.stderr.strip(), flags=re.MULTILINE)[-1] or f"{arguments[0]}: {done.returncode}"
+        text = (
+            re.split("^wheelrail: ", done.stderr.strip(), flags=re.MULTILINE)[-1]
+            or f"{arguments[0]}: {done.returncode}"
+        )
         for path, name in (named or {}).items():
             text = text.replace(str(path), name).replace(path.name, name)
         raise ValueError(text)

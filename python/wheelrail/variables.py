@@ -350,8 +350,8 @@ def points_of_lists(
         (other,) = set(FRICTION_TABLE) - set(lengths)
         if length not in (before, every):
             raise ValueError(
-                f"{name} has {length} values, and {other} is not given and has {before}: give both lists in one call, or"
-                f" {TABLE_POINTS} = {length} before"
+                f"{name} has {length} values, and {other} is not given and has {before}: give both lists in one call,"
+                f" or {TABLE_POINTS} = {length} before"
             )
         return {}
     least = int(bounds(known[TABLE_POINTS])[0])
