@@ -2,7 +2,8 @@
 
 use crate::derivatives;
 use wheelrail::Error;
-use wheelrail::parameters::{ContactModel, Control, FrictionLaw, Parameters, Side, SlipSource};
+use wheelrail::Simulation;
+use wheelrail::parameters::{ContactModel, Control, FrictionLaw, Parameters, PatchGrid, Side, SlipSource};
 use wheelrail::signals::Inputs;
 use wheelrail::wheel_rail::{Model, State};
 
@@ -424,5 +425,43 @@ fn forces_follow_their_slope_where_the_load_passes_to_the_flange() {
                 assert!(jump < bound, "{load} N, step {step}, force {force}: {jump}");
             }
         }
+    }
+}
+
+/// A contact that a jump of the load has put into two windows beside one another becomes one again: at the same inputs it is that of a wheel which
+/// has always carried them.
+#[test]
+fn a_contact_in_two_windows_becomes_one() {
+    let settled = |grid: PatchGrid, lateral_displacement: f64, first: f64, load: f64| {
+        let mut parameters = Parameters {
+            contact_model: ContactModel::Profiles,
+            slip_source: SlipSource::VehicleSpeed,
+            ..Parameters::default()
+        };
+        parameters.set_patch_grid(grid);
+        let inputs = |normal_load: f64| Inputs {
+            normal_load,
+            vehicle_speed: 10.0,
+            wheel_speed: 10.1 / parameters.wheel_radius,
+            lateral_displacement,
+            ..Inputs::default()
+        };
+        let mut simulation = Simulation::new(&parameters, &inputs(first)).unwrap();
+        for (steps, load) in [(20, first), (50, load)] {
+            for _ in 0..steps {
+                simulation.step(&inputs(load), 1e-3).unwrap();
+            }
+        }
+        simulation.outputs().clone()
+    };
+    for (grid, lateral, first, load) in [
+        (PatchGrid::Default, 1.72e-3, 666.0, 37.36e3),
+        (PatchGrid::Fast, 3e-3, 60e3, 1e3),
+    ] {
+        let (jumped, always) = (settled(grid, lateral, first, load), settled(grid, lateral, load, load));
+        assert_eq!(jumped.contacts, always.contacts, "{grid:?}");
+        let ratio = jumped.peak_pressure / always.peak_pressure;
+        // What is left of the step before, to the tolerance of the split.
+        assert!((ratio - 1.0).abs() < 1e-5, "{grid:?}: {ratio}");
     }
 }

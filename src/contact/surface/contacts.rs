@@ -35,7 +35,32 @@ pub struct Wanted {
     pub region: Region,
     /// Depth of the overlap, `m`.
     pub depth: f64,
+    /// Ends in arc length of the contact itself, half a strip of its window farther on either side, `m`; none of an overlap.
+    pub reach: Option<[f64; 2]>,
 }
+
+impl Wanted {
+    /// An overlap of the bodies.
+    pub fn overlap(region: Region, depth: f64) -> Wanted {
+        Wanted {
+            region,
+            depth,
+            reach: None,
+        }
+    }
+
+    /// Whether nothing but the seam of two windows lies between this contact and the next one: they are one.
+    pub fn goes_on_in(&self, next: &Wanted) -> bool {
+        match (self.reach, next.reach) {
+            // Two contacts in one window have a strip between them, to round-off.
+            (Some([_, end]), Some([begin, _])) => end - begin > ROUND_OFF,
+            _ => false,
+        }
+    }
+}
+
+/// Round-off of arc lengths, `m`.
+const ROUND_OFF: f64 = 1e-9;
 
 /// Gap at the expected approach from which on a contact of the step before has ended, `m`: the wheelset has jumped. Heat and wear change the gap by less.
 const LIFTED: f64 = 5e-4;
@@ -100,7 +125,7 @@ pub fn find(
             wanted.region.narrowest = wanted.region.across[1] - wanted.region.across[0];
             wanted.depth = wanted.depth.max(depth);
         } else if found.len() < CONTACTS {
-            found.push(Wanted { region, depth });
+            found.push(Wanted::overlap(region, depth));
         }
     }
     found.sort_unstable_by(|a, b| a.region.across[0].total_cmp(&b.region.across[0]));
@@ -130,6 +155,7 @@ fn carrying(operators: &SurfaceOperators, fields: &SurfaceFields, growth: f64, f
                     found.push(Wanted {
                         region: grown(operators, &region, growth),
                         depth: CARRIES,
+                        reach: Some([run.across[0] - 0.5 * grid.breadth, run.across[1] + 0.5 * grid.breadth]),
                     });
                 }
                 continue;

@@ -231,10 +231,7 @@ fn want_overlaps(problem: &SurfaceProblem, approach: f64, solvers: &mut SurfaceS
     let approach = approach * AHEAD * problem.conditions.room;
     // The overlaps come from the field side to the gauge side.
     let overlaps = search.overlaps(approach).iter().rev();
-    wanted.extend(overlaps.map(|overlap| Wanted {
-        region: overlap.region,
-        depth: overlap.depth,
-    }));
+    wanted.extend(overlaps.map(|overlap| Wanted::overlap(overlap.region, overlap.depth)));
     want_first(search, approach, wanted);
 }
 
@@ -255,7 +252,7 @@ fn want_first(search: &Search, approach: f64, wanted: &mut Vec<Wanted>) {
         };
     } else {
         let before = wanted.partition_point(|wanted| wanted.region.across[0] < region.across[0]);
-        wanted.insert(before, Wanted { region, depth: CARRIES });
+        wanted.insert(before, Wanted::overlap(region, CARRIES));
     }
 }
 
@@ -290,10 +287,13 @@ fn merged(sizes: &Sizes, wanted: &[Wanted]) -> ([Wanted; WINDOWS], usize) {
     let mut regions = [Wanted::default(); CONTACTS];
     let mut count = 0;
     for new in wanted {
-        if count > 0 && share_window(&regions[count - 1].region, &new.region, sizes) {
-            let last = &mut regions[count - 1];
+        if count > 0
+            && let last = &mut regions[count - 1]
+            && (share_window(&last.region, &new.region, sizes) || last.goes_on_in(new))
+        {
             last.region = last.region.union(&new.region);
             last.depth = last.depth.max(new.depth);
+            last.reach = new.reach.or(last.reach);
             continue;
         }
         regions[count] = *new;
