@@ -452,7 +452,7 @@ fn a_contact_in_two_windows_becomes_one() {
                 simulation.step(&inputs(load), 1e-3).unwrap();
             }
         }
-        simulation.outputs().clone()
+        *simulation.outputs()
     };
     for (grid, lateral, first, load) in [
         (PatchGrid::Default, 1.72e-3, 666.0, 37.36e3),
