@@ -200,13 +200,11 @@ impl Component {
         self.rates = Inputs::ZERO;
         self.told = 0;
         self.time = 0.0;
-        self.forget_solution();
-        self.contents = None;
+        self.forget_profiles();
         self.inform(Category::Events, |_| "reset to the start values".to_owned());
     }
 
-    /// Makes `built` the model of the given parameters, with the profiles of the state; at first, with those that the files hold. Nothing is built anew where
-    /// only tunable parameters differ.
+    /// Makes `built` the model of the given parameters, with the profiles of the state; at first, with those that the files hold.
     pub(super) fn prepare(&mut self, parameters: &Parameters) -> error::Result<&mut Built> {
         let contents = match &self.contents {
             Some(contents) => contents.clone(),
@@ -215,7 +213,8 @@ impl Component {
         self.prepare_of(contents, parameters)
     }
 
-    /// Makes `built` that model with profiles in files of these contents; no file is read.
+    /// Makes `built` the model of the given parameters, with profiles from these contents of files; no file is read. Nothing is built anew where only tunable
+    /// parameters differ.
     pub(super) fn prepare_of(
         &mut self,
         contents: ProfileContents,
@@ -303,6 +302,12 @@ impl Component {
             self.plots.nodes = Some(nodes);
         }
         self.plots.nodes.as_deref().ok_or(Failure::NothingComputed)
+    }
+
+    /// Forgets the solution, and what has been read for it: the files' contents, after a change of what may name other files.
+    pub(super) fn forget_profiles(&mut self) {
+        self.forget_solution();
+        self.contents = None;
     }
 
     /// Forgets the solution of the initialisation after a change of what it follows from.

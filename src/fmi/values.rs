@@ -170,8 +170,7 @@ impl Component {
             }
         }
         if any {
-            self.forget_solution();
-            self.contents = None;
+            self.forget_profiles();
         }
         self.parameters = parameters;
         Ok(())
@@ -200,8 +199,7 @@ impl Component {
         }
         if let Cow::Owned(parameters) = parameters {
             self.parameters = parameters;
-            self.forget_solution();
-            self.contents = None;
+            self.forget_profiles();
         }
         Ok(())
     }

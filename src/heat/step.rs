@@ -27,8 +27,8 @@
 use crate::numerics::decay::{Decay, decay};
 use crate::numerics::dense::MultiplyAdd;
 
-/// Speed of the rail below which its change with |V| is that at [`SLOW`], `m/s`. ω rises from 0 to ½ about |V| = r Δ, which of the slowest modes is nanometres per
-/// second, and of all that decay little in a step less than this: the slope there says nothing of any change that can be told from a standstill.
+/// Speed of the rail below which the change with |V| is that at [`SLOW`], `m/s`. ω rises from 0 to ½ about |V| = r Δ, which of the slowest modes is nanometres per
+/// second: the slope there says nothing of any change that can be told from a standstill.
 const STANDSTILL: f64 = 1e-4;
 /// Slow motion that stands for a standstill, `m/s`: its derivatives are those of changes by millimetres per second.
 const SLOW: f64 = 5e-3;
