@@ -128,6 +128,14 @@ fn a_saved_state_keeps_the_profile_of_its_file() {
         assert_eq!(drive(&other, 4..6), drive(&alike, 4..6));
         other.expect(OK, other.restore(handle));
         assert_eq!(rest, drive(&other, 4..8));
+        // A tunable parameter makes no other wheel of it.
+        let tuned = [(&client, saved), (&other, handle)].map(|(client, saved)| {
+            client.expect(OK, client.restore(saved));
+            client.expect(OK, client.set(&[("friction_cold", 0.4)]));
+            drive(client, 4..8)
+        });
+        assert_eq!(tuned[0], tuned[1]);
+        assert_ne!(tuned[0], rest);
         // Another start reads the file as it is; the saved state leads back.
         client.expect(OK, client.reset());
         begin(&client);

@@ -138,7 +138,14 @@ fn reverse_is_forward_seen_from_the_other_end() {
             "{name}: {forward} {reverse}"
         );
     }
-    assert!(ahead_contact.longitudinal_creepage > 0.0 && ahead.wear_number > 0.0);
+    assert!(ahead_contact.longitudinal_creepage > 0.0);
+    // Work of the resultants per distance is the power of friction over the speed, but for how the slip varies over the contact.
+    let work = ahead_contact.wear_number * forward.vehicle_speed;
+    assert!(
+        (work / ahead_contact.friction_power - 1.0).abs() < 0.1,
+        "{work} {}",
+        ahead_contact.friction_power
+    );
 }
 
 /// The wheelset's height under a load carries the load where it is given.
