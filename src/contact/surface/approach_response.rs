@@ -33,7 +33,7 @@ pub fn stiffness(problem: &SurfaceProblem, fields: &SurfaceFields, solvers: &mut
 /// Finds the responses of the windows' pressures to the approach, their influence on one another included.
 fn respond(problem: &SurfaceProblem, fields: &SurfaceFields, solvers: &mut SurfaceSolvers) {
     let operators = problem.operators;
-    solvers.apart_response.clear();
+    solvers.apart_response.clear(operators, fields.are_close);
     for (window, place) in fields.used() {
         let own = &mut solvers.windows[window];
         own.response.clear(&operators.of(&place).grid);

@@ -37,6 +37,8 @@ pub struct Wanted {
     pub depth: f64,
     /// Ends in arc length of the contact itself, half a strip of its window farther on either side, `m`; none of an overlap.
     pub reach: Option<[f64; 2]>,
+    /// Extent of what its window has room for, over that of the region.
+    pub room: f64,
 }
 
 impl Wanted {
@@ -46,14 +48,14 @@ impl Wanted {
             region,
             depth,
             reach: None,
+            room: 1.0,
         }
     }
 
-    /// Whether nothing but the seam of two windows lies between this contact and the next one: they are one.
+    /// Whether no more than a strip lies between this contact and the next one: they are one, or the seam of two windows parts them.
     pub fn goes_on_in(&self, next: &Wanted) -> bool {
         match (self.reach, next.reach) {
-            // Two contacts in one window have a strip between them, to round-off.
-            (Some([_, end]), Some([begin, _])) => end - begin > ROUND_OFF,
+            (Some([_, end]), Some([begin, _])) => end - begin > -ROUND_OFF,
             _ => false,
         }
     }
@@ -70,6 +72,8 @@ const LIFTED: f64 = 5e-4;
 pub struct Expected {
     /// Extent of the contacts over that in the fields.
     pub growth: f64,
+    /// Extent about a contact, over that of its region, in which no other one is looked for.
+    pub beside: f64,
     /// Load over that in the fields.
     pub load_ratio: f64,
     /// Approach, `m`.
@@ -88,6 +92,7 @@ pub fn find(
 ) {
     let Expected {
         growth,
+        beside,
         load_ratio,
         approach,
     } = expected;
@@ -96,16 +101,16 @@ pub fn find(
     found.retain(|own| search.is_near(own.region.across, approach + LIFTED));
     apart.set_resultants(operators, fields);
     let carrying = found.len();
-    let beside: [Region; CONTACTS] = std::array::from_fn(|number| {
+    let about: [Region; CONTACTS] = std::array::from_fn(|number| {
         found
             .get(number)
-            .map_or(Region::default(), |own| own.region.grown(BESIDE))
+            .map_or(Region::default(), |own| own.region.grown(beside))
     });
     let least = LEAST_DEPTH * approach;
     let mut last = f64::NAN;
     for overlap in search.deepest(approach) {
         let [along, across] = overlap.place;
-        if beside[..carrying].iter().any(|region| region.holds_across(across)) {
+        if about[..carrying].iter().any(|region| region.holds_across(across)) {
             last = f64::NAN;
             continue;
         }
@@ -156,6 +161,7 @@ fn carrying(operators: &SurfaceOperators, fields: &SurfaceFields, growth: f64, f
                         region: grown(operators, &region, growth),
                         depth: CARRIES,
                         reach: Some([run.across[0] - 0.5 * grid.breadth, run.across[1] + 0.5 * grid.breadth]),
+                        room: 1.0,
                     });
                 }
                 continue;

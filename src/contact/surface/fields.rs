@@ -16,6 +16,8 @@ pub struct SurfaceFields {
     pub windows: [PatchFields; WINDOWS],
     /// Places of the windows; `None` of one that is not used.
     pub places: [Option<Place>; WINDOWS],
+    /// Whether contacts in windows of their own are close to each other, as [`super::apart`] takes them.
+    pub are_close: bool,
     /// Approach: by how much the wheel is lower than where the undeformed bodies touch first, `m`.
     pub approach: Vec<f64>,
     /// Height of the axle's middle over the rail's top at which the undeformed bodies touch first, `m`.
@@ -36,6 +38,7 @@ impl SurfaceFields {
         SurfaceFields {
             windows: std::array::from_fn(|_| PatchFields::new(&operators.shapes[0])),
             places: [None; WINDOWS],
+            are_close: false,
             approach: vec![0.0],
             touch: 0.0,
             stiffness: 0.0,
@@ -58,6 +61,7 @@ impl SurfaceFields {
 impl PartialEq for SurfaceFields {
     fn eq(&self, other: &SurfaceFields) -> bool {
         self.places == other.places
+            && self.are_close == other.are_close
             && self.approach == other.approach
             && self.worn == other.worn
             && [self.touch, self.stiffness, self.load, self.wheel_temperature]
@@ -72,6 +76,7 @@ impl PartialEq for SurfaceFields {
 #[derive(Serialize, Deserialize)]
 struct Saved {
     places: [Option<Place>; WINDOWS],
+    are_close: bool,
     windows: Vec<PatchFields>,
     approach: Vec<f64>,
     touch: f64,
@@ -90,6 +95,7 @@ impl Serialize for SurfaceFields {
         }
         let saved = Saved {
             places: self.places,
+            are_close: self.are_close,
             windows,
             approach: self.approach.clone(),
             touch: self.touch,
@@ -119,6 +125,7 @@ impl TryFrom<Saved> for SurfaceFields {
                 own.unwrap_or_else(|| untouched.clone())
             }),
             places: saved.places,
+            are_close: saved.are_close,
             approach: saved.approach,
             touch: saved.touch,
             stiffness: saved.stiffness,
@@ -218,6 +225,7 @@ impl Fields for SurfaceFields {
 
     fn copy_places(&mut self, other: &SurfaceFields) {
         self.places = other.places;
+        self.are_close = other.are_close;
     }
 
     fn has_valid_places(&self) -> bool {

@@ -1,5 +1,6 @@
 //! Placement of the windows at the beginning of a step: about the contacts of the step before, and those that begin.
 
+use super::apart;
 use super::contacts::{self, BESIDE, CARRIES, CONTACTS, Expected, Wanted};
 use super::fields::SurfaceFields;
 use super::operators::SurfaceOperators;
@@ -54,6 +55,8 @@ pub fn place(
     now.touch = solvers.search.touch(bodies, &pose.position, guess);
     if problem.conditions.room <= 1.0 {
         solvers.outgrown = 0.0;
+        solvers.too_small = [None; WINDOWS];
+        solvers.is_unsettled = false;
     }
     let mut approach =
         known.unwrap_or_else(|| expected_approach(problem, before, now.touch - pose.position.height, solvers));
@@ -186,7 +189,12 @@ fn expected_approach(
 /// the overlaps of the bodies where the source has none.
 fn want(problem: &SurfaceProblem, source: Option<&SurfaceFields>, approach: f64, solvers: &mut SurfaceSolvers) {
     let SurfaceSolvers {
-        search, apart, wanted, ..
+        search,
+        apart,
+        wanted,
+        is_unsettled,
+        too_small,
+        ..
     } = solvers;
     wanted.clear();
     if approach <= 0.0 {
@@ -201,13 +209,31 @@ fn want(problem: &SurfaceProblem, source: Option<&SurfaceFields>, approach: f64,
     if let Some(source) = source.filter(tells) {
         let load_ratio = (approach / source.approach[0]).powf(1.5);
         let expected = Expected {
-            growth: room * load_ratio.cbrt().max(1.0),
+            growth: load_ratio.cbrt().max(1.0),
+            beside: BESIDE * room,
             load_ratio,
             approach: approach * AHEAD,
         };
         contacts::find(problem.operators, source, expected, search, apart, wanted);
+        for own in wanted.iter_mut() {
+            let across = own.region.across;
+            if *is_unsettled {
+                // Those that are so large meet, and share a window.
+                own.region = own.region.grown(room);
+            } else if too_small
+                .iter()
+                .flatten()
+                .any(|window| window[0] < across[1] && across[0] < window[1])
+            {
+                own.room = room;
+            }
+        }
         // A wheelset that has jumped touches elsewhere: the contacts of the step before say nothing then.
-        let covers = |place| wanted.iter().any(|wanted| wanted.region.grown(BESIDE).holds(place));
+        let covers = |place| {
+            wanted
+                .iter()
+                .any(|wanted| wanted.region.grown(BESIDE * room).holds(place))
+        };
         if !search.first_place().is_some_and(covers) {
             wanted.clear();
         }
@@ -293,6 +319,7 @@ fn merged(sizes: &Sizes, wanted: &[Wanted]) -> ([Wanted; WINDOWS], usize) {
         {
             last.region = last.region.union(&new.region);
             last.depth = last.depth.max(new.depth);
+            last.room = last.room.max(new.room);
             last.reach = new.reach.or(last.reach);
             continue;
         }
@@ -356,7 +383,7 @@ fn assign(problem: &SurfaceProblem, wanted: &[Wanted], now: &mut SurfaceFields) 
             now.places[window] = None;
         }
         let window = window_of[number];
-        now.places[window] = Some(sizes.place(&wanted_here.region, now.places[window]));
+        now.places[window] = Some(sizes.place(&wanted_here.region.grown(wanted_here.room), now.places[window]));
         let between = |a: &Wanted, b: &Wanted| 0.5 * (a.region.across[1] + b.region.across[0]);
         let low = number
             .checked_sub(1)
@@ -366,6 +393,12 @@ fn assign(problem: &SurfaceProblem, wanted: &[Wanted], now: &mut SurfaceFields) 
             .map_or(f64::INFINITY, |next| between(wanted_here, next));
         own[window] = [low, high];
     }
+    now.are_close = (1..wanted.len()).any(|next| {
+        let [a, b] = [next - 1, next].map(|number| (&wanted[number].region, window_of[number]));
+        let grid =
+            |window: usize| now.places[window].map_or(sizes.largest, |place| sizes.grid(place.length, place.breadth));
+        apart::are_close(b.0.across[0] - a.0.across[1], [&grid(a.1), &grid(b.1)])
+    });
     // A window without a region stays while nothing else needs its place: rail that it has heated rolls out of it.
     for (window, taken) in taken.into_iter().enumerate() {
         if !taken && !is_warm(now, window) {

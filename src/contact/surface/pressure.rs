@@ -319,6 +319,7 @@ fn press_at(
         let [least, ratio] = UNSETTLED;
         let unsettled = round >= SETTLING_ROUNDS && change > least.max(ratio * last_change);
         if unsettled && problem.conditions.room < LARGEST_ROOM {
+            solvers.is_unsettled = true;
             return Err(Error::ContactOutgrowsWindow);
         }
         last_change = change;
@@ -387,15 +388,17 @@ fn check_room(problem: &SurfaceProblem, fields: &SurfaceFields, solvers: &mut Su
     if problem.conditions.room >= LARGEST_ROOM {
         return Ok(());
     }
+    let mut holds_all = true;
     for (window, place) in fields.used() {
-        if PatchOperators::is_cut_off(
-            &problem.of(&place),
-            &fields.windows[window],
-            &solvers.windows[window].patch,
-        ) {
+        let (patch, own) = (problem.of(&place), &solvers.windows[window].patch);
+        if PatchOperators::is_cut_off(&patch, &fields.windows[window], own) {
             solvers.outgrown = fields.approach[0];
-            return Err(Error::ContactOutgrowsWindow);
+            solvers.too_small[window] = Some(place.region(&patch.operators.grid).across);
+            holds_all = false;
         }
     }
-    Ok(())
+    if holds_all {
+        return Ok(());
+    }
+    Err(Error::ContactOutgrowsWindow)
 }

@@ -47,6 +47,10 @@ pub struct SurfaceSolvers {
     pub reference: f64,
     /// Approach at which a contact has outgrown its window in this step, `m`.
     pub outgrown: f64,
+    /// Ends in arc length of the windows that contacts have outgrown in this step, `m`.
+    pub too_small: [Option<[f64; 2]>; WINDOWS],
+    /// Whether contacts of different windows have pushed each other away by turns in this step.
+    pub is_unsettled: bool,
 }
 
 /// Solvers and buffers of one window.
@@ -96,6 +100,8 @@ impl SurfaceSolvers {
             wanted: Vec::with_capacity(CONTACTS),
             reference: 0.0,
             outgrown: 0.0,
+            too_small: [None; WINDOWS],
+            is_unsettled: false,
         }
     }
 }

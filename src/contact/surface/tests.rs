@@ -408,7 +408,8 @@ fn a_pressure_that_is_held_knows_no_separation() {
 }
 
 /// The displacement of one window by the pressure of another is the sum over its cells as point forces, to the second order in the size of a block over
-/// the distance: of a/r, the interpolation between places that are d from each other leaves d²/4r² or less, the block as much.
+/// the distance: of a/r, the interpolation between places that are d from each other leaves d²/4r² or less, the block as much. The blocks of contacts far
+/// apart have 6 cells and 4 strips, those of close ones 2 and 2.
 #[test]
 fn windows_displace_each_other_as_their_cells_do() {
     let parameters = parameters(Control::Load);
@@ -423,41 +424,50 @@ fn windows_displace_each_other_as_their_cells_do() {
     let loaded = |window: &usize| own.windows[*window].pressure.iter().any(|&pressure| pressure > 0.0);
     assert_eq!(own.used().filter(|(window, _)| loaded(window)).count(), 2);
     let mut apart = Apart::new(&operators);
-    apart.set_resultants(&operators, own);
-    for (window, place) in own.used() {
-        apart.displace(&operators, window, &place);
-        let patch = operators.of(&place);
-        let unit = operators.pair.normal() * patch.scales.pressure / patch.scales.displacement;
-        let at = |place: &super::windows::Place, strip: usize, cell: usize| {
-            let grid = &operators.of(place).grid;
-            [place.middle_along(grid) + grid.x(cell), place.arc(grid, strip)]
+    for (are_close, cells, strips) in [(false, 6.0, 4.0), (true, 2.0, 2.0)] {
+        let own = SurfaceFields {
+            are_close,
+            ..own.clone()
         };
-        let touching = (0..patch.grid.strips).flat_map(|strip| (0..patch.grid.cells).map(move |cell| (strip, cell)));
-        for (strip, cell) in
-            touching.filter(|(strip, cell)| own.windows[window].pressure[patch.grid.place(*strip, *cell)] > 0.0)
-        {
-            let [x, y] = at(&place, strip, cell);
-            let (mut sum, mut nearest) = (0.0, f64::INFINITY);
-            for (other, from) in own.used().filter(|(other, _)| *other != window) {
-                let grid = &operators.of(&from).grid;
-                for (row, column) in (0..grid.strips).flat_map(|row| (0..grid.cells).map(move |column| (row, column))) {
-                    let [u, v] = at(&from, row, column);
-                    let force = own.windows[other].pressure[grid.place(row, column)] * grid.cell_area();
-                    let distance = (x - u).hypot(y - v);
-                    sum += force / distance;
-                    if force > 0.0 {
-                        nearest = f64::min(nearest, distance);
+        apart.set_resultants(&operators, &own);
+        for (window, place) in own.used() {
+            apart.displace(&operators, window, &place);
+            let patch = operators.of(&place);
+            let unit = operators.pair.normal() * patch.scales.pressure / patch.scales.displacement;
+            let at = |place: &super::windows::Place, strip: usize, cell: usize| {
+                let grid = &operators.of(place).grid;
+                [place.middle_along(grid) + grid.x(cell), place.arc(grid, strip)]
+            };
+            let touching =
+                (0..patch.grid.strips).flat_map(|strip| (0..patch.grid.cells).map(move |cell| (strip, cell)));
+            for (strip, cell) in
+                touching.filter(|(strip, cell)| own.windows[window].pressure[patch.grid.place(*strip, *cell)] > 0.0)
+            {
+                let [x, y] = at(&place, strip, cell);
+                let (mut sum, mut nearest) = (0.0, f64::INFINITY);
+                for (other, from) in own.used().filter(|(other, _)| *other != window) {
+                    let grid = &operators.of(&from).grid;
+                    for (row, column) in
+                        (0..grid.strips).flat_map(|row| (0..grid.cells).map(move |column| (row, column)))
+                    {
+                        let [u, v] = at(&from, row, column);
+                        let force = own.windows[other].pressure[grid.place(row, column)] * grid.cell_area();
+                        let distance = (x - u).hypot(y - v);
+                        sum += force / distance;
+                        if force > 0.0 {
+                            nearest = f64::min(nearest, distance);
+                        }
                     }
                 }
+                let found = apart.displacement[window][patch.grid.place(strip, cell)];
+                let block = f64::max(cells * patch.grid.length, strips * patch.grid.breadth);
+                let allowed = (0.5 * (block / nearest).powi(2)).min(0.1);
+                assert!(
+                    (found / (unit * sum) - 1.0).abs() < allowed,
+                    "{are_close} {strip} {cell}: {found} {} {allowed}",
+                    unit * sum
+                );
             }
-            let found = apart.displacement[window][patch.grid.place(strip, cell)];
-            let block = f64::max(6.0 * patch.grid.length, 4.0 * patch.grid.breadth);
-            let allowed = (0.5 * (block / nearest).powi(2)).min(0.1);
-            assert!(
-                (found / (unit * sum) - 1.0).abs() < allowed,
-                "{strip} {cell}: {found} {} {allowed}",
-                unit * sum
-            );
         }
     }
 }
@@ -487,6 +497,7 @@ fn a_cell_displaces_another_window_as_a_point_force() {
         let mut pressure = vec![0.0; source.len()];
         pressure[source.place(strip, cell)] = 1.0;
         let mut apart = Apart::new(&operators);
+        apart.clear(&operators, false);
         apart.take_pressure(&operators, &pressure, other, &from);
         apart.displace(&operators, window, &place);
         let at = |strip: usize, cell: usize| [from.middle_along(source) + source.x(cell), from.arc(source, strip)];
