@@ -5,6 +5,7 @@ use std::fs::{File, copy, read, write};
 use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
+use wheelrail::Profile;
 use wheelrail::fmi2::GUID;
 use zip::{CompressionMethod, DateTime, ZipArchive};
 
@@ -167,22 +168,22 @@ fn profiles_are_put_among_the_resources() {
         other.join("wheel.prw"),
         other.join("60e1"),
     ];
-    write(&rail, "a rail").unwrap();
-    write(&wheel, "a wheel").unwrap();
-    write(&twin, "another wheel").unwrap();
-    write(&known, "a rail").unwrap();
+    let new = Profile::built_in("S1002").unwrap();
+    let depths = [[0.075, 0.0], [0.085, 2e-3], [0.105, 2e-3], [0.115, 0.0]];
+    Profile::built_in("49E1").unwrap().write(&rail).unwrap();
+    new.write(&wheel).unwrap();
+    new.worn_by(&depths).unwrap().write(&twin).unwrap();
+    copy(&rail, &known).unwrap();
+    let contents = [&rail, &wheel].map(|path| read(path).unwrap());
     let [rail, wheel, twin, known] = [&rail, &wheel, &twin, &known].map(|path| path.to_str().unwrap());
     for standard in ["2", "3"] {
         let options = ["--fmi", standard, "--rail-profile", rail, "--wheel-profile", wheel];
         let archive = packed(&folder, "profiles.fmu", &options);
         let mut archive = ZipArchive::new(File::open(archive).unwrap()).unwrap();
-        for (name, expected) in [
-            ("resources/worn räil.prr", "a rail"),
-            ("resources/wheel.prw", "a wheel"),
-        ] {
-            let mut content = String::new();
-            archive.by_name(name).unwrap().read_to_string(&mut content).unwrap();
-            assert_eq!(content, expected);
+        for (name, expected) in ["resources/worn räil.prr", "resources/wheel.prw"].iter().zip(&contents) {
+            let mut content = Vec::new();
+            archive.by_name(name).unwrap().read_to_end(&mut content).unwrap();
+            assert_eq!(content, *expected);
         }
     }
     let message = refused(&folder, &["--wheel-profile", wheel, "--wheel-profile", twin]);
@@ -197,6 +198,50 @@ fn profiles_are_put_among_the_resources() {
     );
     let message = refused(&folder, &["--rail-profile", "nowhere.prr"]);
     assert!(message.contains("nowhere.prr"), "{message}");
+}
+
+/// A file that the unit could not read as the profile of its body is refused with the words of `wheelrail profile`, and no archive is written.
+#[test]
+fn profiles_that_are_none_of_their_body_are_refused() {
+    let folder = folder("no_profiles");
+    let [wheel, text, unsaid, short] =
+        ["wheel.prw", "text.prr", "unsaid.csv", "short.csv"].map(|name| folder.join(name));
+    Profile::built_in("S1002").unwrap().write(&wheel).unwrap();
+    write(&text, "a rail").unwrap();
+    write(&unsaid, "y,z\n0,0\n4,1\n9,0\n").unwrap();
+    write(&short, "y [mm],z [mm]\n10,0\n20,1\n30,2\n40,3\n").unwrap();
+    for (option, path, body, words) in [
+        (
+            "--rail-profile",
+            &wheel,
+            "rail",
+            "wheel.prw is the profile of a wheel; a rail is needed",
+        ),
+        ("--rail-profile", &text, "rail", "text.prr, SIMPACK"),
+        (
+            "--rail-profile",
+            &unsaid,
+            "rail",
+            "`wheelrail profile FILE --unit m|mm|in`",
+        ),
+        (
+            "--wheel-profile",
+            &short,
+            "wheel",
+            "this is no wheel with y to the field side and z upward",
+        ),
+    ] {
+        let path = path.to_str().unwrap();
+        let message = refused(&folder, &[option, path]);
+        let output = Command::new(env!("CARGO_BIN_EXE_wheelrail"))
+            .args(["profile", path, "--body", body])
+            .output()
+            .unwrap();
+        let same = String::from_utf8(output.stderr).unwrap();
+        let reason = same.strip_prefix("wheelrail: ").unwrap();
+        assert!(reason.contains(words), "{reason}");
+        assert_eq!(message, format!("wheelrail: {option} {path}: {reason}"));
+    }
 }
 
 #[test]
@@ -260,7 +305,7 @@ fn copy_folder(source: &Path, to: &Path) {
 fn no_file_is_written_over() {
     let folder = folder("written_over");
     let rail = folder.join("rail.prr");
-    write(&rail, "a rail").unwrap();
+    Profile::built_in("60E1").unwrap().write(&rail).unwrap();
     let own = folder.join("own.so");
     let archive = packed(&folder, "first.fmu", &[]);
     let [rail, own, archive] = [&rail, &own, &archive].map(|path| path.to_str().unwrap());

@@ -4,12 +4,14 @@ mod error;
 
 use crate::binary::{Binary, Platform};
 use crate::files::Files;
+use crate::profile;
 use crate::standard::Standard;
 use clap::Args;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Read, Write};
 use std::path::{Path, PathBuf};
+use wheelrail::Body;
 use wheelrail::fmi3::terminals::terminals_and_icons;
 use wheelrail::parameters::ProfileSource;
 use zip::write::SimpleFileOptions;
@@ -36,10 +38,10 @@ pub struct Pack {
     /// Another WheelRailContact.fmu of the same sources: its platforms are merged in.
     #[arg(long, value_name = "FMU")]
     merge: Vec<PathBuf>,
-    /// A rail's profile to put among the resources: the file's name is then what rail_profile may be. Repeatable.
+    /// A rail's profile to put among the resources, read before as the unit reads it: the file's name is then what rail_profile may be. Repeatable.
     #[arg(long, value_name = "FILE")]
     rail_profile: Vec<PathBuf>,
-    /// A wheel's profile to put among the resources: the file's name is then what wheel_profile may be. Repeatable.
+    /// A wheel's profile to put among the resources, read before as the unit reads it: the file's name is then what wheel_profile may be. Repeatable.
     #[arg(long, value_name = "FILE")]
     wheel_profile: Vec<PathBuf>,
     /// File of the archive; target/WheelRailContact.fmu, or -fmi3.fmu, if not told.
@@ -135,13 +137,11 @@ impl Pack {
                 entries.insert("terminalsAndIcons/icon.png".to_owned(), picture);
             }
         }
-        for (name, path) in [
-            ("rail_profile", &self.rail_profile),
-            ("wheel_profile", &self.wheel_profile),
-        ] {
-            for path in path {
-                add_profile(&mut entries, name, path)?;
-            }
+        for path in &self.rail_profile {
+            add_profile(&mut entries, Body::Rail, path)?;
+        }
+        for path in &self.wheel_profile {
+            add_profile(&mut entries, Body::Wheel, path)?;
         }
         let libraries = self.libraries(library, self.fmi.token_of(&generated), &xml)?;
         entries.insert(BUILD.to_owned(), libraries.build_lines().into_bytes());
@@ -323,8 +323,12 @@ fn files_of(folder: &Path, prefix: &str) -> Result<Vec<(String, PathBuf)>, Error
     Ok(files)
 }
 
-/// Adds a profile among the resources, under the name of its file.
-fn add_profile(entries: &mut Entries, parameter: &'static str, path: &Path) -> Result<(), Error> {
+/// Adds a profile among the resources, under the name of its file; one that the unit could not read is refused.
+fn add_profile(entries: &mut Entries, body: Body, path: &Path) -> Result<(), Error> {
+    let (option, parameter) = match body {
+        Body::Rail => ("--rail-profile", "rail_profile"),
+        Body::Wheel => ("--wheel-profile", "wheel_profile"),
+    };
     let content = read(path)?;
     let refused = |reason| Error::Profile {
         path: path.to_owned(),
@@ -341,6 +345,11 @@ fn add_profile(entries: &mut Entries, parameter: &'static str, path: &Path) -> R
         }
         _ => return Err(refused("its name would be taken as a URI".to_owned())),
     }
+    profile::in_file(path, body).map_err(|source| Error::NoProfile {
+        option,
+        path: path.to_owned(),
+        source: Box::new(source),
+    })?;
     match entries.insert(format!("resources/{name}"), content.clone()) {
         Some(other) if other != content => Err(refused("another profile has a file of the same name".to_owned())),
         _ => Ok(()),

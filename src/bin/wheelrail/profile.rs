@@ -133,6 +133,17 @@ pub fn named(name: &str, body: Body, smoothing: f64) -> Result<Profile, Error> {
     Ok(profile)
 }
 
+/// Profile in a file, of a body, read as a component reads it with its default parameters.
+pub fn in_file(path: &Path, body: Body) -> Result<Profile, Error> {
+    let options = ReadOptions {
+        body: Some(body),
+        ..ReadOptions::default()
+    };
+    let profile = Profile::read(path, &options)?;
+    profile.require(body)?;
+    Ok(profile)
+}
+
 /// Whether a profile of this name is built in.
 pub fn is_built_in(name: &str) -> bool {
     built_in_profiles::NAMES

@@ -54,6 +54,16 @@ pub enum Error {
         /// Reason in words.
         reason: String,
     },
+    /// A file that is no profile of the body that it is given for.
+    #[error("{option} {path}: {source}")]
+    NoProfile {
+        /// Option that names it.
+        option: &'static str,
+        /// The file.
+        path: PathBuf,
+        /// Reason, as `wheelrail profile` has it.
+        source: Box<crate::profile::Error>,
+    },
     /// The checked-in description is not what the variable table says.
     #[error("{path} is stale: run `make description` and build the library again")]
     StaleDescription {
