@@ -84,6 +84,18 @@ pub enum ProfileError {
         /// Reason that the system gives.
         reason: String,
     },
+    /// A file that a parameter names and that is not there.
+    #[error("there is no file {path}{places}; built-in {body}s are {known}")]
+    NotFound {
+        /// The file.
+        path: String,
+        /// Folders that a relative path was looked for in, in words; empty of an absolute one.
+        places: String,
+        /// "rail" or "wheel".
+        body: &'static str,
+        /// Names of the body's profiles that need no file.
+        known: String,
+    },
     /// A file whose content is not that of its format.
     #[error("{name}, {format}{}: {reason}", at_line(*line))]
     Content {

@@ -206,11 +206,12 @@ impl Component {
 
     /// Makes `built` the model of the given parameters, with the profiles of the state; at first, with those that the files hold.
     pub(super) fn prepare(&mut self, parameters: &Parameters) -> error::Result<&mut Built> {
+        let located = self.resources.located(parameters);
         let contents = match &self.contents {
             Some(contents) => contents.clone(),
-            None => ProfileContents::read(&self.resources.located(parameters))?,
+            None => ProfileContents::read_after(self.resources.folder(), &located)?,
         };
-        self.prepare_of(contents, parameters)
+        self.prepare_located(contents, &located)
     }
 
     /// Makes `built` the model of the given parameters, with profiles from these contents of files; no file is read. Nothing is built anew where only tunable
@@ -220,7 +221,11 @@ impl Component {
         contents: ProfileContents,
         parameters: &Parameters,
     ) -> error::Result<&mut Built> {
-        let parameters = &*self.resources.located(parameters);
+        self.prepare_located(contents, &self.resources.located(parameters))
+    }
+
+    /// Makes `built` the model of parameters whose profiles are paths where they are files among the resources.
+    fn prepare_located(&mut self, contents: ProfileContents, parameters: &Parameters) -> error::Result<&mut Built> {
         let reusable = self.built.take_if(|Built { model, .. }| {
             model.parameters().fixed_part() == parameters.fixed_part() && *model.profile_contents() == contents
         });

@@ -16,6 +16,11 @@ impl Resources {
         Resources { folder }
     }
 
+    /// The folder, where the importer has said where it is.
+    pub fn folder(&self) -> Option<&Path> {
+        self.folder.as_deref()
+    }
+
     /// The parameters as the model takes them: the name of a profile that is a file among the resources becomes its path. Profiles
     /// that are built in go before them, and only where there are profiles is any file looked for.
     pub fn located<'a>(&self, parameters: &'a Parameters) -> Cow<'a, Parameters> {

@@ -526,7 +526,9 @@ fn profiles_take_the_wheelset_and_their_names_are_checked() {
     // The default load, to the tolerance of a step.
     assert!((carried / 60e3 - 1.0).abs() < 1e-5, "{carried}");
     let files = ["--set", "rail_profile=a b.prr", "--set", "side=right"];
-    with("files", &files, &["rail_profile", "a b.prr"], rolling);
+    let words = "rail_profile = \"a b.prr\": there is no file a b.prr in the working directory, ";
+    let known = "; built-in rails are 60E1, 60E2, 54E1, 49E1, UIC60\n";
+    with("files", &files, &[words, known], rolling);
     let blank = ["--set", "wheel_profile= "];
     with("blank", &blank, &["wheel_profile is blank", "1 to 4096 bytes"], rolling);
     let unknown = ["--set", "rail_profil=60E1"];

@@ -1,6 +1,6 @@
 //! Profiles through the interface: by place and motion of the wheelset, with texts as parameters.
 
-use super::importer::{Api, Client, ERROR, Fmi2, Fmi3, OK, Profiles, coarse, with_each_standard};
+use super::importer::{Api, Arguments, Client, ERROR, Fmi2, Fmi3, OK, Profiles, RIGHT, coarse, with_each_standard};
 use std::ffi::CString;
 use std::fs;
 use std::path::Path;
@@ -202,4 +202,30 @@ fn a_wheel_off_the_rail_is_an_error_that_names_its_place() {
         );
     });
     assert!(OUTPUTS.iter().any(|output| output.profiles_only));
+}
+
+/// A file that is not there is told with the folders it was looked for in, and with the profiles that need none.
+#[test]
+fn a_profile_that_is_not_there_is_told_with_the_folders() {
+    let folder = env!("CARGO_TARGET_TMPDIR");
+    with_each_standard(|api| {
+        let location = match api.standard {
+            Fmi2 => format!("file://{folder}"),
+            Fmi3 => folder.to_owned(),
+        };
+        let location = CString::new(location).unwrap();
+        let location = location.as_ptr();
+        let mut client = Client::given(api, Arguments { location, ..RIGHT });
+        client.contact = Profiles;
+        client.hear_refusals();
+        begin(&client);
+        client.expect(OK, client.set_text("rail_profile", c"nope.prr"));
+        client.expect(ERROR, client.exit());
+        let message = client.last_message();
+        let words = format!("among the archive's resources, {folder}, or in the working directory, ");
+        assert!(
+            message.contains(&words) && message.contains("built-in rails are 60E1, "),
+            "{message}"
+        );
+    });
 }

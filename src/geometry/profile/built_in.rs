@@ -20,6 +20,12 @@ pub const NAMES: [&str; 12] = [
     "S1002", "cone20", "cone40", "UIC519A", "UIC519B", "UIC519H", "UIC519I", "60E1", "60E2", "54E1", "49E1", "UIC60",
 ];
 
+/// Names of the profiles of a body that are built in.
+pub fn names_of(body: Body) -> Vec<&'static str> {
+    let is_of = |name: &&str| Profile::built_in(name).is_ok_and(|profile| profile.body() == body);
+    NAMES.into_iter().filter(is_of).collect()
+}
+
 const STANDARD_RAIL: &str = "EN 13674-1";
 
 impl Profile {
