@@ -513,6 +513,31 @@ Instance(sys.argv[1]).start().step(0.01)
 
 
 @needs_fork
+def test_nothing_unpacked_is_left_behind(fmu, tmp_path, monkeypatch):
+    """What processes unpack goes at their end: the first, its forks, and those of multiprocessing."""
+    program = """
+import multiprocessing, os, sys
+from concurrent.futures import ProcessPoolExecutor
+from wheelrail import Instance
+def temperature(fmu):
+    return Instance(fmu).start().get("peak_temperature")
+fork = multiprocessing.get_context("fork")
+with ProcessPoolExecutor(2, fork) as pool:
+    print(*pool.map(temperature, 2 * sys.argv[1:]))
+process = fork.Process(target=temperature, args=sys.argv[1:])
+process.start()
+process.join()
+child = os.fork()
+print(temperature(sys.argv[1]), flush=True)
+if child:
+    os.waitpid(child, 0)
+"""
+    monkeypatch.setenv("TMPDIR", str(tmp_path))
+    assert len(in_a_process(program, fmu).splitlines()) == 3
+    assert list(tmp_path.iterdir()) == []
+
+
+@needs_fork
 def test_fork_during_a_call_of_another_thread(fmu):
     """What the other thread was in the midst of is no whole instance in the child, which says so instead of waiting."""
     program = """

@@ -7,6 +7,7 @@ import tempfile
 import tomllib
 import zipfile
 from functools import cache
+from multiprocessing.util import Finalize
 from os import PathLike, fspath
 from pathlib import Path
 from typing import Any, TypeAlias
@@ -153,6 +154,8 @@ def unpack(fmu: str, process: int) -> str:
     """Unpack an FMU for a process: a fork of it has its own folder, as either may end first."""
     folder = tempfile.mkdtemp(prefix="fmu-")
     atexit.register(remove, folder, process)
+    # A process of multiprocessing ends without what is registered there, with what is here.
+    Finalize(None, remove, (folder, process), exitpriority=0)
     return str(fmpy.extract(fmu, folder))
 
 
