@@ -1,9 +1,11 @@
 """What the tests share: the component that `make fmu` built, and a low-level instance of it."""
 
 import json
+import os
 import signal
 import subprocess
 import sys
+import tempfile
 from pathlib import Path
 
 import fmpy
@@ -80,9 +82,9 @@ def description(fmu):
 
 
 @pytest.fixture(scope="session")
-def unpacked(fmu):
+def unpacked(fmu, tmp_path_factory):
     """Return the folder of the unpacked component."""
-    return Path(fmpy.extract(fmu))
+    return Path(fmpy.extract(fmu, tmp_path_factory.mktemp("unpacked")))
 
 
 @pytest.fixture(scope="session")
@@ -146,14 +148,26 @@ def instance(unpacked, description, callbacks):
 
 
 @pytest.fixture(scope="session")
-def host_process(fmu, tmp_path_factory):
+def run_host():
+    """Return a function that runs a program to its end; what it leaves among temporary files goes."""
+
+    def run(command):
+        with tempfile.TemporaryDirectory() as folder:
+            environment = os.environ | {"TMPDIR": folder}
+            return subprocess.run(command, capture_output=True, text=True, timeout=900, env=environment)
+
+    return run
+
+
+@pytest.fixture(scope="session")
+def host_process(fmu, run_host, tmp_path_factory):
     """Return a function that runs a host script on a scenario in a process of its own and returns its answer."""
 
     def run(script, scenario, python=sys.executable):
         file = tmp_path_factory.mktemp("host") / "scenario.json"
         file.write_text(json.dumps(scenario))
         path = REPOSITORY / "python_tests" / "hosts" / script
-        done = subprocess.run([python, path, fmu, file], capture_output=True, text=True, timeout=900)
+        done = run_host([python, path, fmu, file])
         assert done.returncode == 0, done.stdout[-2000:] + done.stderr[-2000:]
         return json.loads(done.stdout.splitlines()[-1])
 
@@ -175,12 +189,16 @@ def simulate_natively(wheelrail, tmp_path_factory):
 
 
 @pytest.fixture
-def killed_half_way():
-    """Return a function that kills a program after four parts: it says "written" after each, and waits for a line."""
+def killed_half_way(tmp_path_factory):
+    """Return a function that kills a program after four parts: it says "written" after each, and waits for a line.
+
+    What it leaves among temporary files, pytest keeps and removes as it does its own.
+    """
 
     def kill(command):
         pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "text": True, "start_new_session": True}
-        with subprocess.Popen(command, **pipes) as process:
+        environment = os.environ | {"TMPDIR": str(tmp_path_factory.mktemp("killed"))}
+        with subprocess.Popen(command, **pipes, env=environment) as process:
             written = (line for line in process.stdout if line == "written\n")
             for _ in range(3):
                 next(written)

@@ -6,7 +6,6 @@ which libcosim counts. Inputs are constant, since not every host can change them
 
 import ctypes
 import json
-import subprocess
 import sys
 from pathlib import Path
 
@@ -87,21 +86,19 @@ def test_host_equals_native_simulation(script, python, native, host_process, out
 
 
 @pytest.mark.parametrize("script", ["pathsim_host.py", "syssimx_host.py"], ids=["PathSim", "SysSimX"])
-def test_unconnected_inputs_of_zero_are_refused(script, fmu, tmp_path):
+def test_unconnected_inputs_of_zero_are_refused(script, fmu, run_host, tmp_path):
     """These hosts write 0 to what is not connected: the component says which input that cannot be, and why."""
     file = tmp_path / "scenario.json"
     file.write_text(json.dumps({"start": {}, "step": STEP, "steps": 2, "outputs": [], "connected": False}))
     path = REPOSITORY / "python_tests" / "hosts" / script
-    done = subprocess.run([sys.executable, path, fmu, file], capture_output=True, text=True, timeout=900)
+    done = run_host([sys.executable, path, fmu, file])
     assert done.returncode != 0
     assert "ambient_temperature = 0: allowed is 100 to 1000 K" in done.stdout + done.stderr
 
 
-def test_fmu_manipulation_toolbox_checks(fmu):
+def test_fmu_manipulation_toolbox_checks(fmu, run_host):
     """Its checker, for the schema and for the rules that a schema cannot express, has no complaint."""
-    done = subprocess.run(
-        [Path(sys.executable).parent / "fmutool", "-input", fmu, "-check"], capture_output=True, text=True
-    )
+    done = run_host([Path(sys.executable).parent / "fmutool", "-input", fmu, "-check"])
     text = done.stdout + done.stderr
     assert done.returncode == 0, text
     assert "compliant with FMI-2.0" in text

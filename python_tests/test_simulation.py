@@ -1,6 +1,5 @@
 """Simulation with FMPy: inputs, parameters, step sizes, profiles, and the native simulation as reference."""
 
-import subprocess
 import sys
 from itertools import pairwise
 from pathlib import Path
@@ -162,7 +161,7 @@ def test_profiles(fmu):
     assert np.all(np.diff(below) <= 1e-4 * (below[0] - 293.15))
 
 
-def test_nothing_is_printed(fmu):
+def test_nothing_is_printed(fmu, run_host):
     """Logging off, the library writes neither to standard output nor to standard error."""
     program = (
         "import fmpy, sys\n"
@@ -178,5 +177,5 @@ def test_nothing_is_printed(fmu):
         "s.terminate()\n"
         "s.freeInstance()\n"
     )
-    done = subprocess.run([sys.executable, "-c", program, fmu], capture_output=True)
-    assert (done.returncode, done.stdout, done.stderr) == (0, b"", b"")
+    done = run_host([sys.executable, "-c", program, fmu])
+    assert (done.returncode, done.stdout, done.stderr) == (0, "", "")

@@ -6,31 +6,47 @@ stamp of all that it depends on; what is there with the right stamp is not compu
 
 import hashlib
 import importlib.util
-import os
 import shutil
 import sys
 import tempfile
+import threading
 import time
 from contextlib import contextmanager
+from functools import cache
 from pathlib import Path
 
 import pyarrow as pa
 import pyarrow.parquet as pq
-from dask.distributed import Client, LocalCluster, as_completed
+from dask.distributed import Client, LocalCluster, as_completed, get_worker
 from helpers import FMU, REPOSITORY
 
 # ---- on a worker ----------------------------------------------------------------------------------------------------
 
 
 def local_file(component, digest):
-    """The component, which came as data, as a file on this machine."""
-    local = Path(tempfile.gettempdir()) / f"{digest}.fmu"
-    if not local.exists():
-        # Another process on the same machine may be doing the same.
-        own = local.with_suffix(f".{os.getpid()}")
-        own.write_bytes(component)
-        own.replace(local)
-    return local
+    """The component, which came as data, as a file of this worker."""
+    return own_file(f"{digest}.fmu", component)
+
+
+def own_file(name, content):
+    """A file that goes with this worker, or with this process where it is none."""
+    try:
+        folder = get_worker().local_directory
+    except ValueError:
+        folder = folder_of_the_process().name
+    path = Path(folder) / name
+    if not path.exists():
+        # Another thread of this process may be doing the same.
+        own = path.with_suffix(f".{threading.get_ident()}")
+        own.write_bytes(content)
+        own.replace(path)
+    return path
+
+
+@cache
+def folder_of_the_process():
+    """A folder that goes at the end of the process."""
+    return tempfile.TemporaryDirectory()
 
 
 # ---- on the client --------------------------------------------------------------------------------------------------

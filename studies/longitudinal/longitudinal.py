@@ -8,8 +8,10 @@ are in one SSP file, which libcosim and ecos run; FMPy runs the same in a plain 
 
 import ctypes
 import json
+import os
 import subprocess
 import sys
+import tempfile
 import time
 import zipfile
 from pathlib import Path
@@ -200,7 +202,9 @@ def in_own_process(master, step, stop, every=1, ssp=SSP):
     options = json.dumps({"step": step, "stop": stop, "every": every} | ({} if master == "FMPy" else {"ssp": str(ssp)}))
     file = Path(ssp).with_suffix(f".{master}.npy")
     command = [sys.executable, REPOSITORY / "studies", "longitudinal", master, options, file]
-    done = subprocess.run(command, capture_output=True, text=True)
+    # ecos leaves what it has unpacked of an SSP file among the temporary files: they go with it.
+    with tempfile.TemporaryDirectory() as folder:
+        done = subprocess.run(command, capture_output=True, text=True, env=os.environ | {"TMPDIR": folder})
     if done.returncode != 0:
         raise RuntimeError(f"{master} failed:\n{done.stdout[-2000:]}{done.stderr[-2000:]}")
     result = np.load(file)

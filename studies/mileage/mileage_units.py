@@ -1,11 +1,10 @@
 """Units of studies/mileage on a worker: how long their calls take, and their profiles as files."""
 
 import hashlib
-import tempfile
 import time
-from pathlib import Path
 
 from curve_vehicle import Wheel
+from dask_runs import own_file
 
 
 class TimedWheel(Wheel):
@@ -35,11 +34,6 @@ class TimedWheel(Wheel):
 
 
 def profile_file(text):
-    """The file of a profile on this machine."""
-    path = Path(tempfile.gettempdir()) / f"{hashlib.sha256(text.encode()).hexdigest()}.prw"
-    if not path.exists():
-        # Another process on the same machine may be doing the same.
-        with tempfile.NamedTemporaryFile("w", dir=path.parent, delete=False, encoding="utf-8") as own:
-            own.write(text)
-        Path(own.name).replace(path)
-    return path
+    """The file of a profile, of this worker."""
+    content = text.encode()
+    return own_file(f"{hashlib.sha256(content).hexdigest()}.prw", content)
