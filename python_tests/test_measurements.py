@@ -32,6 +32,20 @@ def locomotive():
     return {name: eurosprinter.fitted(name) for name in names}
 
 
+def test_deviation_at_a_bound():
+    """A slope that goes to its bound 0 has the deviation of any other, though the curve has an error of a millionth."""
+    x = np.linspace(0.0, 1.0, 9)
+    start, bounds = {"height": 0.8, "slope": 0.3}, {"height": (0.0, 2.0), "slope": (0.0, 1.0)}
+    found = fitting.fit(
+        lambda height, slope: np.round(height + slope * x, 6), 1.0 - 0.1 * x, np.full(9, 0.05), start, bounds
+    )
+    assert found.values["slope"] < 1e-3
+    by = np.column_stack([np.ones(9), x])
+    expected = 0.05 * np.sqrt(np.diag(np.linalg.inv(by.T @ by)))
+    # A millionth over the change of a parameter.
+    assert list(found.deviations.values()) == pytest.approx(expected, rel=0.01)
+
+
 def test_curvatures_have_the_axes_of_hertz():
     """A round contact has equal curvatures; CONTACT prints 0.2814 across for 0.8 along the rail and a/b = 0.5."""
     assert eurosprinter.curvature_ratio(1.0) == pytest.approx(1.0, rel=1e-9)

@@ -14,7 +14,8 @@ MEASUREMENTS = REPOSITORY / "studies" / "measurements"
 # A step that is long against the rail's passage through the model, so that a few of them are the steady state, and the
 # largest change over a step that counts as none: a step of the patch is solved to 1e-6.
 STEP, STEADY = 5.0, 1e-6
-# Relative change of a parameter for the derivative: its square and STEADY over it are both below 1e-2 of a derivative.
+# Change of a parameter for the derivative, over its scale: its square and STEADY over it are both below 1e-2 of a
+# derivative.
 DIFFERENCE = 1e-3
 
 
@@ -97,7 +98,8 @@ def fit(curve, measured, deviation, start, bounds):
     begin = np.array([start[name] for name in names]) / scale
     # To a hundredth of a standard deviation and better.
     found = least_squares(residuals, begin, bounds=limits, diff_step=DIFFERENCE, xtol=1e-4, ftol=1e-4)
-    covariance = np.linalg.inv(found.jac.T @ found.jac)
+    jacobian = derivative(residuals, found.x, found.fun, limits)
+    covariance = np.linalg.inv(jacobian.T @ jacobian)
     deviations = np.sqrt(np.diag(covariance))
     return Fit(
         dict(zip(names, found.x * scale, strict=True)),
@@ -106,3 +108,17 @@ def fit(curve, measured, deviation, start, bounds):
         found.fun,
         count,
     )
+
+
+def derivative(residuals, scaled, there, limits):
+    """Differences of the residuals by each scaled parameter, away from the bounds.
+
+    Those of the minimisation are relative to a parameter, and nothing but noise where it has gone to a bound of 0.
+    """
+    columns = []
+    for number, value in enumerate(scaled):
+        change = DIFFERENCE if value + DIFFERENCE <= limits[1][number] else -DIFFERENCE
+        beside = scaled.copy()
+        beside[number] += change
+        columns.append((residuals(beside) - there) / change)
+    return np.transpose(columns)
