@@ -98,3 +98,30 @@ def test_killed_sweep_goes_on(tmp_path, killed_half_way):
     assert table.num_rows == 12 * len(CREEPAGES)
     assert table.schema.field("traction_force").metadata == {b"unit": b"N"}
     assert pq.read_schema(next(whole.glob("*.parquet"))).metadata[b"stamp"]
+
+
+def test_wrong_options_lose_no_results(tmp_path, monkeypatch, capsys):
+    """Whatever cannot begin forgets nothing, and says why in a line."""
+    (tmp_path / "curve.parquet").write_bytes(b"")
+    monkeypatch.setattr(sweep, "WORK", tmp_path)
+    for options in (["--scheduler", "nonsense"], ["--workers", "0"]):
+        monkeypatch.setattr(sys, "argv", ["sweep", "--fresh", *options])
+        with pytest.raises(SystemExit) as caught:
+            sweep.main()
+        said = f"{caught.value.code}\n{capsys.readouterr().err}"
+        assert " ".join(options) in said or "argument --workers: 0: at least 1" in said
+    assert (tmp_path / "curve.parquet").exists()
+
+
+@pytest.mark.parametrize("name", ["multibody", "longitudinal", "train"])
+def test_studies_answer_what_they_are_asked(name):
+    """No study begins to compute where it is asked what it is, or given what it does not know."""
+    command = [sys.executable, folders.STUDIES, name]
+    told, refused = (
+        subprocess.run([*command, option], capture_output=True, text=True) for option in ("--help", "--nonsense")
+    )
+    assert told.returncode == 0
+    assert told.stdout
+    assert refused.returncode != 0
+    assert "--nonsense" in refused.stderr
+    assert "Traceback" not in refused.stderr

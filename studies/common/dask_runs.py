@@ -4,6 +4,7 @@ A job is a list of keys. Each is computed by a worker and is then at once a Parq
 stamp of all that it depends on; what is there with the right stamp is not computed again.
 """
 
+import argparse
 import hashlib
 import importlib.util
 import shutil
@@ -131,7 +132,11 @@ def client_for(scheduler, workers, modules):
         with local_client(workers) as client:
             yield client
         return
-    with Client(scheduler) as client:
+    try:
+        client = Client(scheduler)
+    except (OSError, ValueError) as error:
+        sys.exit(f"--scheduler {scheduler}: {error}")
+    with client:
         # Workers on this machine find it where this process does.
         with tempfile.TemporaryDirectory() as folder:
             client.upload_file(shutil.make_archive(f"{folder}/package", "zip", REPOSITORY / "python", "wheelrail"))
@@ -140,8 +145,15 @@ def client_for(scheduler, workers, modules):
         yield client
 
 
+def number_of_workers(text):
+    """A number of workers, at least one: without any a job would wait for them."""
+    if (number := int(text)) < 1:
+        raise argparse.ArgumentTypeError(f"{number}: at least 1")
+    return number
+
+
 def add_options(parser, noun):
     """Options that every job has."""
     parser.add_argument("--scheduler", help="address of a Dask scheduler; without one, workers on this machine")
-    parser.add_argument("--workers", type=int, default=2, help="workers on this machine (2)")
+    parser.add_argument("--workers", type=number_of_workers, default=2, help="workers on this machine (2)")
     parser.add_argument("--fresh", action="store_true", help=f"forget the {noun} that are there from before")

@@ -6,6 +6,7 @@ wheelset.py is the vehicle's side: traction, braking, a wet stretch of rail, whe
 are in one SSP file, which libcosim and ecos run; FMPy runs the same in a plain loop. docs/couplings/longitudinal.md.
 """
 
+import argparse
 import ctypes
 import json
 import os
@@ -201,7 +202,7 @@ def in_own_process(master, step, stop, every=1, ssp=SSP):
     """Run a master in a process of its own, as two simulation libraries had better not share one."""
     options = json.dumps({"step": step, "stop": stop, "every": every} | ({} if master == "FMPy" else {"ssp": str(ssp)}))
     file = Path(ssp).with_suffix(f".{master}.npy")
-    command = [sys.executable, REPOSITORY / "studies", "longitudinal", master, options, file]
+    command = [sys.executable, REPOSITORY / "studies", "longitudinal", "--master", master, options, file]
     # ecos leaves what it has unpacked of an SSP file among the temporary files: they go with it.
     with tempfile.TemporaryDirectory() as folder:
         done = subprocess.run(command, capture_output=True, text=True, env=os.environ | {"TMPDIR": folder})
@@ -353,8 +354,10 @@ def main():
 
 
 if __name__ == "__main__":
-    if len(sys.argv) > 1:
-        # One master, its options as JSON, and the file for its table: in_own_process.
-        np.save(sys.argv[3], MASTERS[sys.argv[1]](**json.loads(sys.argv[2])))
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    # One master alone, its options as JSON, and the file for its table: in_own_process.
+    parser.add_argument("--master", nargs=3, help=argparse.SUPPRESS)
+    if chosen := parser.parse_args().master:
+        np.save(chosen[2], MASTERS[chosen[0]](**json.loads(chosen[1])))
     else:
         main()

@@ -84,10 +84,10 @@ def main():
     chosen = options.parse_args()
     if not FMU.exists():
         sys.exit(f"{FMU} is not there: run `make fmu` first")
-    if chosen.fresh:
-        shutil.rmtree(WORK, ignore_errors=True)
     keys = all_lines()
     with client_for(chosen.scheduler, chosen.workers, ("braking_line",)) as client:
+        if chosen.fresh:
+            shutil.rmtree(WORK, ignore_errors=True)
         run(client, WORK, keys)
     lines = gather(WORK, keys)
     tables(lines)

@@ -277,11 +277,11 @@ def main():
     except (ValueError, OSError) as error:
         sys.exit(f"mileage: {error}")
     name = chosen.name or ("small" if chosen.small else "own")
-    if chosen.fresh:
-        shutil.rmtree(WORK if plan is None else WORK / name, ignore_errors=True)
     component = read_component(FMU3)
     try:
         with client_for(chosen.scheduler, chosen.workers, MODULES) as client:
+            if chosen.fresh:
+                shutil.rmtree(WORK if plan is None else WORK / name, ignore_errors=True)
             if plan is None:
                 study(client, component)
             else:

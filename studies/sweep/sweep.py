@@ -193,9 +193,9 @@ def main():
     if chosen.scaling:
         scaling()
         return
-    if chosen.fresh:
-        shutil.rmtree(WORK, ignore_errors=True)
     with client_for(chosen.scheduler, chosen.workers, ()) as client:
+        if chosen.fresh:
+            shutil.rmtree(WORK, ignore_errors=True)
         sweep(client, WORK)
     table = gather(WORK)
     path = RESULTS / "creep_curves.parquet"
