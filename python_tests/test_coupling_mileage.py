@@ -384,6 +384,8 @@ def test_vehicle_of_the_user():
         (["--distance", "-5"], "mileage: plan: distance = -5000.0: 1000 to 1e+10 is needed"),
         (["--wheel", "60E1"], "60E1 is the profile of a rail, and that of a wheel is needed"),
         (["--limit", "flange=22"], "--limit flange: there are flange_height"),
+        (["--fresh", "--name", ".."], "--name ..: a name without folders"),
+        (["--fresh", "--name", "/somewhere"], "--name /somewhere: a name without folders"),
         (["--samples", "0"], "plan: samples = 0: 1 to 99 is needed"),
         (["--set", "friction=0.3"], "there is no variable friction"),
         (["--set", "friction_law"], "--set friction_law: NAME=VALUE is needed"),

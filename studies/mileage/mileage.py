@@ -265,7 +265,11 @@ def main():
     chosen = options().parse_args()
     if not FMU3.exists():
         sys.exit(f"{FMU3} is not there: run `make fmu fmu3` first")
+    name = chosen.name or ("small" if chosen.small else "own")
     try:
+        # --fresh removes the folder of this name.
+        if name == ".." or Path(name).name != name:
+            raise BadInputError(f"--name {name}: a name without folders is needed")
         plan = plan_of(chosen)
         limits = {name: 1e-3 * value for name, value in pairs(chosen.limit, float, "limit").items()}
         if unknown := [name for name in limits if name not in MEASURES]:
@@ -276,7 +280,6 @@ def main():
             Wheel("left", FMU3, **plan.parameters).close()
     except (ValueError, OSError) as error:
         sys.exit(f"mileage: {error}")
-    name = chosen.name or ("small" if chosen.small else "own")
     component = read_component(FMU3)
     try:
         with client_for(chosen.scheduler, chosen.workers, MODULES) as client:
