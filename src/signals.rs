@@ -403,8 +403,8 @@ pub const OUTPUTS: &[OutputSignal] = &{
 
 /// Rounding of a value at the end of a ramp, relative to the range.
 const ROUNDING: f64 = 1e-12;
-/// Rounding of a start value that an importer has interpolated, relative to the value: a few units of the last bit.
-const START_ROUNDING: f64 = 8.0 * f64::EPSILON;
+/// Rounding of a constant value that an importer has interpolated, as FMPy does, relative to the value: a few units of the last bit.
+const CONSTANT_ROUNDING: f64 = 8.0 * f64::EPSILON;
 
 impl Outputs {
     /// The rows of the outputs that are sums over the steps.
@@ -457,6 +457,17 @@ impl InputSignal {
         check_range(self.name, value, minimum, maximum, self.unit, self.narrowed_by)
     }
 
+    /// The value, or the limit of the range that it misses by the rounding of a constant.
+    pub fn unrounded(&self, value: f64, parameters: &Parameters) -> f64 {
+        let (minimum, maximum) = self.range(parameters);
+        let limit = value.max(minimum).min(maximum);
+        if (value - limit).abs() <= CONSTANT_ROUNDING * limit.abs() {
+            limit
+        } else {
+            value
+        }
+    }
+
     /// Refuses a value other than the start value, rounding apart, where the choices leave this input without effect. The model
     /// itself takes any: only who asked the user for the inputs knows that one was meant.
     ///
@@ -467,7 +478,7 @@ impl InputSignal {
             return Ok(());
         };
         // An importer that interpolates a column of start values rounds their last bits, as FMPy does: nobody meant another value.
-        if (value - self.default).abs() <= START_ROUNDING * self.default.abs() {
+        if (value - self.default).abs() <= CONSTANT_ROUNDING * self.default.abs() {
             return Ok(());
         }
         let (parameter, other_number, other) = used_by.described();

@@ -112,20 +112,23 @@ impl Component {
                     row.check(variable.element, value).map_err(Failure::Value)?;
                     (row.get_mut)(parameters.to_mut())[variable.element] = value;
                 }
-                RealVariable::Input(row) => (INPUTS[row].set)(&mut inputs, value),
+                RealVariable::Input(_) => {}
                 _ => return Err(self.not_settable(variable.name(), variable.reference)),
             }
         }
         for entry in entries {
             let (variable, value) = entry?;
             if let RealVariable::Input(row) = variable.variable {
+                let row = &INPUTS[row];
+                let value = row.unrounded(value, &parameters);
                 // Until the start contact_model may still follow, a call of its own because it is an Integer; the
                 // inputs are checked with it then.
                 let check = match self.mode {
                     Mode::StepComplete => InputSignal::check,
                     _ => InputSignal::check_range,
                 };
-                check(&INPUTS[row], value, &parameters).map_err(Failure::Value)?;
+                check(row, value, &parameters).map_err(Failure::Value)?;
+                (row.set)(&mut inputs, value);
             }
         }
         if inputs != self.inputs {

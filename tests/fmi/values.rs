@@ -77,6 +77,10 @@ fn inputs_outside_their_range_are_discarded_while_running() {
                 expect_discard(&client, signal.name, value, range);
             }
         }
+        // A constant at its limit that an importer has interpolated.
+        client.expect(OK, client.set(&[("normal_load", 1e5_f64.next_up().next_up())]));
+        assert_eq!(client.get("normal_load"), 1e5);
+        client.expect(OK, client.set(&[("normal_load", 60e3)]));
         // The wheel's speed is within its own range, the rolling speed that it makes is not.
         let (before, fastest) = (client.get("wheel_speed"), parameters.largest_speed());
         client.expect(DISCARD, client.set(&[("wheel_speed", 1.01 * fastest / 0.46)]));
