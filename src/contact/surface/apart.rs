@@ -15,17 +15,32 @@ use crate::body::grid::Grid;
 use crate::numerics::dense::{self, LANES, add_multiple};
 
 /// Strips and cells of a block of the source, and between the places of the target.
-type Grain = [usize; 2];
+pub type Grain = [usize; 2];
 
-/// Grain of contacts far from each other: with the finer one a step of two contacts takes 1.3 times the time, and forces change by 1e-4 of the load.
-const FAR: Grain = [4, 6];
-/// Grain of close contacts: with the coarser one they pressed on each other's edges where they do not touch.
-const CLOSE: Grain = [2, 2];
+/// Blocks of a window across and along, of contacts far from each other: with twice or three times as many a step of two contacts takes 1.3 times the time, and
+/// forces change by 1e-4 of the load.
+const BLOCKS: [usize; 2] = [8, 6];
+/// Least and most strips and cells of such a block.
+const FAR: [[usize; 2]; 2] = [[2, 4], [2, 6]];
+/// Parts of it, across and along, that close contacts have for blocks: with whole ones they pressed on each other's edges where they do not touch.
+const CLOSE: [usize; 2] = [2, 3];
+
+/// The grain of a window.
+pub fn grain(grid: &Grid, are_close: bool) -> Grain {
+    std::array::from_fn(|way| {
+        let count = [grid.strips, grid.cells][way];
+        let [least, most] = FAR[way];
+        let far = ((count + BLOCKS[way] / 2) / BLOCKS[way]).clamp(least, most);
+        if are_close { (far / CLOSE[way]).max(1) } else { far }
+    })
+}
 
 /// Whether contacts so far apart, `m`, in windows of these grids are close: nearer than a block of the coarser grain is large.
 pub fn are_close(distance: f64, grids: [&Grid; 2]) -> bool {
-    let [strips, cells] = FAR.map(|count| count as f64);
-    let block = |grid: &Grid| f64::max(strips * grid.breadth, cells * grid.length);
+    let block = |grid: &Grid| {
+        let [strips, cells] = grain(grid, false).map(|count| count as f64);
+        f64::max(strips * grid.breadth, cells * grid.length)
+    };
     distance < grids.map(block).into_iter().fold(0.0, f64::max)
 }
 
@@ -91,12 +106,13 @@ impl Apart {
     /// Buffers for windows of the given operators.
     pub fn new(operators: &SurfaceOperators) -> Apart {
         let grid = operators.sizes.largest;
-        let [strips, cells] = CLOSE;
+        let close = grain(&grid, true);
+        let [strips, cells] = close;
         let blocks = grid.strips.div_ceil(strips) * grid.cells.div_ceil(cells);
         let (rows, columns) = (count(grid.strips, strips), count(grid.cells, cells));
         Apart {
             resultants: std::array::from_fn(|_| Vec::with_capacity(blocks.div_ceil(LANES))),
-            grain: CLOSE,
+            grain: close,
             places: std::array::from_fn(|_| vec![0.0; rows * columns]),
             rows,
             columns,
@@ -144,7 +160,7 @@ impl Apart {
     /// Begins without any, for contacts that are close or far apart.
     pub fn clear(&mut self, operators: &SurfaceOperators, are_close: bool) {
         let grid = &operators.sizes.largest;
-        self.grain = if are_close { CLOSE } else { FAR };
+        self.grain = grain(grid, are_close);
         (self.rows, self.columns) = (count(grid.strips, self.grain[0]), count(grid.cells, self.grain[1]));
         self.resultants.iter_mut().for_each(Vec::clear);
         // What follows must not hang on what was solved before.
