@@ -457,15 +457,17 @@ impl InputSignal {
         check_range(self.name, value, minimum, maximum, self.unit, self.narrowed_by)
     }
 
-    /// The value, or the limit of the range that it misses by the rounding of a constant.
-    pub fn unrounded(&self, value: f64, parameters: &Parameters) -> f64 {
+    /// The limit of the range that a value misses by no more than the rounding of a constant; `None` of other values.
+    pub fn rounded_limit(&self, value: f64, parameters: &Parameters) -> Option<f64> {
+        self.missed_limit(value, parameters, |limit, _| CONSTANT_ROUNDING * limit.abs())
+    }
+
+    /// The limit of the range that a value misses by no more than what `room` makes of the limit and of the range's width.
+    fn missed_limit(&self, value: f64, parameters: &Parameters, room: fn(f64, f64) -> f64) -> Option<f64> {
         let (minimum, maximum) = self.range(parameters);
         let limit = value.max(minimum).min(maximum);
-        if (value - limit).abs() <= CONSTANT_ROUNDING * limit.abs() {
-            limit
-        } else {
-            value
-        }
+        let missed = (value - limit).abs();
+        (missed > 0.0 && missed <= room(limit, maximum - minimum)).then_some(limit)
     }
 
     /// Refuses a value other than the start value, rounding apart, where the choices leave this input without effect. The model
@@ -512,12 +514,9 @@ impl Inputs {
     pub fn snapped(&self, parameters: &Parameters) -> Inputs {
         let mut snapped = *self;
         for signal in INPUTS {
-            let (value, (minimum, maximum)) = ((signal.get)(self), signal.range(parameters));
-            let room = ROUNDING * (maximum - minimum);
-            if value < minimum && value >= minimum - room {
-                (signal.set)(&mut snapped, minimum);
-            } else if value > maximum && value <= maximum + room {
-                (signal.set)(&mut snapped, maximum);
+            let missed = signal.missed_limit((signal.get)(self), parameters, |_, width| ROUNDING * width);
+            if let Some(limit) = missed {
+                (signal.set)(&mut snapped, limit);
             }
         }
         snapped

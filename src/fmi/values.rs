@@ -120,15 +120,18 @@ impl Component {
             let (variable, value) = entry?;
             if let RealVariable::Input(row) = variable.variable {
                 let row = &INPUTS[row];
-                let value = row.unrounded(value, &parameters);
                 // Until the start contact_model may still follow, a call of its own because it is an Integer; the
                 // inputs are checked with it then.
                 let check = match self.mode {
                     Mode::StepComplete => InputSignal::check,
                     _ => InputSignal::check_range,
                 };
-                check(row, value, &parameters).map_err(Failure::Value)?;
-                (row.set)(&mut inputs, value);
+                let checked = |value: f64| check(row, value, &parameters).map(|()| value);
+                let taken = checked(value).or_else(|error| match row.rounded_limit(value, &parameters) {
+                    Some(limit) => checked(limit),
+                    None => Err(error),
+                });
+                (row.set)(&mut inputs, taken.map_err(Failure::Value)?);
             }
         }
         if inputs != self.inputs {

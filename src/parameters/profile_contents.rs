@@ -5,7 +5,6 @@ use crate::error::{Error, ProfileError, Result};
 use crate::geometry::profile::files::text_of;
 use crate::geometry::profile::{Body, built_in};
 use serde::{Deserialize, Serialize};
-use std::io::ErrorKind;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -49,15 +48,13 @@ fn read(name: &'static str, text: &str, body: Body, resources: Option<&Path>) ->
     let ProfileSource::File(path) = ProfileSource::of(name, text)? else {
         return Ok(None);
     };
-    let is_missing = std::fs::metadata(&path).is_err_and(|error| error.kind() == ErrorKind::NotFound);
-    let content = match is_missing {
-        true => Err(not_found(&path, body, resources)),
-        false => text_of(&path),
-    };
-    let content = content.map_err(|reason| Error::NamedProfile {
+    let content = text_of(&path).map_err(|reason| Error::NamedProfile {
         name,
         text: text.to_owned(),
-        reason: Box::new(reason),
+        reason: Box::new(match path.try_exists() {
+            Ok(false) => not_found(&path, body, resources),
+            _ => reason,
+        }),
     })?;
     Ok(Some(content.into()))
 }

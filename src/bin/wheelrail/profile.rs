@@ -123,23 +123,26 @@ fn unit(text: &str) -> Result<LengthUnit, String> {
 
 /// Profile that is built in or in a file, of a body; smoothed where it is in a file.
 pub fn named(name: &str, body: Body, smoothing: f64) -> Result<Profile, Error> {
-    let options = ReadOptions {
-        body: Some(body),
-        smoothing: if is_built_in(name) { 0.0 } else { smoothing },
-        ..ReadOptions::default()
-    };
-    let profile = either(name, &options)?;
-    profile.require(body)?;
-    Ok(profile)
+    let smoothing = if is_built_in(name) { 0.0 } else { smoothing };
+    of_body(body, smoothing, |options| either(name, options))
 }
 
 /// Profile in a file, of a body, read as a component reads it with its default parameters.
 pub fn in_file(path: &Path, body: Body) -> Result<Profile, Error> {
+    of_body(body, 0.0, |options| Ok(Profile::read(path, options)?))
+}
+
+fn of_body(
+    body: Body,
+    smoothing: f64,
+    read: impl FnOnce(&ReadOptions) -> Result<Profile, Error>,
+) -> Result<Profile, Error> {
     let options = ReadOptions {
         body: Some(body),
+        smoothing,
         ..ReadOptions::default()
     };
-    let profile = Profile::read(path, &options)?;
+    let profile = read(&options)?;
     profile.require(body)?;
     Ok(profile)
 }

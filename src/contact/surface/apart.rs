@@ -17,31 +17,38 @@ use crate::numerics::dense::{self, LANES, add_multiple};
 /// Strips and cells of a block of the source, and between the places of the target.
 pub type Grain = [usize; 2];
 
-/// Blocks of a window across and along, of contacts far from each other: with twice or three times as many a step of two contacts takes 1.3 times the time, and
-/// forces change by 1e-4 of the load.
-const BLOCKS: [usize; 2] = [8, 6];
-/// Least and most strips and cells of such a block.
-const FAR: [[usize; 2]; 2] = [[2, 4], [2, 6]];
-/// Parts of it, across and along, that close contacts have for blocks: with whole ones they pressed on each other's edges where they do not touch.
-const CLOSE: [usize; 2] = [2, 3];
+/// Blocks across and along a window whose contact is far from the others, to rounding. With the blocks of close contacts a step of two contacts takes 1.3 times the
+/// time, and its forces differ by 1e-4 of the load.
+const FAR_BLOCKS: [usize; 2] = [8, 6];
+/// Least and largest number of strips, and of cells, in such a block.
+const FAR_SIZES: [[usize; 2]; 2] = [[2, 4], [2, 6]];
+/// Factors by which blocks of close contacts have fewer strips and cells. Found with the larger blocks, what one contact does to the surface beside it was so
+/// far off that pressure appeared where nothing touches.
+const CLOSE_FACTORS: [usize; 2] = [2, 3];
 
 /// The grain of a window.
 pub fn grain(grid: &Grid, are_close: bool) -> Grain {
+    let counts = [grid.strips, grid.cells];
     std::array::from_fn(|way| {
-        let count = [grid.strips, grid.cells][way];
-        let [least, most] = FAR[way];
-        let far = ((count + BLOCKS[way] / 2) / BLOCKS[way]).clamp(least, most);
-        if are_close { (far / CLOSE[way]).max(1) } else { far }
+        let (blocks, [least, largest]) = (FAR_BLOCKS[way], FAR_SIZES[way]);
+        let far = ((counts[way] + blocks / 2) / blocks).clamp(least, largest);
+        if are_close {
+            (far / CLOSE_FACTORS[way]).max(1)
+        } else {
+            far
+        }
     })
 }
 
-/// Whether contacts so far apart, `m`, in windows of these grids are close: nearer than a block of the coarser grain is large.
-pub fn are_close(distance: f64, grids: [&Grid; 2]) -> bool {
-    let block = |grid: &Grid| {
-        let [strips, cells] = grain(grid, false).map(|count| count as f64);
-        f64::max(strips * grid.breadth, cells * grid.length)
-    };
-    distance < grids.map(block).into_iter().fold(0.0, f64::max)
+/// Size of the larger blocks in a window, `m`: a contact that is nearer to this window's than that is close to it.
+pub fn block_size(grid: &Grid) -> f64 {
+    let [strips, cells] = grain(grid, false).map(|count| count as f64);
+    f64::max(strips * grid.breadth, cells * grid.length)
+}
+
+/// Rows and columns of the places in a window: every so many strips and cells, the last at the window's end or beyond.
+fn places_of(grid: &Grid, [strips, cells]: Grain) -> [usize; 2] {
+    [(grid.strips, strips), (grid.cells, cells)].map(|(count, stride)| (count - 1).div_ceil(stride) + 1)
 }
 
 /// A value of each of [`LANES`] blocks side by side.
@@ -84,11 +91,8 @@ impl Resultants {
 pub struct Apart {
     resultants: [Vec<Resultants>; WINDOWS],
     grain: Grain,
-    /// Displacement at the places of the windows by the pressure of the others, scaled.
+    /// Displacement at the places of the windows by the pressure of the others, scaled: with room for the finest grain.
     places: [Vec<f64>; WINDOWS],
-    /// Rows and columns of the places of a window.
-    rows: usize,
-    columns: usize,
     /// Displacement at the height of a strip between the rows, one value for each column.
     line: Vec<f64>,
     /// Buffers of [`resultants`].
@@ -97,25 +101,18 @@ pub struct Apart {
     pub displacement: [Vec<f64>; WINDOWS],
 }
 
-/// Places along or across a window of so many cells, the last one at its end or beyond.
-fn count(cells: usize, stride: usize) -> usize {
-    (cells - 1).div_ceil(stride) + 1
-}
-
 impl Apart {
     /// Buffers for windows of the given operators.
     pub fn new(operators: &SurfaceOperators) -> Apart {
         let grid = operators.sizes.largest;
-        let close = grain(&grid, true);
-        let [strips, cells] = close;
+        let finest = grain(&grid, true);
+        let [strips, cells] = finest;
         let blocks = grid.strips.div_ceil(strips) * grid.cells.div_ceil(cells);
-        let (rows, columns) = (count(grid.strips, strips), count(grid.cells, cells));
+        let [rows, columns] = places_of(&grid, finest);
         Apart {
             resultants: std::array::from_fn(|_| Vec::with_capacity(blocks.div_ceil(LANES))),
-            grain: close,
+            grain: finest,
             places: std::array::from_fn(|_| vec![0.0; rows * columns]),
-            rows,
-            columns,
             line: vec![0.0; columns],
             columns_of_cells: std::array::from_fn(|_| vec![0.0; grid.cells]),
             displacement: std::array::from_fn(|_| vec![0.0; grid.len()]),
@@ -159,9 +156,7 @@ impl Apart {
 
     /// Begins without any, for contacts that are close or far apart.
     pub fn clear(&mut self, operators: &SurfaceOperators, are_close: bool) {
-        let grid = &operators.sizes.largest;
-        self.grain = grain(grid, are_close);
-        (self.rows, self.columns) = (count(grid.strips, self.grain[0]), count(grid.cells, self.grain[1]));
+        self.grain = grain(&operators.sizes.largest, are_close);
         self.resultants.iter_mut().for_each(Vec::clear);
         // What follows must not hang on what was solved before.
         self.places.iter_mut().for_each(|places| places.fill(0.0));
@@ -198,9 +193,10 @@ impl Apart {
         let middle = place.middle_along(grid);
         // Of a point force F, (1 − ν)/(π G) F/r.
         let unit = operators.pair.normal() * patch.scales.pressure / patch.scales.displacement;
-        let (resultants, columns, [strips, cells]) = (&self.resultants, self.columns, self.grain);
+        let (resultants, [strips, cells]) = (&self.resultants, self.grain);
+        let [rows, columns] = places_of(grid, self.grain);
         let least = 0.5 * grid.breadth;
-        let places = &mut self.places[window][..self.rows * columns];
+        let places = &mut self.places[window][..rows * columns];
         let change = dense::vectorised(
             #[inline(always)]
             |_| {
@@ -231,7 +227,7 @@ impl Apart {
 
     /// Interpolates the displacement of a window between the places.
     fn interpolate(&mut self, grid: &Grid, window: usize) {
-        let (rows, columns, [strips, cells]) = (self.rows, self.columns, self.grain);
+        let ([rows, columns], [strips, cells]) = (places_of(grid, self.grain), self.grain);
         let (places, line) = (&self.places[window], &mut self.line[..columns]);
         let displacement = &mut self.displacement[window];
         dense::vectorised(

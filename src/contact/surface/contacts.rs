@@ -52,9 +52,10 @@ impl Wanted {
         }
     }
 
-    /// Whether no more than a strip lies between this contact and the next one: they are one, or the seam of two windows parts them.
+    /// Whether this contact and the next one go on in each other: no more than a strip lies between them, which may be the seam of two windows.
     pub fn goes_on_in(&self, next: &Wanted) -> bool {
         match (self.reach, next.reach) {
+            // Each reaches half a strip farther than it carries.
             (Some([_, end]), Some([begin, _])) => end - begin > -ROUND_OFF,
             _ => false,
         }
@@ -208,4 +209,25 @@ struct Run {
     /// Sum of the strips' forces, and of their squares, scaled.
     force: f64,
     squares: f64,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A strip between two contacts, to round-off, leaves them one; two strips do not, and an overlap is no contact yet.
+    #[test]
+    fn contacts_with_a_strip_between_them_go_on_in_each_other() {
+        let strip = 0.1e-3;
+        let contact = |begin: f64, end: f64| Wanted {
+            reach: Some([begin - 0.5 * strip, end + 0.5 * strip]),
+            ..Wanted::overlap(Region::default(), CARRIES)
+        };
+        let first = contact(37.0e-3, 38.2e-3);
+        for (strips, goes_on) in [(0.0, true), (1.0, true), (2.0, false)] {
+            let begin = 38.2e-3 + strips * strip;
+            assert_eq!(first.goes_on_in(&contact(begin, begin + strip)), goes_on, "{strips}");
+        }
+        assert!(!first.goes_on_in(&Wanted::overlap(Region::default(), CARRIES)));
+    }
 }

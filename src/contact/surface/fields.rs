@@ -16,7 +16,7 @@ pub struct SurfaceFields {
     pub windows: [PatchFields; WINDOWS],
     /// Places of the windows; `None` of one that is not used.
     pub places: [Option<Place>; WINDOWS],
-    /// Whether contacts in windows of their own are close to each other, as [`super::apart`] takes them.
+    /// Whether contacts in windows of their own are close to each other, as [`super::apart`] takes them: kept, as derivatives go by what the step went by.
     pub are_close: bool,
     /// Approach: by how much the wheel is lower than where the undeformed bodies touch first, `m`.
     pub approach: Vec<f64>,

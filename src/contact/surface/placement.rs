@@ -216,15 +216,10 @@ fn want(problem: &SurfaceProblem, source: Option<&SurfaceFields>, approach: f64,
         };
         contacts::find(problem.operators, source, expected, search, apart, wanted);
         for own in wanted.iter_mut() {
-            let across = own.region.across;
             if *is_unsettled {
                 // Those that are so large meet, and share a window.
                 own.region = own.region.grown(room);
-            } else if too_small
-                .iter()
-                .flatten()
-                .any(|window| window[0] < across[1] && across[0] < window[1])
-            {
+            } else if too_small.iter().flatten().any(|window| window.meets(&own.region)) {
                 own.room = room;
             }
         }
@@ -232,7 +227,7 @@ fn want(problem: &SurfaceProblem, source: Option<&SurfaceFields>, approach: f64,
         let covers = |place| {
             wanted
                 .iter()
-                .any(|wanted| wanted.region.grown(BESIDE * room).holds(place))
+                .any(|wanted| wanted.region.grown(expected.beside).holds(place))
         };
         if !search.first_place().is_some_and(covers) {
             wanted.clear();
@@ -394,10 +389,13 @@ fn assign(problem: &SurfaceProblem, wanted: &[Wanted], now: &mut SurfaceFields) 
         own[window] = [low, high];
     }
     now.are_close = (1..wanted.len()).any(|next| {
-        let [a, b] = [next - 1, next].map(|number| (&wanted[number].region, window_of[number]));
-        let grid =
-            |window: usize| now.places[window].map_or(sizes.largest, |place| sizes.grid(place.length, place.breadth));
-        apart::are_close(b.0.across[0] - a.0.across[1], [&grid(a.1), &grid(b.1)])
+        let distance = wanted[next].region.across[0] - wanted[next - 1].region.across[1];
+        let places = [next - 1, next]
+            .into_iter()
+            .filter_map(|number| now.places[window_of[number]]);
+        places
+            .map(|place| sizes.grid(place.length, place.breadth))
+            .any(|grid| distance < apart::block_size(&grid))
     });
     // A window without a region stays while nothing else needs its place: rail that it has heated rolls out of it.
     for (window, taken) in taken.into_iter().enumerate() {

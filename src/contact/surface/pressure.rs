@@ -393,7 +393,7 @@ fn check_room(problem: &SurfaceProblem, fields: &SurfaceFields, solvers: &mut Su
         let (patch, own) = (problem.of(&place), &solvers.windows[window].patch);
         if PatchOperators::is_cut_off(&patch, &fields.windows[window], own) {
             solvers.outgrown = fields.approach[0];
-            solvers.too_small[window] = Some(place.region(&patch.operators.grid).across);
+            solvers.too_small[window] = Some(place.region(&patch.operators.grid));
             holds_all = false;
         }
     }

@@ -7,7 +7,7 @@ use super::geometry::WindowGeometry;
 use super::operators::SurfaceOperators;
 use super::search::Search;
 use super::transfer::Transfer;
-use super::windows::{LENGTHS, WINDOWS};
+use super::windows::{LENGTHS, Region, WINDOWS};
 use super::worn_bodies::WornBodies;
 use crate::contact::interface::Interface;
 use crate::contact::patch::solvers::PatchSolvers;
@@ -47,8 +47,8 @@ pub struct SurfaceSolvers {
     pub reference: f64,
     /// Approach at which a contact has outgrown its window in this step, `m`.
     pub outgrown: f64,
-    /// Ends in arc length of the windows that contacts have outgrown in this step, `m`.
-    pub too_small: [Option<[f64; 2]>; WINDOWS],
+    /// Regions of the windows that contacts have outgrown in this step.
+    pub too_small: [Option<Region>; WINDOWS],
     /// Whether contacts of different windows have pushed each other away by turns in this step.
     pub is_unsettled: bool,
 }
