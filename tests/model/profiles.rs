@@ -449,20 +449,51 @@ fn forces_follow_their_slope_where_the_load_passes_to_the_flange() {
 
 /// Contacts of a wheel that has come from the side are those of one that has always been there. A window that was placed beside a growing contact carried a single strip with
 /// 4 GPa on 60E1, and 0.8 GPa on 54E1, as what the contact does to the surface so near to it was not found well. On UIC60 the wheel that came had two windows, and one that had always been there
-/// a single one of which the narrow contact took up three strips.
+/// a single one of which the narrow contact took up three strips. On eight cells, a contact for which more room was made met another one, and had a false peak of 3.2 GPa on the rail 54E1.
 #[test]
 fn contacts_do_not_hang_on_the_way_there() {
-    for (rail, from, to, normal_load) in [
-        ("60E1", 4.422_979_967_920_558e-3, 5.163_453_718_085_52e-3, 30e3),
-        ("54E1", 4.965_209_981_774_793e-3, 4.620_813_332_367_142e-3, 30e3),
-        ("UIC60", 5.212_009_911_151_527e-3, 4.935_189_140_627_023e-3, 99e3),
+    let default = PatchGrid::Default;
+    for (grid, rail, from, to, normal_load, contacts) in [
+        (
+            default,
+            "60E1",
+            4.422_979_967_920_558e-3,
+            5.163_453_718_085_52e-3,
+            30e3,
+            2.0,
+        ),
+        (
+            default,
+            "54E1",
+            4.965_209_981_774_793e-3,
+            4.620_813_332_367_142e-3,
+            30e3,
+            2.0,
+        ),
+        (
+            default,
+            "UIC60",
+            5.212_009_911_151_527e-3,
+            4.935_189_140_627_023e-3,
+            99e3,
+            2.0,
+        ),
+        (
+            PatchGrid::Fast,
+            "54E1",
+            -3.338_734_840_326_651_5e-3,
+            5.263_635_436_039_99e-3,
+            100e3,
+            1.0,
+        ),
     ] {
-        let parameters = Parameters {
+        let mut parameters = Parameters {
             contact_model: ContactModel::Profiles,
             slip_source: SlipSource::VehicleSpeed,
             rail_profile: rail.to_owned(),
             ..Parameters::default()
         };
+        parameters.set_patch_grid(grid);
         let inputs = |lateral_displacement: f64| rolling(lateral_displacement, normal_load, 0.002);
         let settled = |from: f64| {
             let mut simulation = Simulation::new(&parameters, &inputs(from)).unwrap();
@@ -473,7 +504,7 @@ fn contacts_do_not_hang_on_the_way_there() {
             *simulation.outputs()
         };
         let (came, always) = (settled(from), settled(to));
-        assert_eq!((came.contacts, always.contacts), (2.0, 2.0), "{rail}");
+        assert_eq!((came.contacts, always.contacts), (contacts, contacts), "{rail}");
         // Their windows may have other cells. The largest pressure is that in the middle of a strip, up to half a strip beside the ellipse's peak: with 14 strips
         // it is too low by up to (1/14)²/2, 0.3 %.
         let ratio = came.peak_pressure / always.peak_pressure;

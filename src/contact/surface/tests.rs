@@ -8,6 +8,7 @@ use super::problem::SurfaceProblem;
 use super::transfer::Transfer;
 use super::windows::Place;
 use super::worn_bodies::WornBodies;
+use crate::body::grid::Grid;
 use crate::contact::engine::Engine;
 use crate::contact::fields::Fields;
 use crate::contact::patch::undeformed::Undeformed;
@@ -470,6 +471,57 @@ fn windows_displace_each_other_as_their_cells_do() {
                 );
             }
         }
+    }
+}
+
+/// Blocks follow the number of cells, and contacts are close where they are nearer to each other than one of the larger blocks is long.
+#[test]
+fn contacts_nearer_than_a_block_are_close() {
+    for (cells, strips, far, close) in [
+        (34, 32, [4, 6], [2, 2]),
+        (24, 23, [3, 4], [1, 1]),
+        (8, 12, [2, 2], [1, 1]),
+    ] {
+        let grid = Grid::new(cells, strips, 17e-3, 12.8e-3);
+        assert_eq!(
+            [false, true].map(|are_close| apart::grain(&grid, are_close)),
+            [far, close]
+        );
+        let [across, along] = [far[0] as f64 * grid.breadth, far[1] as f64 * grid.length];
+        assert_eq!(apart::block_size(&grid), across.max(along));
+    }
+    for (lateral, are_close) in [(5e-3, false), (5.2e-3, true)] {
+        let parameters = Parameters {
+            patch_nodes: 34,
+            patch_strips: 21,
+            ..parameters(Control::Load)
+        };
+        let operators = SurfaceOperators::build(&parameters, &ProfileContents::default()).unwrap();
+        let state = run(&parameters, &displaced(lateral), 3);
+        let own = fields(&state);
+        let mut contacts: Vec<_> = own
+            .used()
+            .filter_map(|(window, place)| {
+                let grid = &operators.of(&place).grid;
+                let loaded = |strip: &usize| {
+                    own.windows[window].pressure[grid.row(*strip)]
+                        .iter()
+                        .any(|&pressure| pressure > 0.0)
+                };
+                let [first, last] = [(0..grid.strips).find(loaded)?, (0..grid.strips).rev().find(loaded)?];
+                Some(([place.arc(grid, first), place.arc(grid, last)], apart::block_size(grid)))
+            })
+            .collect();
+        contacts.sort_by(|(a, _), (b, _)| a[0].total_cmp(&b[0]));
+        let [([_, end], first), ([begin, _], second)] = contacts[..] else {
+            panic!("{} contacts", contacts.len());
+        };
+        let share = (begin - end) / f64::max(first, second);
+        assert_eq!(
+            (share < 1.0, own.are_close),
+            (are_close, are_close),
+            "{lateral}: {share}"
+        );
     }
 }
 
