@@ -291,10 +291,10 @@ fn main() {
     let is_asked = |contact: &str| asked.as_ref().is_none_or(|asked| contact.starts_with(asked.as_str()));
     let track = track::track();
     let default = Parameters::default();
-    for (name, displacement) in track::PROFILES {
-        let contact = format!("profiles, {name}");
+    for profiles in &track::PROFILES {
+        let contact = format!("profiles, {}", profiles.name);
         if is_asked(&contact) {
-            let inputs = track::on_profiles(&track, displacement);
+            let inputs = track::on_profiles(&track, profiles);
             compare(&contact, &options_of_profiles(&default, &inputs));
         }
     }

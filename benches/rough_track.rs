@@ -26,13 +26,13 @@ fn main() {
         names.push(format!("{cells} x {strips}"));
         models.push((braking::patch_parameters(cells, strips), track.clone()));
     }
-    for (name, displacement) in track::PROFILES {
+    for profiles in &track::PROFILES {
         let parameters = Parameters {
             contact_model: ContactModel::Profiles,
             ..braking::patch_parameters(GRIDS[0].0, GRIDS[0].1)
         };
-        names.push(name.to_owned());
-        models.push((parameters, track::on_profiles(&track, displacement)));
+        names.push(profiles.name.to_owned());
+        models.push((parameters, track::on_profiles(&track, profiles)));
     }
     // `cargo bench --bench rough_track -- two`: the line and the contacts that are named, alone.
     let asked: Vec<String> = std::env::args()

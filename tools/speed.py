@@ -28,8 +28,12 @@ STARTS = 4
 SLIP_FROM_SPEEDS = 2
 LINE, PATCH, PROFILES = 1, 2, 3
 FAST_GRID = {"contact_model": PATCH, "patch_nodes": 8, "patch_strips": 8}
-# As benches/track/mod.rs has it: part of the track's spin that profiles have by the inclination of the contact, 1/m.
+# As benches/track/profiles.rs has them: part of the track's spin that the inclination of the contact makes, 1/m,
+# wheel radius, and rolling radius and place of the contact that carries most, m.
 INCLINED = 0.1
+RADIUS = 0.46
+ROLLING_RADIUS_OF_TWO = 461.17e-3
+LEVER = 0.752
 
 
 def rows_of(table):
@@ -49,11 +53,17 @@ def inputs_at(table, times):
     return {name: np.interp(times, known, values) for name, values in columns.items()}
 
 
-def on_profiles(inputs, displacement):
-    """Return the inputs for a wheelset that is displaced to the left, with the same creepages."""
-    inclined = INCLINED * inputs["vehicle_speed"]
-    across = {"lateral_displacement": np.full_like(inclined, displacement), "yaw_rate": inputs["spin_rate"] - inclined}
-    return {**inputs, **across, "spin_rate": np.zeros_like(inclined)}
+def on_profiles(inputs, displacement, rolling_radius):
+    """Return the inputs for a wheelset that is displaced to the left, with the same creepages, mirrored."""
+    yaw_rate = INCLINED * inputs["vehicle_speed"] - inputs["spin_rate"]
+    return {
+        **inputs,
+        "wheel_speed": (RADIUS * inputs["wheel_speed"] - LEVER * yaw_rate) / rolling_radius,
+        "lateral_speed": -inputs["lateral_speed"],
+        "spin_rate": np.zeros_like(yaw_rate),
+        "yaw_rate": yaw_rate,
+        "lateral_displacement": np.full_like(yaw_rate, displacement),
+    }
 
 
 def straight(inputs):
@@ -72,8 +82,8 @@ def runs(rough, steps):
         ("line", {"contact_model": LINE}, straight(inputs)),
         ("patch", {"contact_model": PATCH}, inputs),
         ("8 x 8", FAST_GRID, inputs),
-        ("tread", {"contact_model": PROFILES}, on_profiles(inputs, 0.0)),
-        ("two", {"contact_model": PROFILES}, on_profiles(inputs, 5e-3)),
+        ("tread", {"contact_model": PROFILES}, on_profiles(inputs, 0.0, RADIUS)),
+        ("two", {"contact_model": PROFILES}, on_profiles(inputs, 5e-3, ROLLING_RADIUS_OF_TWO)),
     ]
 
 

@@ -3,7 +3,10 @@
 // Each benchmark uses a part of this.
 #![allow(dead_code)]
 
+mod profiles;
+
 use crate::timing::thread_time;
+pub use profiles::{OnProfiles, PROFILES};
 use wheelrail::wheel_rail::Iterations;
 use wheelrail::{Inputs, Parameters, Simulation};
 
@@ -41,6 +44,11 @@ pub fn straight(track: &[Inputs]) -> Vec<Inputs> {
         ..*inputs
     };
     track.iter().map(without).collect()
+}
+
+/// Inputs of a wheel with profiles.
+pub fn on_profiles(track: &[Inputs], profiles: &OnProfiles) -> Vec<Inputs> {
+    track.iter().map(|inputs| profiles.inputs(inputs)).collect()
 }
 
 /// What the steps of a model took.
@@ -146,20 +154,4 @@ pub fn least<T>(rounds: usize, runs: &[T], run: impl Fn(&T) -> Run) -> Vec<Run> 
         }
     }
     least
-}
-
-/// Lateral displacement of the left wheel S1002 on 60E1: on the tread, and where tread and gauge corner carry, `m`.
-pub const PROFILES: [(&str, f64); 2] = [("tread", 0.0), ("two", 5.0e-3)];
-/// Part of the track's spin that a contact of profiles has by its inclination, `1/m`.
-const INCLINED: f64 = 0.1;
-
-/// The same load, speeds and creepages for a wheelset at a displacement.
-pub fn on_profiles(track: &[Inputs], displacement: f64) -> Vec<Inputs> {
-    let inputs = |inputs: &Inputs| Inputs {
-        spin_rate: 0.0,
-        yaw_rate: inputs.spin_rate - INCLINED * inputs.vehicle_speed,
-        lateral_displacement: displacement,
-        ..*inputs
-    };
-    track.iter().map(inputs).collect()
 }

@@ -1,6 +1,6 @@
 //! Quantities that follow from the parameters by a formula.
 
-use super::choices::{ContactModel, Wheel};
+use super::choices::{ContactModel, Side, Wheel};
 use super::table::Parameters;
 use crate::geometry::hertz::{self, HertzEllipse};
 
@@ -93,6 +93,16 @@ impl Parameters {
             ContactModel::Profiles => (radius_of_row(self.wheel_radius), CROWN_CURVATURE),
         };
         (0.5 / radius, 0.5 * across)
+    }
+
+    /// Side of the wheelset that the wheel is on: 1 on the left, −1 on the right.
+    pub fn side_sign(&self) -> f64 {
+        if self.side == Side::Right { -1.0 } else { 1.0 }
+    }
+
+    /// Distance of the running circle from the middle of the wheelset, `m`.
+    pub fn running_circle(&self) -> f64 {
+        0.5 * self.flange_back_distance + self.flange_back_position
     }
 
     /// Contact ellipse under a `load` `N`, of the transverse curvatures.

@@ -17,11 +17,15 @@ impl Model {
         let (half_length, half_breadth) = self.half_axes(load);
         let saturation = friction::largest_coefficient(&self.parameters) * half_length / to.radius(&self.parameters);
         // Slip along and across the rail, and that of the spin at the contact's side.
+        let to_the_left = self.parameters.side_sign() * self.parameters.running_circle();
+        let radius = self.parameters.wheel_radius;
         let slips = |motion: &Motion, inputs: &Inputs| {
             [
-                motion.rigid_slip,
-                // A wheelset that is yawed rolls askew. The yaw rate is none of a line or a patch.
-                motion.lateral_speed - inputs.rail_lateral_speed - motion.rolling_speed * inputs.yaw_angle,
+                // A wheelset turns about its centre; a line and a patch have neither yaw nor roll.
+                motion.rigid_slip + to_the_left * inputs.yaw_rate,
+                // A wheelset that is yawed rolls askew.
+                motion.lateral_speed - inputs.rail_lateral_speed - motion.rolling_speed * inputs.yaw_angle
+                    + radius * inputs.roll_rate,
                 half_breadth * (motion.spin_rate + inputs.yaw_rate),
             ]
         };
@@ -82,7 +86,7 @@ impl Model {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::parameters::{Parameters, SlipSource};
+    use crate::parameters::{Parameters, Side, SlipSource};
 
     fn model(contact_model: ContactModel) -> Model {
         let parameters = Parameters {
@@ -125,5 +129,41 @@ mod tests {
             ..from
         };
         assert!((model.change_of_place(&from, &to) - 1.0).abs() < 1e-12);
+    }
+    /// A yaw rate drives the wheels of a wheelset along the rail, one forward and one backward, and a roll rate both to the side. A wheel whose
+    /// speed makes up for it slides no more than before.
+    #[test]
+    fn turning_of_a_wheelset_is_slip_of_its_wheels() {
+        for (side, sign) in [(Side::Left, 1.0), (Side::Right, -1.0)] {
+            let model = Model::new(Parameters {
+                side,
+                ..model(ContactModel::Profiles).parameters
+            })
+            .unwrap();
+            let radius = model.parameters.wheel_radius;
+            let speed = 30.0;
+            let rolling = Inputs {
+                vehicle_speed: speed,
+                wheel_speed: speed / radius,
+                ..Inputs::default()
+            };
+            let yawing = Inputs {
+                yaw_rate: 0.6,
+                ..rolling
+            };
+            let rolling_over = Inputs {
+                roll_rate: 0.6,
+                ..rolling
+            };
+            let circle = model.parameters.running_circle();
+            let followed = Inputs {
+                wheel_speed: rolling.wheel_speed - sign * circle * yawing.yaw_rate / radius,
+                ..yawing
+            };
+            let slides = model.settings.step.jump;
+            assert!(model.change(&rolling, &yawing) > slides, "{side:?}");
+            assert!(model.change(&rolling, &rolling_over) > slides, "{side:?}");
+            assert!(model.change(&rolling, &followed) < slides, "{side:?}");
+        }
     }
 }

@@ -3,6 +3,11 @@
 use wheelrail::parameters::{ContactModel, Parameters, PatchGrid, SlipSource, WheelHeating};
 use wheelrail::{Inputs, Simulation};
 
+#[path = "../../benches/track/profiles.rs"]
+mod on_profiles;
+
+use on_profiles::PROFILES;
+
 /// Steps before the count.
 const WARM_UP: usize = 50;
 const STEPS: usize = 200;
@@ -93,9 +98,6 @@ fn a_step_on_a_rough_track_takes_no_more_iterations() {
     }
 }
 
-/// Lateral displacement of the wheelset at which the tread carries alone, and at which the gauge corner carries as well, `m`.
-const PROFILES: [(&str, f64); 2] = [("tread", 0.0), ("two contacts", 5e-3)];
-
 /// Profiles under the same loads and speeds: a contact on the tread, and two, whose windows displace each other and share the load.
 #[test]
 fn profiles_take_no_more_iterations() {
@@ -103,17 +105,10 @@ fn profiles_take_no_more_iterations() {
         contact_model: ContactModel::Profiles,
         ..patch(34, 21)
     };
-    let recorded = [[4.9, 9.0, 1.32, 11.5, 3.55], [12.5, 35.0, 3.86, 48.0, 4.53]];
-    for ((name, lateral_displacement), recorded) in PROFILES.into_iter().zip(recorded) {
-        let inputs = |inputs: Inputs| Inputs {
-            lateral_displacement,
-            // The spin of the patch, less what the inclination of the tread makes of the speed.
-            yaw_rate: inputs.spin_rate - 0.1 * inputs.vehicle_speed,
-            spin_rate: 0.0,
-            ..inputs
-        };
-        let track: Vec<Inputs> = track(1.0).into_iter().map(inputs).collect();
-        takes_no_more(name, &parameters, &track, recorded);
+    let recorded = [[6.5, 27.8, 2.05, 9.0, 2.77], [13.3, 70.7, 5.5, 36.3, 3.32]];
+    for (profiles, recorded) in PROFILES.iter().zip(recorded) {
+        let track: Vec<Inputs> = track(1.0).iter().map(|inputs| profiles.inputs(inputs)).collect();
+        takes_no_more(profiles.name, &parameters, &track, recorded);
     }
 }
 

@@ -11,7 +11,7 @@ use crate::geometry::profile::files::ReadOptions;
 use crate::geometry::profile::{Body, DepthGrid, Profile, WornHeight};
 use crate::geometry::rail::PlacedRail;
 use crate::geometry::unrolled::Wheel;
-use crate::parameters::{Parameters, ProfileContents, ProfileSource, ProfileWear, Side};
+use crate::parameters::{Parameters, ProfileContents, ProfileSource, ProfileWear};
 
 /// Distance of the points of the rail's profile at which contacts are sought, `m`: less than the breadth of the smallest that carries
 /// an appreciable load.
@@ -147,7 +147,7 @@ impl SurfaceOperators {
             grids,
             worn_height,
             profiles,
-            side: if parameters.side == Side::Right { -1.0 } else { 1.0 },
+            side: parameters.side_sign(),
             shapes: shapes
                 .map(|(length, breadth)| PatchOperators::on_grid(parameters, sizes.grid(length, breadth), &narrow))
                 .collect::<Result<_>>()?,
@@ -187,7 +187,7 @@ fn placed([wheel, rail]: &[Profile; 2], parameters: &Parameters) -> Result<(Plac
     let wheel = Wheel {
         profile: wheel.height_function().map_err(Error::Profile)?,
         radius: parameters.wheel_radius,
-        offset: 0.5 * parameters.flange_back_distance + parameters.flange_back_position,
+        offset: parameters.running_circle(),
     };
     Ok((rail, wheel))
 }
