@@ -291,7 +291,7 @@ fn main() {
     let is_asked = |contact: &str| asked.as_ref().is_none_or(|asked| contact.starts_with(asked.as_str()));
     let track = track::track();
     let default = Parameters::default();
-    for profiles in &track::PROFILES {
+    for profiles in &track::profiles::PROFILES {
         let contact = format!("profiles, {}", profiles.name);
         if is_asked(&contact) {
             let inputs = track::on_profiles(&track, profiles);

@@ -26,7 +26,7 @@ fn main() {
         names.push(format!("{cells} x {strips}"));
         models.push((braking::patch_parameters(cells, strips), track.clone()));
     }
-    for profiles in &track::PROFILES {
+    for profiles in &track::profiles::PROFILES {
         let parameters = Parameters {
             contact_model: ContactModel::Profiles,
             ..braking::patch_parameters(GRIDS[0].0, GRIDS[0].1)

@@ -26,16 +26,24 @@ def test_a_manoeuvre_is_as_long_as_its_table(table, steps):
         speed.inputs_at(table, speed.STEP * np.arange(steps + 1))
 
 
-def test_profiles_have_the_spin_of_the_track():
-    """Yaw and the inclination of the contact, which the benchmark takes for as much, make the spin of the table."""
-    track = (ROOT / "benches" / "track" / "mod.rs").read_text()
-    assert float(re.search(r"const INCLINED: f64 = ([\d.]+);", track)[1]) == speed.INCLINED
+@pytest.mark.parametrize(("name", "displacement", "rolling_radius", "lever"), speed.ON_PROFILES)
+def test_profiles_are_driven_as_the_benchmarks_drive_them(name, displacement, rolling_radius, lever):
+    """The constants are those of the benchmarks; speeds and yaw rate make creepage and spin of the table."""
+    source = (ROOT / "benches" / "track" / "profiles.rs").read_text()
+    for constant in ("INCLINED", "RADIUS"):
+        assert float(re.search(rf"const {constant}: f64 = ([\d.]+);", source)[1]) == getattr(speed, constant)
+    place = [rf"{key}: ([\de.-]+),\s*" for key in ("displacement", "rolling_radius", "lever")]
+    found = re.search(rf'name: "{name}",\s*' + "".join(place), source)
+    assert [float(value) for value in found.groups()] == [displacement, rolling_radius, lever]
     inputs = speed.inputs_at("benches/rough_track.csv", speed.STEP * np.arange(10))
-    on_profiles = speed.on_profiles(inputs, 5e-3)
-    assert (on_profiles["lateral_displacement"] == 5e-3).all()
-    assert not on_profiles["spin_rate"].any()
-    spin = on_profiles["yaw_rate"] + speed.INCLINED * inputs["vehicle_speed"]
-    assert spin == pytest.approx(inputs["spin_rate"], abs=1e-12)
+    driven = speed.on_profiles(inputs, displacement, rolling_radius, lever)
+    assert (driven["lateral_displacement"] == displacement).all()
+    assert not driven["spin_rate"].any()
+    assert speed.INCLINED * inputs["vehicle_speed"] - driven["yaw_rate"] == pytest.approx(
+        inputs["spin_rate"], abs=1e-12
+    )
+    circumferential = rolling_radius * driven["wheel_speed"] + lever * driven["yaw_rate"]
+    assert circumferential == pytest.approx(speed.RADIUS * inputs["wheel_speed"], rel=1e-12)
 
 
 def test_it_measures_both_units_and_refuses_too_few_steps(fmu):

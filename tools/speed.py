@@ -28,12 +28,11 @@ STARTS = 4
 SLIP_FROM_SPEEDS = 2
 LINE, PATCH, PROFILES = 1, 2, 3
 FAST_GRID = {"contact_model": PATCH, "patch_nodes": 8, "patch_strips": 8}
-# As benches/track/profiles.rs has them: part of the track's spin that the inclination of the contact makes, 1/m,
-# wheel radius, and rolling radius and place of the contact that carries most, m.
+# As benches/track/profiles.rs has them: part of the track's spin that the inclination of the contact makes, 1/m, and
+# wheel radius, m; name, lateral displacement, rolling radius and lever of the contact that carries most, m.
 INCLINED = 0.1
 RADIUS = 0.46
-ROLLING_RADIUS_OF_TWO = 461.17e-3
-LEVER = 0.752
+ON_PROFILES = (("tread", 0.0, 459.98e-3, 750.6e-3), ("two", 5e-3, 461.24e-3, 732.6e-3))
 
 
 def rows_of(table):
@@ -53,12 +52,12 @@ def inputs_at(table, times):
     return {name: np.interp(times, known, values) for name, values in columns.items()}
 
 
-def on_profiles(inputs, displacement, rolling_radius):
+def on_profiles(inputs, displacement, rolling_radius, lever):
     """Return the inputs for a wheelset that is displaced to the left, with the same creepages, mirrored."""
     yaw_rate = INCLINED * inputs["vehicle_speed"] - inputs["spin_rate"]
     return {
         **inputs,
-        "wheel_speed": (RADIUS * inputs["wheel_speed"] - LEVER * yaw_rate) / rolling_radius,
+        "wheel_speed": (RADIUS * inputs["wheel_speed"] - lever * yaw_rate) / rolling_radius,
         "lateral_speed": -inputs["lateral_speed"],
         "spin_rate": np.zeros_like(yaw_rate),
         "yaw_rate": yaw_rate,
@@ -82,8 +81,7 @@ def runs(rough, steps):
         ("line", {"contact_model": LINE}, straight(inputs)),
         ("patch", {"contact_model": PATCH}, inputs),
         ("8 x 8", FAST_GRID, inputs),
-        ("tread", {"contact_model": PROFILES}, on_profiles(inputs, 0.0, RADIUS)),
-        ("two", {"contact_model": PROFILES}, on_profiles(inputs, 5e-3, ROLLING_RADIUS_OF_TWO)),
+        *((name, {"contact_model": PROFILES}, on_profiles(inputs, *place)) for name, *place in ON_PROFILES),
     ]
 
 

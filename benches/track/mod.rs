@@ -3,10 +3,10 @@
 // Each benchmark uses a part of this.
 #![allow(dead_code)]
 
-mod profiles;
+pub mod profiles;
 
 use crate::timing::thread_time;
-pub use profiles::{OnProfiles, PROFILES};
+use profiles::OnProfiles;
 use wheelrail::wheel_rail::Iterations;
 use wheelrail::{Inputs, Parameters, Simulation};
 

@@ -10,6 +10,8 @@ pub struct OnProfiles {
     displacement: f64,
     /// Rolling radius at the contact that carries most, `m`.
     rolling_radius: f64,
+    /// Distance of that contact from the middle of the wheelset, `m`.
+    lever: f64,
 }
 
 /// Contacts on the tread alone, and on tread and gauge corner: there the gauge corner carries a seventh of the load, and slides.
@@ -17,20 +19,20 @@ pub const PROFILES: [OnProfiles; 2] = [
     OnProfiles {
         name: "tread",
         displacement: 0.0,
-        rolling_radius: RADIUS,
+        rolling_radius: 459.98e-3,
+        lever: 750.6e-3,
     },
     OnProfiles {
         name: "two",
         displacement: 5e-3,
-        rolling_radius: 461.17e-3,
+        rolling_radius: 461.24e-3,
+        lever: 732.6e-3,
     },
 ];
 /// Radius by which the track's speeds make its creepages, `m`.
 const RADIUS: f64 = 0.46;
 /// Part of the track's spin that the inclination of a contact makes by itself, `1/m`.
 const INCLINED: f64 = 0.1;
-/// Distance of the contact that carries most from the middle of the track, `m`.
-const LEVER: f64 = 0.752;
 
 impl OnProfiles {
     /// Inputs with the same creepages, mirrored: the inclination of a left wheel's contact spins it the other way. A wheelset that yaws drives its
@@ -38,7 +40,7 @@ impl OnProfiles {
     pub fn inputs(&self, patch: &Inputs) -> Inputs {
         let yaw_rate = INCLINED * patch.vehicle_speed - patch.spin_rate;
         Inputs {
-            wheel_speed: (RADIUS * patch.wheel_speed - LEVER * yaw_rate) / self.rolling_radius,
+            wheel_speed: (RADIUS * patch.wheel_speed - self.lever * yaw_rate) / self.rolling_radius,
             lateral_speed: -patch.lateral_speed,
             spin_rate: 0.0,
             yaw_rate,
