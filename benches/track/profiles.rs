@@ -1,4 +1,4 @@
-//! A left wheel S1002 on 60E1 on the rough track: with the load of the patch, its creepages, and the part of its spin that varies.
+//! Inputs of a left wheel S1002 on 60E1 on the rough track: the load and the creepages of the patch there, and as much variation of spin.
 
 use wheelrail::Inputs;
 
@@ -14,7 +14,8 @@ pub struct OnProfiles {
     lever: f64,
 }
 
-/// Contacts on the tread alone, and on tread and gauge corner: there the gauge corner carries a seventh of the load, and slides.
+/// Wheelsets in the middle of the track, which touch on the tread alone, and to the left, where the gauge corner carries the smaller part of the load, and slides.
+/// Rolling radius and lever are those with which the creepages are the track's (`profiles_have_the_creepages_of_the_track` in the tests).
 pub const PROFILES: [OnProfiles; 2] = [
     OnProfiles {
         name: "tread",
@@ -30,7 +31,7 @@ pub const PROFILES: [OnProfiles; 2] = [
     },
 ];
 /// Radius by which the track's speeds make its creepages, `m`.
-const RADIUS: f64 = 0.46;
+pub const RADIUS: f64 = 0.46;
 /// Part of the track's spin that the inclination of a contact makes by itself, `1/m`.
 const INCLINED: f64 = 0.1;
 

@@ -16,16 +16,17 @@ impl Model {
         let load = from.normal_load.max(to.normal_load);
         let (half_length, half_breadth) = self.half_axes(load);
         let saturation = friction::largest_coefficient(&self.parameters) * half_length / to.radius(&self.parameters);
-        // Slip along and across the rail, and that of the spin at the contact's side.
+        // A wheelset turns about its middle, a running circle's distance beside the wheel and a radius above the rail. A line and a patch have neither yaw rate
+        // nor roll rate.
         let to_the_left = self.parameters.side_sign() * self.parameters.running_circle();
-        let radius = self.parameters.wheel_radius;
+        let above = self.parameters.wheel_radius;
+        // Slip along and across the rail, and that of the spin at the contact's side.
         let slips = |motion: &Motion, inputs: &Inputs| {
             [
-                // A wheelset turns about its centre; a line and a patch have neither yaw nor roll.
                 motion.rigid_slip + to_the_left * inputs.yaw_rate,
                 // A wheelset that is yawed rolls askew.
                 motion.lateral_speed - inputs.rail_lateral_speed - motion.rolling_speed * inputs.yaw_angle
-                    + radius * inputs.roll_rate,
+                    + above * inputs.roll_rate,
                 half_breadth * (motion.spin_rate + inputs.yaw_rate),
             ]
         };
@@ -130,8 +131,9 @@ mod tests {
         };
         assert!((model.change_of_place(&from, &to) - 1.0).abs() < 1e-12);
     }
+
     /// A yaw rate drives the wheels of a wheelset along the rail, one forward and one backward, and a roll rate both to the side. A wheel whose
-    /// speed makes up for it slides no more than before.
+    /// speeds make up for it slides no more than before, and the contact has no creepage.
     #[test]
     fn turning_of_a_wheelset_is_slip_of_its_wheels() {
         for (side, sign) in [(Side::Left, 1.0), (Side::Right, -1.0)] {
@@ -160,10 +162,20 @@ mod tests {
                 wheel_speed: rolling.wheel_speed - sign * circle * yawing.yaw_rate / radius,
                 ..yawing
             };
-            let slides = model.settings.step.jump;
-            assert!(model.change(&rolling, &yawing) > slides, "{side:?}");
-            assert!(model.change(&rolling, &rolling_over) > slides, "{side:?}");
-            assert!(model.change(&rolling, &followed) < slides, "{side:?}");
+            let held = Inputs {
+                lateral_speed: -radius * rolling_over.roll_rate,
+                ..rolling_over
+            };
+            let jump = model.settings.step.jump;
+            for (moved, made_up) in [(yawing, followed), (rolling_over, held)] {
+                assert!(model.change(&rolling, &moved) > jump, "{side:?}");
+                assert!(model.change(&rolling, &made_up) < jump, "{side:?}");
+                let state = model.initial_state(&mut model.workspace(), &made_up).unwrap();
+                let contact = state.outputs.contact[0];
+                // The contact is up to 3 mm beside the running circle, and its radius as much as 0.1 % another one.
+                let creepage = contact.longitudinal_creepage.hypot(contact.lateral_creepage);
+                assert!(creepage < 1e-3, "{side:?}: {creepage}");
+            }
         }
     }
 }

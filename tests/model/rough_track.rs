@@ -6,7 +6,7 @@ use wheelrail::{Inputs, Simulation};
 #[path = "../../benches/track/profiles.rs"]
 mod on_profiles;
 
-use on_profiles::PROFILES;
+use on_profiles::{PROFILES, RADIUS};
 
 /// Steps before the count.
 const WARM_UP: usize = 50;
@@ -136,7 +136,7 @@ fn profiles_have_the_creepages_of_the_track() {
                 .max_by(|a, b| a.normal_force.total_cmp(&b.normal_force))
                 .unwrap();
             let speed = patch.vehicle_speed;
-            let longitudinal = 0.46 * patch.wheel_speed / speed - 1.0;
+            let longitudinal = RADIUS * patch.wheel_speed / speed - 1.0;
             assert!(
                 (main.longitudinal_creepage - longitudinal).abs() < creepage,
                 "{}: {} {longitudinal}",
