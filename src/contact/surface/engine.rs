@@ -176,6 +176,7 @@ impl Engine for SurfaceOperators {
             solvers.worn.set(problem.operators, &now.worn.depth)?;
         }
         now.worn.begin();
+        solvers.worn_off = None;
         placement::place(problem, before, None, now, solvers)?;
         begin_windows(problem, before, now, solvers)?;
         if before.is_none()
@@ -346,7 +347,7 @@ impl Engine for SurfaceOperators {
                 own,
             )?;
         }
-        solvers.profile_change = profile_wear::wear(problem, solvers.worn.of(problem.operators), now);
+        solvers.worn_off = Some(profile_wear::wear(problem, solvers.worn.of(problem.operators), now));
         // A surface that folds is found by the step that folds it: the state before can still be stepped.
         solvers.worn_after.set(problem.operators, &now.worn.depth)
     }
@@ -386,6 +387,7 @@ impl Engine for SurfaceOperators {
 
     fn begin_linearisation(problem: &SurfaceProblem, fields: &SurfaceFields, solvers: &mut SurfaceSolvers) {
         let (operators, pose) = (problem.operators, problem.pose());
+        solvers.worn_off = None;
         // Depths that fold a surface have been refused by the step; `linearise` would refuse them again.
         let _ = solvers.worn.set(operators, &fields.worn.before);
         let bodies = solvers.worn.of(operators);
@@ -444,11 +446,11 @@ impl Engine for SurfaceOperators {
     }
 
     fn integrals(problem: &SurfaceProblem, fields: &SurfaceFields, solvers: &SurfaceSolvers) -> Integrals {
-        totals::integrals(problem, fields, solvers.worn.of(problem.operators))
+        totals::integrals(problem, fields, solvers)
     }
 
     fn profile_change(solvers: &SurfaceSolvers) -> f64 {
-        solvers.profile_change
+        solvers.worn_off.map_or(0.0, |worn| worn.change)
     }
 
     fn profiles(problem: &SurfaceProblem, fields: &SurfaceFields) -> Profiles {

@@ -11,6 +11,7 @@ use super::bodies::{Bodies, RAIL, WHEEL};
 use super::fields::SurfaceFields;
 use super::problem::SurfaceProblem;
 use super::windows::Place;
+use super::worn_bodies::WornOff;
 use crate::contact::patch::fields::PatchFields;
 use crate::friction::coulomb;
 use crate::geometry::unrolled::PlacedWheel;
@@ -150,17 +151,21 @@ pub fn area_rates(problem: &SurfaceProblem, bodies: &Bodies, fields: &SurfaceFie
     rates
 }
 
-/// Wears the profiles of the fields at the end of a step. Returns the largest change of a depth, `m`.
-pub fn wear(problem: &SurfaceProblem, bodies: &Bodies, fields: &mut SurfaceFields) -> f64 {
+/// Wears the profiles of the fields at the end of a step.
+pub fn wear(problem: &SurfaceProblem, bodies: &Bodies, fields: &mut SurfaceFields) -> WornOff {
     let (operators, duration) = (problem.operators, problem.conditions.duration);
     // The depths are taken out, so that what the fields wear can be added to them.
     let mut depth = std::mem::take(&mut fields.worn.depth);
-    let mut change = 0f64;
+    let mut worn = WornOff {
+        area_rates: [0.0; 2],
+        change: 0.0,
+    };
     areas(problem, bodies, fields, |body, cell, area| {
+        worn.area_rates[body] += area;
         depth[body][cell] += duration * area / operators.grids[body].spacing;
         // No part is negative: the last one that a cell gets makes the change the largest.
-        change = change.max(depth[body][cell] - fields.worn.before[body][cell]);
+        worn.change = worn.change.max(depth[body][cell] - fields.worn.before[body][cell]);
     });
     fields.worn.depth = depth;
-    change
+    worn
 }

@@ -8,7 +8,7 @@ use super::operators::SurfaceOperators;
 use super::search::Search;
 use super::transfer::Transfer;
 use super::windows::{LENGTHS, Region, WINDOWS};
-use super::worn_bodies::WornBodies;
+use super::worn_bodies::{WornBodies, WornOff};
 use crate::contact::interface::Interface;
 use crate::contact::patch::solvers::PatchSolvers;
 use crate::heat::strips::StripHeatScratch;
@@ -25,8 +25,8 @@ pub struct SurfaceSolvers {
     pub worn: WornBodies,
     /// Wheel and rail as the step leaves them, with which the next one begins.
     pub worn_after: WornBodies,
-    /// Largest depth that the step has worn off a profile, `m`.
-    pub profile_change: f64,
+    /// Wear of the profiles by the step, once its fields are final; none while they are not, and for a linearisation, which changes them.
+    pub worn_off: Option<WornOff>,
     /// Search of contacts.
     pub search: Search,
     /// Transfer of the fields between places.
@@ -89,7 +89,7 @@ impl SurfaceSolvers {
             windows: (0..WINDOWS).map(|_| WindowSolvers::new(operators, settings)).collect(),
             worn: WornBodies::new(operators),
             worn_after: WornBodies::new(operators),
-            profile_change: 0.0,
+            worn_off: None,
             search: Search::new(&operators.bodies),
             transfer: Transfer::new(operators),
             before: SurfaceFields::new(operators),

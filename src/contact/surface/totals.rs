@@ -1,10 +1,10 @@
 //! Sums over the fields of a contact of profiles: integrals over all windows, forces on the wheelset, the contacts one by one.
 
-use super::bodies::Bodies;
 use super::fields::SurfaceFields;
 use super::operators::SurfaceOperators;
 use super::problem::SurfaceProblem;
 use super::profile_wear;
+use super::solvers::SurfaceSolvers;
 use crate::contact::engine::Engine;
 use crate::contact::integrals::{Integrals, NodeSums};
 use crate::contact::on_wheelset::{OnWheelset, OneContact};
@@ -17,7 +17,7 @@ use crate::friction::coulomb;
 use crate::geometry::unrolled::PlacedWheel;
 
 /// Integrals of the given fields under the problem's conditions.
-pub fn integrals(problem: &SurfaceProblem, fields: &SurfaceFields, bodies: &Bodies) -> Integrals {
+pub fn integrals(problem: &SurfaceProblem, fields: &SurfaceFields, solvers: &SurfaceSolvers) -> Integrals {
     let operators = problem.operators;
     let area = operators.sizes.largest.cell_area();
     let mut all = Integrals {
@@ -39,7 +39,7 @@ pub fn integrals(problem: &SurfaceProblem, fields: &SurfaceFields, bodies: &Bodi
         ),
         wheel_temperature: fields.wheel_temperature,
         damage: PointDamage::default(),
-        on_wheelset: on_wheelset(problem, fields, bodies),
+        on_wheelset: on_wheelset(problem, fields, solvers),
     };
     for (window, place) in fields.used() {
         let patch = problem.of(&place);
@@ -66,12 +66,17 @@ pub fn integrals(problem: &SurfaceProblem, fields: &SurfaceFields, bodies: &Bodi
 }
 
 /// Force and moment on the wheelset and the contacts.
-fn on_wheelset(problem: &SurfaceProblem, fields: &SurfaceFields, bodies: &Bodies) -> OnWheelset {
+fn on_wheelset(problem: &SurfaceProblem, fields: &SurfaceFields, solvers: &SurfaceSolvers) -> OnWheelset {
     let operators = problem.operators;
+    let bodies = solvers.worn.of(operators);
     let (pose, height) = (problem.pose(), problem.height(fields));
     let wheel = PlacedWheel::new(&bodies.wheel, &pose.at_height(height));
     let mut all = OnWheelset {
-        worn_area_rates: profile_wear::area_rates(problem, bodies, fields),
+        // A step that wears the profiles has computed them.
+        worn_area_rates: match solvers.worn_off {
+            Some(worn) => worn.area_rates,
+            None => profile_wear::area_rates(problem, bodies, fields),
+        },
         measures: bodies.measures,
         ..OnWheelset::default()
     };

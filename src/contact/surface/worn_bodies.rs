@@ -9,8 +9,8 @@ use super::bodies::{Bodies, RAIL, WHEEL, measures};
 use super::operators::SurfaceOperators;
 use crate::error::{Error, Result};
 use crate::geometry::profile::Profile;
+use crate::numerics::dense;
 use serde::{Deserialize, Serialize};
-use std::ops::Range;
 
 /// Names of the bodies, by their numbers.
 const NAMES: [&str; 2] = ["wheel", "rail"];
@@ -50,6 +50,15 @@ impl ProfileWear {
     }
 }
 
+/// Wear of the profiles by a step.
+#[derive(Debug, Clone, Copy)]
+pub struct WornOff {
+    /// Areas per time that both profiles lose, `m²/s`.
+    pub area_rates: [f64; 2],
+    /// Largest change of a depth, `m`.
+    pub change: f64,
+}
+
 /// Bodies at depths of wear.
 pub struct WornBodies {
     /// Bodies at the depths; none where neither of them wears.
@@ -84,7 +93,10 @@ impl WornBodies {
 
     /// Whether the bodies are worn by these depths.
     pub fn has(&self, depths: &[Vec<f64>; 2]) -> bool {
-        self.depths == *depths
+        self.depths
+            .iter()
+            .zip(depths)
+            .all(|(own, depths)| dense::differing(own, depths).is_none())
     }
 
     /// Wears the bodies by the given depths.
@@ -99,7 +111,7 @@ impl WornBodies {
         else {
             return Ok(());
         };
-        if let Some(cells) = differing(&own[WHEEL], &depths[WHEEL]) {
+        if let Some(cells) = dense::differing(&own[WHEEL], &depths[WHEEL]) {
             let (grid, depth) = (&operators.grids[WHEEL], &depths[WHEEL]);
             let reach = grid.reach(cells.clone());
             let folded = operators
@@ -113,7 +125,7 @@ impl WornBodies {
             own[WHEEL][cells.clone()].copy_from_slice(&depth[cells]);
             bodies.measures = measures(&bodies.wheel);
         }
-        if let Some(cells) = differing(&own[RAIL], &depths[RAIL]) {
+        if let Some(cells) = dense::differing(&own[RAIL], &depths[RAIL]) {
             let (grid, depth) = (&operators.grids[RAIL], &depths[RAIL]);
             let [from, to] = grid.reach(cells.clone());
             if let Some(worn) = bodies.rail.depth_mut() {
@@ -147,14 +159,6 @@ pub fn profiles(operators: &SurfaceOperators, worn: &ProfileWear) -> Result<[Pro
         profile.map_err(Error::Profile)
     };
     Ok([of(WHEEL)?, of(RAIL)?])
-}
-
-/// Cells from the first to the last whose values differ.
-fn differing(one: &[f64], other: &[f64]) -> Option<Range<usize>> {
-    let differ = |(a, b): (&f64, &f64)| a != b;
-    let first = one.iter().zip(other).position(differ)?;
-    let last = one.iter().zip(other).rposition(differ)?;
-    Some(first..last + 1)
 }
 
 fn worn_away(operators: &SurfaceOperators, body: usize, depth: f64, arc: f64) -> Error {
