@@ -512,6 +512,52 @@ fn contacts_do_not_hang_on_the_way_there() {
     }
 }
 
+/// A wheelset jumps sideways by a millimetre and more. The window of the contact that it has left and that of the one which it comes to lie beside one another, and
+/// their contacts push each other away by turns: they become one. Without it steps were taken staggered, with 8 to 10 GPa for 3.5.
+#[test]
+fn contacts_that_push_each_other_away_become_one() {
+    let parameters = Parameters {
+        contact_model: ContactModel::Profiles,
+        slip_source: SlipSource::VehicleSpeed,
+        side: Side::Right,
+        rail_profile: "49E1".to_owned(),
+        wheel_profile: "UIC519H".to_owned(),
+        wheel_radius: 0.3816,
+        patch_nodes: 21,
+        patch_strips: 24,
+        largest_load: 119e3,
+        ..Parameters::default()
+    };
+    let inputs = |lateral_displacement: f64, normal_load: f64| Inputs {
+        normal_load,
+        vehicle_speed: 17.8,
+        wheel_speed: 17.9,
+        lateral_displacement,
+        roll_angle: -0.0014,
+        rail_lateral_displacement: 0.001,
+        rail_roll_angle: 0.002,
+        ..Inputs::default()
+    };
+    for (from, first_load, to, load) in [
+        (-7.3e-3, 10e3, -8.87e-3, 20e3),
+        (-7.7e-3, 40e3, -8.87e-3, 20e3),
+        (-7.7e-3, 100e3, -9.2e-3, 20e3),
+    ] {
+        let end = inputs(to, load);
+        let stepped = |start: &Inputs| {
+            let mut simulation = Simulation::new(&parameters, start).unwrap();
+            simulation.step(&end, 0.02).unwrap();
+            assert!(!simulation.state.convergence.staggered, "{from} {to}");
+            *simulation.outputs()
+        };
+        let (jumped, always) = (stepped(&inputs(from, first_load)), stepped(&end));
+        assert_eq!((jumped.contacts, always.contacts), (1.0, 1.0), "{from} {to}");
+        let ratio = jumped.peak_pressure / always.peak_pressure;
+        // As above; and the one has heated the rail beside.
+        assert!((ratio - 1.0).abs() < 5e-3, "{from} {to}: {ratio}");
+    }
+}
+
 /// A contact that a jump of the load has put into two windows beside one another becomes one again: at the same inputs it is that of a wheel which
 /// has always carried them.
 #[test]

@@ -50,10 +50,9 @@ const ROUNDS: usize = 60;
 const STAGGERED_ROUNDS: usize = 6;
 /// Change of what the others do to a window, over the approach, that is left when the rounds end, over the error of the pressure.
 const COUPLED_SHARE: f64 = 0.1;
-/// Rounds after which windows that displace each other as much as in the round before do not settle.
+/// Rounds after which windows do not settle that still displace each other by so much, over the approach.
 const SETTLING_ROUNDS: usize = 4;
-/// Least change of a displacement in such a round over the approach, and over the change in the round before.
-const UNSETTLED: [f64; 2] = [0.1, 0.9];
+const UNSETTLED: f64 = 0.1;
 /// Work of the search for the height of the wheel in a staggered sub-step, in budgets of a step, after which it is given up. It is above a sub-step's own
 /// budget: where no height is found, the pressure of the step before is held, which is worth avoiding.
 const STAGGERED_SEARCH: u64 = 4;
@@ -295,7 +294,6 @@ fn press_at(
     let coupled = COUPLED_SHARE * tolerance;
     // Change of what the others do to a window since it was solved, over the approach.
     let mut pending = [f64::INFINITY; WINDOWS];
-    let mut last_change = f64::INFINITY;
     for round in 0..rounds {
         for (window, place) in fields.used() {
             if pending[window] <= coupled {
@@ -316,13 +314,10 @@ fn press_at(
         if change <= coupled {
             break;
         }
-        let [least, ratio] = UNSETTLED;
-        let unsettled = round >= SETTLING_ROUNDS && change > least.max(ratio * last_change);
-        if unsettled && problem.conditions.room < LARGEST_ROOM {
+        if round + 1 >= SETTLING_ROUNDS && change > UNSETTLED && problem.conditions.room < LARGEST_ROOM {
             solvers.is_unsettled = true;
             return Err(Error::ContactOutgrowsWindow);
         }
-        last_change = change;
     }
     Ok(proportional_force(problem, fields, solvers))
 }
