@@ -12,9 +12,10 @@ use super::fields::SurfaceFields;
 use super::problem::SurfaceProblem;
 use super::windows::Place;
 use super::worn_bodies::WornOff;
+use crate::body::grid::Grid;
 use crate::contact::patch::fields::PatchFields;
-use crate::friction::coulomb;
 use crate::geometry::unrolled::PlacedWheel;
+use crate::numerics::dense;
 use crate::parameters::WheelWearLaw;
 use std::f64::consts::PI;
 
@@ -107,27 +108,26 @@ fn worn_strip(
     strip: usize,
 ) -> Strip {
     let (patch, parameters) = (problem.of(place), problem.parameters);
-    let (grid, law) = (&patch.operators.grid, patch.pointwise_wear());
-    let scale = patch.operators.scales.pressure;
-    let (mut rates, mut moment) = ([0.0; 2], 0.0);
-    for (cell, at) in grid.row(strip).enumerate() {
-        let pressure = fields.pressure[at];
-        if pressure <= 0.0 {
-            continue;
-        }
-        let sliding = scale * pressure * coulomb::magnitude([fields.slip[0][at], fields.slip[1][at]]);
-        let rail = match &law {
-            Some(law) => law.rate(&patch.rubbing(fields, at)),
-            None => parameters.wear_coefficient * sliding,
-        };
-        let own = match parameters.wheel_wear_law {
-            WheelWearLaw::Coefficient => parameters.wheel_wear_coefficient * sliding,
-            WheelWearLaw::WearLaw => rail,
-        };
-        rates[WHEEL] += own;
-        rates[RAIL] += rail;
-        moment += own * grid.x(cell);
-    }
+    let grid = &patch.operators.grid;
+    // Per area, with the moment about the window's middle along the rail.
+    let sliding = sliding(grid, patch.operators.scales.pressure, fields, strip);
+    let of_coefficient = |coefficient: f64| sliding.map(|sum| coefficient * sum);
+    let rail = match patch.pointwise_wear() {
+        Some(law) => over_cells(grid, strip, |at| {
+            if fields.pressure[at] > 0.0 {
+                law.rate(&patch.rubbing(fields, at))
+            } else {
+                0.0
+            }
+        }),
+        None => of_coefficient(parameters.wear_coefficient),
+    };
+    let [own, moment] = match parameters.wheel_wear_law {
+        WheelWearLaw::Coefficient => of_coefficient(parameters.wheel_wear_coefficient),
+        WheelWearLaw::WearLaw => rail,
+    };
+    let mut rates = [0.0; 2];
+    (rates[WHEEL], rates[RAIL]) = (own, rail[0]);
     if rates == [0.0; 2] {
         return Strip::default();
     }
@@ -142,6 +142,31 @@ fn worn_strip(
         rates: rates.map(|rate| grid.cell_area() * rate),
         over,
     }
+}
+
+/// Pressure times speed of sliding over the cells of a strip, `Pa m/s`, and its moment, `Pa m²/s`.
+fn sliding(grid: &Grid, scale: f64, fields: &PatchFields, strip: usize) -> [f64; 2] {
+    let [x, y] = &fields.slip;
+    dense::vectorised(
+        #[inline(always)]
+        |_| {
+            over_cells(grid, strip, |at| {
+                scale * fields.pressure[at] * (x[at] * x[at] + y[at] * y[at]).sqrt()
+            })
+        },
+    )
+}
+
+/// Sum over the cells of a strip, and that of the moments about the window's middle along the rail.
+#[inline(always)]
+fn over_cells(grid: &Grid, strip: usize, of_cell: impl Fn(usize) -> f64) -> [f64; 2] {
+    let (mut sum, mut moment) = (0.0, 0.0);
+    for (cell, at) in grid.row(strip).enumerate() {
+        let value = of_cell(at);
+        sum += value;
+        moment += value * grid.x(cell);
+    }
+    [sum, moment]
 }
 
 /// Area that both profiles lose per time, `m²/s`.
