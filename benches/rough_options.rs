@@ -288,24 +288,32 @@ fn compare(contact: &str, options: &[Setting]) {
 fn main() {
     // Cargo adds options of its own.
     let asked = std::env::args().skip(1).find(|argument| !argument.starts_with('-'));
-    let is_asked = |contact: &str| asked.as_ref().is_none_or(|asked| contact.starts_with(asked.as_str()));
     let track = track::track();
     let default = Parameters::default();
+    let mut contacts: Vec<(String, Vec<Setting>)> = Vec::new();
     for profiles in &track::profiles::PROFILES {
-        let contact = format!("profiles, {}", profiles.name);
-        if is_asked(&contact) {
-            let inputs = track::on_profiles(&track, profiles);
-            compare(&contact, &options_of_profiles(&default, &inputs));
-        }
+        let inputs = track::on_profiles(&track, profiles);
+        contacts.push((
+            format!("profiles, {}", profiles.name),
+            options_of_profiles(&default, &inputs),
+        ));
     }
     for (nodes, strips) in [(8, 8), (24, 15), (default.patch_nodes, default.patch_strips)] {
-        let contact = format!("{nodes} x {strips}");
-        if is_asked(&contact) {
-            compare(&contact, &options(&braking::patch_parameters(nodes, strips), &track));
-        }
+        let patch = braking::patch_parameters(nodes, strips);
+        contacts.push((format!("{nodes} x {strips}"), options(&patch, &track)));
     }
-    if is_asked("line") {
-        let line = braking::parameters(default.contact_nodes);
-        compare("line", &options(&line, &track::straight(&track)));
+    let line = braking::parameters(default.contact_nodes);
+    contacts.push(("line".to_owned(), options(&line, &track::straight(&track))));
+    if let Some(asked) = asked {
+        let names: Vec<String> = contacts.iter().map(|(name, _)| name.clone()).collect();
+        contacts.retain(|(name, _)| name.starts_with(asked.as_str()));
+        assert!(
+            !contacts.is_empty(),
+            "no contact whose name begins with {asked}: there are {}",
+            names.join("; ")
+        );
+    }
+    for (name, settings) in &contacts {
+        compare(name, settings);
     }
 }

@@ -50,8 +50,9 @@ const ROUNDS: usize = 60;
 const STAGGERED_ROUNDS: usize = 6;
 /// Change of what the others do to a window, over the approach, that is left when the rounds end, over the error of the pressure.
 const COUPLED_SHARE: f64 = 0.1;
-/// Rounds after which windows do not settle that still displace each other by so much, over the approach.
+/// Rounds in which windows that displace each other settle, if they do.
 const SETTLING_ROUNDS: usize = 4;
+/// Change of a displacement in the last of these rounds, over the approach, above which they do not.
 const UNSETTLED: f64 = 0.1;
 /// Work of the search for the height of the wheel in a staggered sub-step, in budgets of a step, after which it is given up. It is above a sub-step's own
 /// budget: where no height is found, the pressure of the step before is held, which is worth avoiding.
@@ -278,7 +279,7 @@ fn move_on(
 /// Solves the pressure of all windows at an approach. Returns the vertical force with the friction in proportion, `N`.
 ///
 /// # Errors
-/// [`Error::ContactOutgrowsWindow`] where contacts that all but touch push each other away by turns: with more room they share a window.
+/// [`Error::ContactOutgrowsWindow`] where contacts that all but touch go on pushing each other away: with more room they share a window.
 fn press_at(
     problem: &SurfaceProblem,
     approach: f64,

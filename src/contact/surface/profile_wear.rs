@@ -14,6 +14,7 @@ use super::windows::Place;
 use super::worn_bodies::WornOff;
 use crate::body::grid::Grid;
 use crate::contact::patch::fields::PatchFields;
+use crate::friction::coulomb;
 use crate::geometry::unrolled::PlacedWheel;
 use crate::numerics::dense;
 use crate::parameters::WheelWearLaw;
@@ -151,7 +152,7 @@ fn sliding(grid: &Grid, scale: f64, fields: &PatchFields, strip: usize) -> [f64;
         #[inline(always)]
         |_| {
             over_cells(grid, strip, |at| {
-                scale * fields.pressure[at] * (x[at] * x[at] + y[at] * y[at]).sqrt()
+                scale * fields.pressure[at] * coulomb::magnitude([x[at], y[at]])
             })
         },
     )

@@ -25,7 +25,7 @@ pub struct SurfaceSolvers {
     pub worn: WornBodies,
     /// Wheel and rail as the step leaves them, with which the next one begins.
     pub worn_after: WornBodies,
-    /// Wear of the profiles by the step, once its fields are final; none while they are not, and for a linearisation, which changes them.
+    /// Wear of the profiles by the step, once its fields are final; none before, and in a linearisation, which looks at other fields.
     pub worn_off: Option<WornOff>,
     /// Search of contacts.
     pub search: Search,
