@@ -90,9 +90,9 @@ pub struct NodeSums {
     pub heat_flux: f64,
     /// Σ of the depth worn per time, `m/s`; 0 where wear is Archard's, in proportion to Σ p |s|.
     pub wear_rate: f64,
-    /// Number of nodes in contact.
+    /// Number of nodes in contact, each counted by its area.
     pub nodes: f64,
-    /// Number of those that stick.
+    /// Number of those that stick, counted alike.
     pub sticking: f64,
     /// Largest p.
     pub peak_pressure: f64,
@@ -142,6 +142,8 @@ impl NodeSums {
             sliding: factor * self.sliding,
             heat_flux: factor * self.heat_flux,
             wear_rate: factor * self.wear_rate,
+            nodes: factor * self.nodes,
+            sticking: factor * self.sticking,
             ..*self
         }
     }

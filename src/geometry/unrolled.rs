@@ -3,8 +3,8 @@
 //!
 //! One side of the track is looked at: x forward, y from the track's middle to the field side, z up from the height of the rail's
 //! top. A wheel on the right is the mirror image of one on the left. The wheel is a surface of revolution about its axle. With C the
-//! axle's middle, R the turn of the wheelset by roll and then yaw, q = Rᵀ(Q − C) and η = q_y − b the distance from the running
-//! circle along the axle, a point Q lies outside of the wheel where
+//! axle's middle, R the turn of the wheelset by roll and then yaw, then back by the roll of the rail, q = Rᵀ(Q − C) and η = q_y − b the distance
+//! from the running circle along the axle, a point Q lies outside of the wheel where
 //!
 //! f(Q) = √(q_x² + q_z²) − (r₀ − z_w(η)) > 0.
 //!
@@ -39,8 +39,10 @@ pub struct WheelsetPosition {
     pub height: f64,
     /// Roll about the forward axis, rad.
     pub roll: f64,
-    /// Yaw about the vertical axis, rad.
+    /// Yaw about the vertical axis of the track, rad.
     pub yaw: f64,
+    /// Roll of the rail in the track, rad: the vertical of the track is turned back by it.
+    pub rail_roll: f64,
 }
 
 /// Motion of a wheelset over a rail, or a change of it.
@@ -50,7 +52,7 @@ pub struct WheelsetMotion {
     pub velocity: [f64; 3],
     /// Roll rate, `rad/s`.
     pub roll_rate: f64,
-    /// Yaw rate, `rad/s`.
+    /// Yaw rate about the vertical axis of the track, `rad/s`.
     pub yaw_rate: f64,
     /// Angular velocity about the axle, positive in forward rolling, `rad/s`.
     pub spin: f64,
@@ -75,6 +77,8 @@ pub struct PlacedWheel<'a> {
     turn: [[f64; 3]; 3],
     /// Axis of the roll: forward, turned by the yaw.
     roll_axis: [f64; 3],
+    /// Axis of the yaw: the vertical of the track.
+    yaw_axis: [f64; 3],
 }
 
 /// Point of the wheel's surface over a point of the rail.
@@ -116,15 +120,27 @@ impl<'a> PlacedWheel<'a> {
     /// Wheel of a wheelset in a position.
     pub fn new(wheel: &'a Wheel, position: &WheelsetPosition) -> PlacedWheel<'a> {
         let ((sin_roll, cos_roll), (sin_yaw, cos_yaw)) = (position.roll.sin_cos(), position.yaw.sin_cos());
+        let (sine, cosine) = position.rail_roll.sin_cos();
+        // Rows of the turn in the axes of the track, and those of the rail's axes made of them.
+        let lateral = [sin_yaw, cos_yaw * cos_roll, -cos_yaw * sin_roll];
+        let upward = [0.0, sin_roll, cos_roll];
+        let in_rail = |k: usize| {
+            [
+                cosine * lateral[k] + sine * upward[k],
+                cosine * upward[k] - sine * lateral[k],
+            ]
+        };
+        let rows = [0, 1, 2].map(in_rail);
         PlacedWheel {
             wheel,
             centre: [0.0, position.lateral, position.height],
             turn: [
                 [cos_yaw, -sin_yaw * cos_roll, sin_yaw * sin_roll],
-                [sin_yaw, cos_yaw * cos_roll, -cos_yaw * sin_roll],
-                [0.0, sin_roll, cos_roll],
+                rows.map(|[lateral, _]| lateral),
+                rows.map(|[_, upward]| upward),
             ],
-            roll_axis: [cos_yaw, sin_yaw, 0.0],
+            roll_axis: [cos_yaw, cosine * sin_yaw, -sine * sin_yaw],
+            yaw_axis: [0.0, sine, cosine],
         }
     }
 
@@ -213,15 +229,17 @@ impl<'a> PlacedWheel<'a> {
         add([0.0, change.lateral, change.height], turned, 1.0)
     }
 
-    /// Turn by a change of roll and yaw.
+    /// Turn by a change of roll and yaw, and of the roll of the rail.
     fn turn_vector(&self, change: &WheelsetPosition) -> [f64; 3] {
         let roll = self.roll_axis.map(|part| part * change.roll);
-        [roll[0], roll[1], roll[2] + change.yaw]
+        let [x, y, z] = add(roll, self.yaw_axis, change.yaw);
+        [x - change.rail_roll, y, z]
     }
 
     /// Angular velocity.
     fn angular_velocity(&self, motion: &WheelsetMotion) -> [f64; 3] {
-        let roll = add([0.0, 0.0, motion.yaw_rate], self.roll_axis, motion.roll_rate);
+        let yaw = self.yaw_axis.map(|part| part * motion.yaw_rate);
+        let roll = add(yaw, self.roll_axis, motion.roll_rate);
         add(roll, self.axle(), motion.spin)
     }
 
@@ -274,10 +292,13 @@ impl<'a> PlacedWheel<'a> {
         ];
         let turn = self.turn_vector(position);
         let axle = cross(turn, self.axle());
-        let roll_axis = cross([0.0, 0.0, position.yaw], self.roll_axis);
+        let back = [-position.rail_roll, 0.0, 0.0];
+        let roll_axis = cross(add(back, self.yaw_axis, position.yaw), self.roll_axis);
+        let yaw_axis = cross(back, self.yaw_axis);
         let mut rate = self.angular_velocity(motion_change);
         rate = add(rate, axle, motion.spin);
         rate = add(rate, roll_axis, motion.roll_rate);
+        rate = add(rate, yaw_axis, motion.yaw_rate);
         let turned = add(cross(rate, at.arm), cross(self.angular_velocity(motion), arm), 1.0);
         add(motion_change.velocity, turned, 1.0)
     }

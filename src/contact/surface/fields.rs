@@ -1,7 +1,7 @@
 //! The fields of a contact of profiles: those of a patch in each window, and where the windows are.
 
 use super::operators::SurfaceOperators;
-use super::windows::{Place, SHAPES, WINDOWS};
+use super::windows::{BREADTHS, LENGTHS, Place, WINDOWS};
 use super::worn_bodies::ProfileWear;
 use crate::contact::fields::{FieldRow, Fields, Number, number, row};
 use crate::contact::patch::fields::PatchFields;
@@ -229,6 +229,7 @@ impl Fields for SurfaceFields {
     }
 
     fn has_valid_places(&self) -> bool {
-        self.used().all(|(_, place)| place.shape() < SHAPES)
+        self.used()
+            .all(|(_, place)| place.length < LENGTHS && place.breadth < BREADTHS)
     }
 }

@@ -23,8 +23,6 @@ pub struct Pose {
     pub position: WheelsetPosition,
     /// Motion relative to the rail.
     pub motion: WheelsetMotion,
-    /// Roll of the rail, by which the forces are turned back.
-    pub rail_roll: f64,
 }
 
 impl Pose {
@@ -41,8 +39,9 @@ impl Pose {
             position: WheelsetPosition {
                 lateral: top + cosine * lateral + sine * height,
                 height: cosine * height - sine * lateral,
-                roll: side * inputs.roll_angle - rail_roll,
+                roll: side * inputs.roll_angle,
                 yaw: side * inputs.yaw_angle,
+                rail_roll,
             },
             motion: WheelsetMotion {
                 velocity: {
@@ -58,13 +57,12 @@ impl Pose {
                 yaw_rate: side * inputs.yaw_rate,
                 spin: inputs.wheel_speed,
             },
-            rail_roll,
         }
     }
 
     /// Direction of the track's vertical in the rail's axes, lateral and upward.
     pub fn vertical(&self) -> [f64; 2] {
-        let (sine, cosine) = self.rail_roll.sin_cos();
+        let (sine, cosine) = self.position.rail_roll.sin_cos();
         [sine, cosine]
     }
 
@@ -84,7 +82,7 @@ impl Pose {
     ) -> Pose {
         let side = operators.side;
         let top = operators.bodies.rail.top();
-        let (sine, cosine) = self.rail_roll.sin_cos();
+        let (sine, cosine) = self.position.rail_roll.sin_cos();
         let rail_roll = side * change.rail_roll_angle;
         let lateral = side * (inputs.lateral_displacement - inputs.rail_lateral_displacement) - top;
         let height = parameters.wheel_radius + inputs.vertical_displacement - inputs.rail_vertical_displacement;
@@ -114,8 +112,9 @@ impl Pose {
             position: WheelsetPosition {
                 lateral: place[0],
                 height: place[1],
-                roll: side * change.roll_angle - rail_roll,
+                roll: side * change.roll_angle,
                 yaw: side * change.yaw_angle,
+                rail_roll,
             },
             motion: WheelsetMotion {
                 velocity: [change.vehicle_speed, velocity[0], velocity[1]],
@@ -123,7 +122,6 @@ impl Pose {
                 yaw_rate: side * change.yaw_rate,
                 spin: change.wheel_speed,
             },
-            rail_roll,
         }
     }
 
@@ -135,7 +133,6 @@ impl Pose {
                 ..WheelsetPosition::default()
             },
             motion: WheelsetMotion::default(),
-            rail_roll: 0.0,
         }
     }
 

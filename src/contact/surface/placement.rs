@@ -7,6 +7,7 @@ use super::operators::SurfaceOperators;
 use super::problem::SurfaceProblem;
 use super::search::Search;
 use super::solvers::SurfaceSolvers;
+use super::transfer::Untouched;
 use super::windows::{Place, Region, Sizes, WINDOWS};
 use crate::contact::fields::Fields;
 use crate::contact::patch::fields::PatchFields;
@@ -99,8 +100,21 @@ pub fn place(
             ..
         } = &mut *solvers;
         carried.places = now.places;
+        let friction =
+            |place: &Place, strip: usize, rise: f64| problem.of(place).friction_at(strip).coefficient(rise).0;
+        let untouched = Untouched {
+            rise: problem.incoming_rise(),
+            depth: problem.conditions.inputs.incoming_wear_depth,
+            friction: &friction,
+        };
         for (window, place) in now.used() {
-            transfer.fill(operators, before, &place, &mut carried.windows[window], window);
+            transfer.fill(
+                (operators, &untouched),
+                before,
+                &place,
+                &mut carried.windows[window],
+                window,
+            );
             free_ends(operators, &place, &mut carried.windows[window]);
         }
         carried.approach[0] = now.approach[0];
@@ -399,7 +413,7 @@ fn assign(problem: &SurfaceProblem, wanted: &[Wanted], now: &mut SurfaceFields) 
     });
     // A window without a region stays while nothing else needs its place: rail that it has heated rolls out of it.
     for (window, taken) in taken.into_iter().enumerate() {
-        if !taken && !is_warm(now, window) {
+        if !taken && now.places[window].is_some_and(|place| !is_warm(problem.operators, now, window, &place)) {
             now.places[window] = None;
         }
     }
@@ -417,13 +431,20 @@ fn free_ends(operators: &SurfaceOperators, place: &Place, fields: &mut PatchFiel
     }
 }
 
-/// Whether the rail in a window is warmer or colder than the ambient.
-fn is_warm(fields: &SurfaceFields, window: usize) -> bool {
-    /// Temperature that counts, K.
+/// Whether the rail in a window is warmer or colder than the rail beside it.
+fn is_warm(operators: &SurfaceOperators, fields: &SurfaceFields, window: usize, place: &Place) -> bool {
+    /// Difference of temperature that counts, K.
     const APPRECIABLE: f64 = 0.1;
-    fields.windows[window]
-        .heat
-        .surface
-        .iter()
-        .any(|rise| rise.abs() > APPRECIABLE)
+    let own = operators.of(place);
+    let cells = own.grid.cells;
+    let heat = &fields.windows[window].heat;
+    (0..cells).any(|cell| {
+        let beside = heat.amplitudes(&own.strips, own.grid.strips, cell);
+        let beside: f64 = beside
+            .zip(&own.basis.surface)
+            .map(|(amplitude, surface)| amplitude * surface)
+            .sum();
+        let column = heat.surface.iter().skip(cell).step_by(cells);
+        column.into_iter().any(|rise| (rise - beside).abs() > APPRECIABLE)
+    })
 }

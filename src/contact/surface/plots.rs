@@ -25,7 +25,7 @@ struct InTrack {
 impl InTrack {
     fn new(problem: &SurfaceProblem) -> InTrack {
         let inputs = &problem.conditions.inputs;
-        let (sine, cosine) = problem.pose().rail_roll.sin_cos();
+        let (sine, cosine) = problem.pose().position.rail_roll.sin_cos();
         InTrack {
             side: problem.operators.side,
             top: problem.operators.bodies.rail.top(),
@@ -77,7 +77,7 @@ fn windows(problem: &SurfaceProblem, fields: &SurfaceFields) -> Vec<SurfaceWindo
                 SurfaceStrip {
                     arc_length,
                     in_track: track.point(point.place),
-                    inclination: (-point.normal[0]).atan2(point.normal[1]),
+                    inclination: (-point.normal[0]).atan2(point.normal[1]) + problem.pose().position.rail_roll,
                 }
             });
             let strips: Vec<SurfaceStrip> = strips.collect();

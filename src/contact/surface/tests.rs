@@ -5,7 +5,6 @@ use super::operators::SurfaceOperators;
 use super::placement::place;
 use super::pressure::hold;
 use super::problem::SurfaceProblem;
-use super::transfer::Transfer;
 use super::windows::Place;
 use super::worn_bodies::WornBodies;
 use crate::body::grid::Grid;
@@ -24,7 +23,7 @@ use crate::torture::random::Random;
 use crate::wheel_rail::{Model, State, Workspace};
 use std::ops::Range;
 
-fn parameters(control: Control) -> Parameters {
+pub fn parameters(control: Control) -> Parameters {
     Parameters {
         contact_model: ContactModel::Profiles,
         slip_source: SlipSource::VehicleSpeed,
@@ -39,7 +38,7 @@ fn parameters(control: Control) -> Parameters {
 }
 
 /// A wheelset that is displaced to the right, yawed and rolled over a rail that moves as well.
-fn displaced(lateral: f64) -> Inputs {
+pub fn displaced(lateral: f64) -> Inputs {
     Inputs {
         wheel_speed: 20.1 / 0.46,
         vehicle_speed: 20.0,
@@ -56,7 +55,7 @@ fn displaced(lateral: f64) -> Inputs {
     }
 }
 
-fn run(parameters: &Parameters, inputs: &Inputs, steps: usize) -> State {
+pub fn run(parameters: &Parameters, inputs: &Inputs, steps: usize) -> State {
     let model = Model::new(parameters.clone()).unwrap();
     let mut workspace = model.workspace();
     let mut state = model.initial_state(&mut workspace, inputs).unwrap();
@@ -68,7 +67,7 @@ fn run(parameters: &Parameters, inputs: &Inputs, steps: usize) -> State {
     state
 }
 
-fn fields(state: &State) -> &SurfaceFields {
+pub fn fields(state: &State) -> &SurfaceFields {
     let ContactState::Surface(own) = &state.contact else {
         panic!("another contact model");
     };
@@ -191,6 +190,51 @@ fn the_gap_is_that_of_the_wheel_over_each_cell() {
     assert!(largest < 1e-9, "{largest:e}");
 }
 
+/// The wheelset as a whole is turned back by the roll of the rail: roll and yaw by which its axle points the same way make the same wheel over the rail.
+#[test]
+fn a_rail_that_rolls_sees_the_wheelset_turned_back() {
+    let parameters = parameters(Control::Load);
+    let operators = SurfaceOperators::build(&parameters, &ProfileContents::default()).unwrap();
+    let bodies = &operators.bodies;
+    let (roll, yaw, rail_roll) = (0.01_f64, 0.04_f64, 0.03_f64);
+    // Direction of the axle in the track, then in the rail's axes.
+    let axle = [-yaw.sin() * roll.cos(), yaw.cos() * roll.cos(), roll.sin()];
+    let turned = [
+        rail_roll.cos() * axle[1] + rail_roll.sin() * axle[2],
+        rail_roll.cos() * axle[2] - rail_roll.sin() * axle[1],
+    ];
+    let position = WheelsetPosition {
+        lateral: 1e-3,
+        height: parameters.wheel_radius + 0.02,
+        ..WheelsetPosition::default()
+    };
+    let rolled = WheelsetPosition {
+        roll,
+        yaw,
+        rail_roll,
+        ..position
+    };
+    let same = WheelsetPosition {
+        roll: turned[1].asin(),
+        yaw: (-axle[0]).atan2(turned[0]),
+        ..position
+    };
+    let motion = crate::geometry::unrolled::WheelsetMotion {
+        velocity: [20.0, 0.1, -0.05],
+        spin: 44.0,
+        ..Default::default()
+    };
+    let [rolled, same] = [rolled, same].map(|position| PlacedWheel::new(&bodies.wheel, &position));
+    let middle = 0.5 * (bodies.rail.range()[0] + bodies.rail.range()[1]);
+    for (along, across) in [(0.0, 0.0), (3e-3, 5e-3), (-4e-3, -8e-3)] {
+        let point = bodies.rail.at(middle + across);
+        let [a, b] = [&rolled, &same].map(|wheel| (wheel, wheel.distance(along, &point, 0.0)));
+        assert!((a.1.distance - b.1.distance).abs() < 1e-12);
+        let [a, b] = [a, b].map(|(wheel, at)| wheel.velocity(&at, &motion));
+        assert!(a.iter().zip(&b).all(|(a, b)| (a - b).abs() < 1e-10), "{a:?} {b:?}");
+    }
+}
+
 /// A distance is guessed from slope and curvature of the one beside it: what is missing is of third order.
 #[test]
 fn a_distance_is_guessed_from_the_one_beside_it() {
@@ -309,7 +353,7 @@ fn steep_walls_of_a_worn_wheel_do_not_reach_into_the_rail() {
 }
 
 /// Problem of a step under the given inputs.
-fn problem<'a>(
+pub fn problem<'a>(
     operators: &'a SurfaceOperators,
     (parameters, settings): (&'a Parameters, &'a Settings),
     inputs: Inputs,
@@ -589,47 +633,6 @@ fn a_cell_displaces_another_window_as_a_point_force() {
         }
     }
     assert!(compared > 0);
-}
-
-/// Heat and worn depth that a window brings along are those of the window before where it covers them, whatever the size of the cells.
-#[test]
-fn a_window_that_moves_keeps_heat_and_worn_volume() {
-    let parameters = parameters(Control::Load);
-    let operators = SurfaceOperators::build(&parameters, &ProfileContents::default()).unwrap();
-    let state = run(&parameters, &displaced(3e-3), 5);
-    let before = fields(&state);
-    let (window, place) = before.used().next().unwrap();
-    let sums = |fields: &SurfaceFields| {
-        let place = fields.places[window].unwrap();
-        let area = operators.of(&place).grid.cell_area();
-        let own = &fields.windows[window];
-        [&own.heat.content, &own.wear.depth].map(|values| area * values.iter().sum::<f64>())
-    };
-    let mut transfer = Transfer::new(&operators);
-    // A strip farther, and with strips twice as broad that cover those before.
-    let shifted = super::windows::Place {
-        strip: place.strip + 1,
-        ..place
-    };
-    let strips = operators.of(&place).grid.strips as i32;
-    let coarse = super::windows::Place {
-        breadth: place.breadth - 1,
-        strip: (place.strip - strips / 2).div_euclid(2),
-        ..place
-    };
-    for target in [shifted, coarse] {
-        let mut after = SurfaceFields::new(&operators);
-        after.guess_from(before);
-        after.places = [None; super::windows::WINDOWS];
-        after.places[window] = Some(target);
-        transfer.fill(&operators, before, &target, &mut after.windows[window], window);
-        let (old, new) = (sums(before), sums(&after));
-        assert!(old.iter().all(|sum| *sum > 0.0));
-        // The strip that is left out is cold and unworn.
-        for (old, new) in old.into_iter().zip(new) {
-            assert!((new / old - 1.0).abs() < 1e-12, "{old:e} {new:e}");
-        }
-    }
 }
 
 /// The volume of the cells is what the law wears off both bodies over the steps, whatever the windows do: over a wheelset that goes from the tread to the

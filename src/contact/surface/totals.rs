@@ -30,7 +30,7 @@ pub fn integrals(problem: &SurfaceProblem, fields: &SurfaceFields, solvers: &Sur
         contact_area: 0.0,
         peak_rise: f64::NEG_INFINITY,
         wear_depth: 0.0,
-        leaving_rise: 0.0,
+        leaving_rise: f64::NEG_INFINITY,
         leaving_wear_depth: 0.0,
         wheel_heat: ContactHeat::new(
             problem.parameters,
@@ -59,8 +59,12 @@ pub fn integrals(problem: &SurfaceProblem, fields: &SurfaceFields, solvers: &Sur
         all.leaving_wear_depth = all.leaving_wear_depth.max(own.leaving_wear_depth);
         all.damage = all.damage.with(&own.damage);
     }
-    if !all.peak_rise.is_finite() {
-        all.peak_rise = 0.0;
+    if fields.used().next().is_none() {
+        // Rail that nothing touches leaves as it has come in.
+        all.peak_rise = problem.incoming_rise();
+        all.leaving_rise = all.peak_rise;
+        all.wear_depth = problem.conditions.inputs.incoming_wear_depth;
+        all.leaving_wear_depth = all.wear_depth;
     }
     all
 }
@@ -139,7 +143,7 @@ fn on_wheelset(problem: &SurfaceProblem, fields: &SurfaceFields, solvers: &Surfa
         contact.arc = arc;
         contact.along = x;
         contact.positions = [point.place[0] - bodies.rail.top(), wheel.profile_position(&at)];
-        contact.inclination = (-point.normal[0]).atan2(point.normal[1]);
+        contact.inclination = (-point.normal[0]).atan2(point.normal[1]) + pose.position.rail_roll;
         let [ahead, y, z] = wheel.velocity(&at, &pose.motion);
         let approach_speed = wheel.approach_speed(&at, &point, &pose.motion);
         let added = contact.normal_force * (damping(problem.parameters, approach_speed) - 1.0);
@@ -178,7 +182,7 @@ fn on_wheelset(problem: &SurfaceProblem, fields: &SurfaceFields, solvers: &Surfa
     all.contacts[..count].sort_by(|a, b| a.arc.total_cmp(&b.arc));
     all.torque = wheel.about_axle(all.moment);
     // Back from the rail's axes to those of the track, and from the mirror image.
-    let (sine, cosine) = pose.rail_roll.sin_cos();
+    let (sine, cosine) = pose.position.rail_roll.sin_cos();
     for vector in [&mut all.force, &mut all.moment] {
         let [_, y, z] = *vector;
         (vector[1], vector[2]) = (cosine * y - sine * z, sine * y + cosine * z);

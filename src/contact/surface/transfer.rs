@@ -2,15 +2,30 @@
 //!
 //! The rail's surface stays where it is: a cell takes the mean of what it covers of the cells of the windows before. Cells of all windows
 //! are whole numbers of each other, so that a window that is shifted takes whole cells, and one whose cells become larger or smaller the
-//! mean or the copy of whole cells: heat and worn volume are kept.
+//! mean or the copy of whole cells: heat and worn volume of what it covers are kept.
+//!
+//! Windows may lie over each other. Each of them has the rail that it carries on as it is, and the rest as if nothing touched it: a place takes
+//! what there is from the window that carries there, or carried last, which has left heat. Rail that no window has been over is as the
+//! rail beside the contact, and its friction that of rested rail.
 
 use super::fields::SurfaceFields;
 use super::operators::SurfaceOperators;
 use super::windows::{Place, WINDOWS};
 use crate::body::grid::Grid;
 use crate::contact::patch::fields::PatchFields;
-use crate::numerics::dense::LANES;
+use crate::contact::patch::operators::PatchOperators;
+use crate::numerics::dense::{self, LANES};
 use crate::transport::strips::{Side, Strips};
+
+/// Rail that nothing has touched.
+pub struct Untouched<'a> {
+    /// Temperature with which it comes in, over the ambient, `K`.
+    pub rise: f64,
+    /// Depth of wear with which it comes in, `m`.
+    pub depth: f64,
+    /// Coefficient of friction on a strip of a window at a temperature over the ambient, `K`.
+    pub friction: &'a dyn Fn(&Place, usize, f64) -> f64,
+}
 
 /// Share of a source in a target.
 #[derive(Debug, Clone, Copy)]
@@ -45,6 +60,10 @@ impl Sources {
 /// Buffers of a transfer.
 pub struct Transfer {
     strips: Sources,
+    /// Share of each strip that no window has been over.
+    uncovered: Vec<f64>,
+    /// Traces of what happened on the strips of the windows before, to compare: pressure, then warmth, then wear.
+    traces: [Vec<[f64; 3]>; WINDOWS],
     /// Cells by the window that they come from: of tractions, which are 0 beyond it.
     cells: [Sources; WINDOWS],
     /// Columns of heat and wear, which go on beyond the window as at its end.
@@ -62,6 +81,8 @@ impl Transfer {
         };
         Transfer {
             strips: room(grid.strips),
+            uncovered: Vec::with_capacity(grid.strips),
+            traces: std::array::from_fn(|_| Vec::with_capacity(grid.strips)),
             cells: std::array::from_fn(|_| room(grid.cells)),
             columns: std::array::from_fn(|_| room(grid.cells + 2)),
         }
@@ -70,15 +91,16 @@ impl Transfer {
     /// Sets the fields of a window at a place from the fields before.
     pub fn fill(
         &mut self,
-        operators: &SurfaceOperators,
+        (operators, untouched): (&SurfaceOperators, &Untouched),
         before: &SurfaceFields,
         place: &Place,
         into: &mut PatchFields,
         own: usize,
     ) {
+        self.trace((operators, untouched), before);
         self.find(operators, before, place);
         let window = operators.of(place);
-        let (grid, modes) = (&window.grid, window.basis.len());
+        let grid = &window.grid;
         let sources = &before.windows;
         let stride = grid.stride();
         // Tractions, slip and displacement on the grid.
@@ -111,87 +133,124 @@ impl Transfer {
             change_y,
         ];
         for (target, of) in targets.into_iter().zip(on_grid) {
-            self.mean(grid, stride, |share| of(&sources[share.window]), target);
+            self.mean(grid, stride, |share| of(&sources[share.window]), |_, _| 0.0, target);
         }
-        // The memory of friction, strip by strip without the rows' ends.
-        into.memory.remembers = before.used().any(|(window, _)| sources[window].memory.remembers);
-        for part in 0..10 {
-            let of = |share: &Share| sources[share.window].memory.vectors()[part];
-            let mut values = std::mem::take(into.memory.vectors_mut()[part]);
-            self.mean(grid, grid.cells, of, &mut values);
-            *into.memory.vectors_mut()[part] = values;
-        }
-        self.carry(
-            &window.strips,
-            modes,
-            |fields| &fields.heat.window,
-            before,
-            &mut into.heat.window,
-        );
-        self.carry(
-            &window.strips,
-            1,
-            |fields| &fields.wear.window,
-            before,
-            &mut into.wear.window,
-        );
-        let of_cells: [fn(&PatchFields) -> &Vec<f64>; 4] = [
-            |fields| &fields.heat.surface,
-            |fields| &fields.heat.flux,
-            |fields| &fields.heat.content,
-            |fields| &fields.wear.depth,
-        ];
-        let targets = [
-            &mut into.heat.surface,
-            &mut into.heat.flux,
-            &mut into.heat.content,
-            &mut into.wear.depth,
-        ];
-        for (target, of) in targets.into_iter().zip(of_cells) {
-            for strip in 0..grid.strips {
-                for cell in 0..grid.cells {
-                    // The first column is the one beside the window.
-                    let sum = self.sum(
-                        strip,
-                        |from| (&self.columns[from], cell + 1),
-                        |share, column| {
-                            let (cells, column) = (grid.cells, column.clamp(1, grid.cells) - 1);
-                            of(&sources[share.window])[share.index * cells + column]
-                        },
-                    );
-                    target[strip * grid.cells + cell] = sum;
-                }
-            }
-        }
-        self.carry_outer(operators, before, place, into, own);
+        self.carry_heat_and_wear((operators, untouched), before, place, into, own);
+        self.carry_memory(grid, untouched, before, place, into);
         into.relaxation_length = window.relaxation_length;
         into.wheel_temperature = before.wheel_temperature;
+    }
+
+    /// Carries the history of friction along, strip by strip without the rows' ends.
+    fn carry_memory(
+        &self,
+        grid: &Grid,
+        untouched: &Untouched,
+        before: &SurfaceFields,
+        place: &Place,
+        into: &mut PatchFields,
+    ) {
+        // Of `Memory::vectors`: the coefficients, now and at the beginning of the step, and the share of μ(θ) in them. The others are 0 of rested rail.
+        const COEFFICIENTS: [usize; 4] = [0, 2, 4, 6];
+        const SHARE: usize = 8;
+        let sources = &before.windows;
+        let remembers = before.used().any(|(window, _)| sources[window].memory.remembers);
+        into.memory.remembers = remembers;
+        if !remembers {
+            return;
+        }
+        let rises = &into.heat.surface;
+        for (part, values) in into.memory.vectors_mut().into_iter().enumerate() {
+            let of = |share: &Share| sources[share.window].memory.vectors()[part];
+            let rested = |strip: usize, cell: usize| {
+                if COEFFICIENTS.contains(&part) {
+                    (untouched.friction)(place, strip, rises[strip * grid.cells + cell])
+                } else if part == SHARE {
+                    1.0
+                } else {
+                    0.0
+                }
+            };
+            self.mean(grid, grid.cells, of, rested, values);
+        }
+    }
+
+    /// Carries heat and wear along.
+    fn carry_heat_and_wear(
+        &self,
+        (operators, untouched): (&SurfaceOperators, &Untouched),
+        before: &SurfaceFields,
+        place: &Place,
+        into: &mut PatchFields,
+        own: usize,
+    ) {
+        let window = operators.of(place);
+        let (grid, strips, modes) = (&window.grid, &window.strips, window.basis.len());
+        // The rail beside the contact is that of the window with the same number, or else of the first that is used.
+        let source = before.places[own]
+            .map(|from| (own, from))
+            .or_else(|| before.used().next());
+        let beside = source.map(|(window, _)| window);
+        if beside.is_none() {
+            enter(window, untouched, into);
+        }
+        let (heat, wear) = (&mut into.heat, &mut into.wear);
+        self.carry(
+            strips,
+            modes,
+            |fields| &fields.heat.window,
+            (before, beside),
+            &mut heat.window,
+        );
+        self.carry(
+            strips,
+            1,
+            |fields| &fields.wear.window,
+            (before, beside),
+            &mut wear.window,
+        );
+        for strip in 0..grid.strips {
+            for cell in 0..grid.cells {
+                let at = strip * grid.cells + cell;
+                let sum = |weights: &[f64]| {
+                    let amplitudes = heat.amplitudes(strips, strip, cell);
+                    amplitudes.zip(weights).map(|(a, weight)| a * weight).sum()
+                };
+                [heat.surface[at], heat.content[at]] = [sum(&window.basis.surface), sum(&window.basis.integral)];
+                wear.depth[at] = wear.window[place_of(strips, strip, cell + 1)];
+            }
+        }
+        let fluxes = |share: &Share| &before.windows[share.window].heat.flux;
+        self.mean(grid, grid.cells, fluxes, |_, _| 0.0, &mut heat.flux);
+        if let Some(source) = source {
+            carry_outer(operators, before, source, place, into);
+        }
+    }
+
+    /// Finds what happens on the strips of the windows before.
+    fn trace(&mut self, (operators, untouched): (&SurfaceOperators, &Untouched), before: &SurfaceFields) {
+        for (window, place) in before.used() {
+            let grid = &operators.of(&place).grid;
+            let own = &before.windows[window];
+            let away = |values: &[f64], from: f64| values.iter().map(|value| (value - from).abs()).sum::<f64>();
+            let traces = (0..grid.strips).map(|strip| {
+                let cells = strip * grid.cells..(strip + 1) * grid.cells;
+                [
+                    dense::sum(&own.pressure[grid.row(strip)]),
+                    away(&own.heat.surface[cells.clone()], untouched.rise),
+                    away(&own.wear.depth[cells], untouched.depth),
+                ]
+            });
+            self.traces[window].clear();
+            self.traces[window].extend(traces);
+        }
     }
 
     /// Finds the sources of strips, cells and columns.
     fn find(&mut self, operators: &SurfaceOperators, before: &SurfaceFields, place: &Place) {
         let grid = operators.of(place).grid;
-        let Transfer { strips, cells, columns } = self;
-        strips.clear();
-        for strip in 0..grid.strips {
-            strips.begins.push(strips.shares.len());
-            let first = strips.shares.len();
-            let from = (f64::from(place.strip) + strip as f64) * grid.breadth;
-            for (window, source) in before.used() {
-                let own = operators.of(&source).grid;
-                let begin = f64::from(source.strip) * own.breadth;
-                shares(from - begin, grid.breadth, &own.breadth, own.strips, |index, weight| {
-                    strips.shares.push(Share { window, index, weight });
-                });
-            }
-            // Windows that lie over each other share what both cover.
-            let total: f64 = strips.shares[first..].iter().map(|share| share.weight).sum();
-            if total > 1.0 {
-                strips.shares[first..]
-                    .iter_mut()
-                    .for_each(|share| share.weight /= total);
-            }
-        }
+        self.find_strips(operators, before, place);
+        let Transfer { cells, columns, .. } = self;
         for (window, source) in before.used() {
             let own = operators.of(&source).grid;
             let begin = f64::from(source.cell) * own.length;
@@ -234,111 +293,179 @@ impl Transfer {
         }
     }
 
-    /// Sum over the sources of a strip, and along the rail over those that `along` names: the sources and the target among them.
-    fn sum<'a>(
-        &'a self,
-        strip: usize,
-        along: impl Fn(usize) -> (&'a Sources, usize),
-        value: impl Fn(&Share, usize) -> f64,
-    ) -> f64 {
-        let mut sum = 0.0;
-        for share in self.strips.of(strip) {
-            let (sources, target) = along(share.window);
-            for part in sources.of(target) {
-                sum += share.weight * part.weight * value(share, part.index);
+    /// Finds the sources of strips: in pieces that are whole strips of any window, each from the window that has left most there.
+    fn find_strips(&mut self, operators: &SurfaceOperators, before: &SurfaceFields, place: &Place) {
+        let grid = operators.of(place).grid;
+        let Transfer {
+            strips,
+            uncovered,
+            traces,
+            ..
+        } = self;
+        strips.clear();
+        uncovered.clear();
+        let finest = before
+            .used()
+            .map(|(_, source)| operators.of(&source).grid.breadth)
+            .fold(grid.breadth, f64::min);
+        let pieces = (grid.breadth / finest).round() as usize;
+        let weight = 1.0 / pieces as f64;
+        for strip in 0..grid.strips {
+            strips.begins.push(strips.shares.len());
+            let first = strips.shares.len();
+            let from = (f64::from(place.strip) + strip as f64) * grid.breadth;
+            let mut left = 0.0;
+            for piece in 0..pieces {
+                let middle = from + (piece as f64 + 0.5) * finest;
+                let covering = before.used().filter_map(|(window, source)| {
+                    let breadth = operators.of(&source).grid.breadth;
+                    let index = (middle / breadth - f64::from(source.strip)).floor();
+                    let index = (index >= 0.0 && index < grid.strips as f64).then_some(index as usize)?;
+                    Some((window, index, traces[window][index]))
+                });
+                let most = covering.reduce(|most, other| if other.2 > most.2 { other } else { most });
+                let Some((window, index, _)) = most else {
+                    left += weight;
+                    continue;
+                };
+                let last = strips.shares[first..].last_mut();
+                match last.filter(|last| (last.window, last.index) == (window, index)) {
+                    Some(last) => last.weight += weight,
+                    None => strips.shares.push(Share { window, index, weight }),
+                }
             }
+            uncovered.push(left);
         }
-        sum
     }
 
-    /// Takes the mean of values at cells, whose strips are `stride` values apart.
-    fn mean<'f>(&self, grid: &Grid, stride: usize, of: impl Fn(&Share) -> &'f Vec<f64>, into: &mut [f64]) {
+    /// Takes the mean of values at cells, whose strips are `stride` values apart, with the value that a cell has where no window has been.
+    fn mean<'f>(
+        &self,
+        grid: &Grid,
+        stride: usize,
+        of: impl Fn(&Share) -> &'f Vec<f64>,
+        elsewhere: impl Fn(usize, usize) -> f64,
+        into: &mut [f64],
+    ) {
         for strip in 0..grid.strips {
             for cell in 0..grid.cells {
-                into[strip * stride + cell] = self.sum(
-                    strip,
-                    |from| (&self.cells[from], cell),
-                    |share, cell| of(share)[share.index * stride + cell],
-                );
+                let (mut sum, mut covered) = (0.0, 0.0);
+                for share in self.strips.of(strip) {
+                    let values = of(share);
+                    for part in self.cells[share.window].of(cell) {
+                        let weight = share.weight * part.weight;
+                        sum += weight * values[share.index * stride + part.index];
+                        covered += weight;
+                    }
+                }
+                if covered < 1.0 - 1e-9 {
+                    sum += (1.0 - covered) * elsewhere(strip, cell);
+                }
+                into[strip * stride + cell] = sum;
             }
         }
     }
 
-    /// Carries amplitudes of so many modes in the columns of the strips along.
+    /// Carries amplitudes of so many modes in the columns of the strips, and of the rail beside the contact, along. Rail that no window has been over has those of the rail
+    /// beside the contact in the given window; without one, those that there are.
     fn carry(
         &self,
         strips: &Strips,
         modes: usize,
         of: fn(&PatchFields) -> &Vec<f64>,
-        before: &SurfaceFields,
+        (before, beside): (&SurfaceFields, Option<usize>),
         into: &mut [f64],
     ) {
+        let Some(beside) = beside else {
+            return;
+        };
         into.fill(0.0);
-        let columns = strips.columns();
-        let at = |strip: usize, column: usize| (strip / LANES * columns + column) * modes * LANES + strip % LANES;
-        for strip in 0..strips.strips {
-            for share in self.strips.of(strip) {
-                let from = of(&before.windows[share.window]);
-                let sources = &self.columns[share.window];
-                for column in 0..columns {
-                    for part in sources.of(column) {
-                        let weight = share.weight * part.weight;
-                        let (to, source) = (at(strip, column), at(share.index, part.index));
-                        for mode in 0..modes {
-                            into[to + mode * LANES] += weight * from[source + mode * LANES];
-                        }
+        let mut add = |strip: usize, share: &Share| {
+            let from = of(&before.windows[share.window]);
+            let sources = &self.columns[share.window];
+            for column in 0..strips.columns() {
+                for part in sources.of(column) {
+                    let weight = share.weight * part.weight;
+                    let to = place_of(strips, strip, column);
+                    let source = place_of(strips, share.index, part.index);
+                    for mode in 0..modes {
+                        let [to, source] =
+                            [to, source].map(|at| at / LANES * modes * LANES + at % LANES + mode * LANES);
+                        into[to] += weight * from[source];
                     }
                 }
             }
+        };
+        for strip in 0..strips.strips {
+            self.strips.of(strip).iter().for_each(|share| add(strip, share));
+        }
+        for strip in 0..strips.blocks() * LANES {
+            let weight = self.uncovered.get(strip).copied().unwrap_or(1.0);
+            if weight > 0.0 {
+                let (window, index) = (beside, strips.strips);
+                add(strip, &Share { window, index, weight });
+            }
         }
     }
+}
 
-    /// Carries the rail on either side of the window along: that of the window with the same number, or else of the first that is used.
-    fn carry_outer(
-        &self,
-        operators: &SurfaceOperators,
-        before: &SurfaceFields,
-        place: &Place,
-        into: &mut PatchFields,
-        own: usize,
-    ) {
-        let source = before.places[own]
-            .map(|from| (own, from))
-            .or_else(|| before.used().next());
-        let modes = operators.of(place).basis.len();
-        let strips = &operators.of(place).strips;
-        for side in [Side::Left, Side::Right] {
-            let k = side as usize;
-            let Some((window, from)) = source else {
-                into.heat.breadth = strips.breadth * strips.strips as f64;
-                into.wear.breadth = into.heat.breadth;
-                into.heat.outer[k].fill(0.0);
-                into.wear.outer[k].fill(0.0);
-                continue;
+/// Index of a strip's value in a column, of values that are kept in blocks of [`LANES`] strips.
+fn place_of(strips: &Strips, strip: usize, column: usize) -> usize {
+    (strip / LANES * strips.columns() + column) * LANES + strip % LANES
+}
+
+/// Sets rail that has come in and nothing has touched in all of a window and on either side of it.
+fn enter(window: &PatchOperators, untouched: &Untouched, into: &mut PatchFields) {
+    let (modes, strips) = (window.basis.len(), &window.strips);
+    let [left, right] = &mut into.heat.outer;
+    for column in left.chunks_exact_mut(modes).chain(right.chunks_exact_mut(modes)) {
+        window.incoming.enter(untouched.rise, column, &mut 0.0);
+    }
+    for column in into.heat.window.chunks_exact_mut(modes * LANES) {
+        for (lanes, amplitude) in column.chunks_exact_mut(LANES).zip(&left[..modes]) {
+            lanes.fill(*amplitude);
+        }
+    }
+    into.wear.window.fill(untouched.depth);
+    into.wear.outer.iter_mut().for_each(|outer| outer.fill(untouched.depth));
+    into.heat.breadth = strips.breadth * strips.strips as f64;
+    into.wear.breadth = into.heat.breadth;
+}
+
+/// Carries the rail on either side of the window along, from the given window.
+fn carry_outer(
+    operators: &SurfaceOperators,
+    before: &SurfaceFields,
+    (window, from): (usize, Place),
+    place: &Place,
+    into: &mut PatchFields,
+) {
+    let modes = operators.of(place).basis.len();
+    let strips = &operators.of(place).strips;
+    for side in [Side::Left, Side::Right] {
+        let k = side as usize;
+        let before = &before.windows[window];
+        into.heat.breadth = before.heat.breadth;
+        into.wear.breadth = before.wear.breadth;
+        if from.length == place.length {
+            into.heat.outer[k].copy_from_slice(&before.heat.outer[k]);
+            into.wear.outer[k].copy_from_slice(&before.wear.outer[k]);
+            continue;
+        }
+        let (to, from) = (
+            strips.outer_positions(side),
+            operators.of(&from).strips.outer_positions(side),
+        );
+        for (column, x) in to.iter().enumerate() {
+            let after = from.partition_point(|place| place < x).clamp(1, from.len() - 1);
+            let share = ((x - from[after - 1]) / (from[after] - from[after - 1])).clamp(0.0, 1.0);
+            let between = |values: &[f64], mode: usize, modes: usize| {
+                (1.0 - share) * values[(after - 1) * modes + mode] + share * values[after * modes + mode]
             };
-            let before = &before.windows[window];
-            into.heat.breadth = before.heat.breadth;
-            into.wear.breadth = before.wear.breadth;
-            if from.length == place.length {
-                into.heat.outer[k].copy_from_slice(&before.heat.outer[k]);
-                into.wear.outer[k].copy_from_slice(&before.wear.outer[k]);
-                continue;
+            for mode in 0..modes {
+                into.heat.outer[k][column * modes + mode] = between(&before.heat.outer[k], mode, modes);
             }
-            let (to, from) = (
-                strips.outer_positions(side),
-                operators.of(&from).strips.outer_positions(side),
-            );
-            for (column, x) in to.iter().enumerate() {
-                let after = from.partition_point(|place| place < x).clamp(1, from.len() - 1);
-                let share = ((x - from[after - 1]) / (from[after] - from[after - 1])).clamp(0.0, 1.0);
-                let between = |values: &[f64], mode: usize, modes: usize| {
-                    (1.0 - share) * values[(after - 1) * modes + mode] + share * values[after * modes + mode]
-                };
-                for mode in 0..modes {
-                    into.heat.outer[k][column * modes + mode] = between(&before.heat.outer[k], mode, modes);
-                }
-                into.wear.outer[k][column] = between(&before.wear.outer[k], 0, 1);
-            }
+            into.wear.outer[k][column] = between(&before.wear.outer[k], 0, 1);
         }
     }
 }
@@ -358,3 +485,6 @@ fn shares(from: f64, length: f64, size: &f64, count: usize, mut found: impl FnMu
         }
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -14,8 +14,6 @@ pub const WINDOWS: usize = CONTACTS;
 pub const LENGTHS: usize = 5;
 /// Number of breadths that a window may have.
 pub const BREADTHS: usize = 6;
-/// Number of sizes that a window may have.
-pub const SHAPES: usize = LENGTHS * BREADTHS;
 
 /// Cells along the window, and strips across it, that stay free on either side of a region that a window is placed for.
 const MARGIN: [f64; 2] = [1.5, 1.0];

@@ -1,0 +1,159 @@
+use super::super::tests::{displaced, fields, parameters, problem, run};
+use super::*;
+use crate::contact::fields::Fields;
+use crate::contact::surface::problem::SurfaceProblem;
+use crate::contact::surface::windows;
+use crate::parameters::{Control, Parameters, ProfileContents};
+use crate::settings::Settings;
+use crate::signals::Inputs;
+
+/// Fills a window as a step does.
+fn fill(problem: &SurfaceProblem, before: &SurfaceFields, place: &Place, into: &mut PatchFields, window: usize) {
+    let operators = problem.operators;
+    let friction = |place: &Place, strip: usize, rise: f64| problem.of(place).friction_at(strip).coefficient(rise).0;
+    let untouched = Untouched {
+        rise: problem.incoming_rise(),
+        depth: problem.conditions.inputs.incoming_wear_depth,
+        friction: &friction,
+    };
+    Transfer::new(operators).fill((operators, &untouched), before, place, into, window);
+}
+
+/// Heat and worn depth that a window brings along are those of the window before where it covers them, whatever the size of the cells.
+#[test]
+fn a_window_that_moves_keeps_heat_and_worn_volume() {
+    let parameters = parameters(Control::Load);
+    let operators = SurfaceOperators::build(&parameters, &ProfileContents::default()).unwrap();
+    let state = run(&parameters, &displaced(3e-3), 5);
+    let before = fields(&state);
+    let (window, place) = before.used().next().unwrap();
+    let sums = |fields: &SurfaceFields| {
+        let place = fields.places[window].unwrap();
+        let area = operators.of(&place).grid.cell_area();
+        let own = &fields.windows[window];
+        [&own.heat.content, &own.wear.depth].map(|values| area * values.iter().sum::<f64>())
+    };
+    let settings = Settings::default();
+    let problem = problem(&operators, (&parameters, &settings), displaced(3e-3));
+    // A strip farther, and with strips twice as broad that cover those before.
+    let shifted = windows::Place {
+        strip: place.strip + 1,
+        ..place
+    };
+    let strips = operators.of(&place).grid.strips as i32;
+    let coarse = windows::Place {
+        breadth: place.breadth - 1,
+        strip: (place.strip - strips / 2).div_euclid(2),
+        ..place
+    };
+    for target in [shifted, coarse] {
+        let mut after = SurfaceFields::new(&operators);
+        after.guess_from(before);
+        after.places = [None; windows::WINDOWS];
+        after.places[window] = Some(target);
+        fill(&problem, before, &target, &mut after.windows[window], window);
+        let (old, new) = (sums(before), sums(&after));
+        assert!(old.iter().all(|sum| *sum > 0.0));
+        // The strip that is left out is cold and unworn.
+        for (old, new) in old.into_iter().zip(new) {
+            assert!((new / old - 1.0).abs() < 1e-12, "{old:e} {new:e}");
+        }
+    }
+}
+
+/// Two windows lie over each other: a strip is as in the one that carries there, and not the mean with the other one, which has the rail there as if nothing touched it.
+#[test]
+fn a_strip_is_that_of_the_window_that_carries_there() {
+    let parameters = parameters(Control::Load);
+    let settings = Settings::default();
+    let operators = SurfaceOperators::build(&parameters, &ProfileContents::default()).unwrap();
+    let mut before = fields(&run(&parameters, &displaced(3e-3), 5)).clone();
+    let (window, place) = before.used().next().unwrap();
+    let beside = (window + 1) % WINDOWS;
+    before.places[beside] = Some(Place {
+        strip: place.strip + 2,
+        ..place
+    });
+    before.windows[beside] = before.windows[window].untouched();
+    let problem = problem(&operators, (&parameters, &settings), displaced(3e-3));
+    let mut after = SurfaceFields::new(&operators);
+    fill(&problem, &before, &place, &mut after.windows[window], window);
+    let grid = &operators.of(&place).grid;
+    let [now, then] = [&after, &before].map(|fields| &fields.windows[window]);
+    let mut carrying = 0;
+    for strip in 0..grid.strips {
+        if then.pressure[grid.row(strip)].iter().all(|&pressure| pressure == 0.0) {
+            continue;
+        }
+        carrying += 1;
+        let cells = strip * grid.cells..(strip + 1) * grid.cells;
+        let of: [fn(&PatchFields) -> &Vec<f64>; 2] = [|fields| &fields.wear.depth, |fields| &fields.heat.surface];
+        for of in of {
+            let largest = dense::largest(of(then));
+            for (now, then) in of(now)[cells.clone()].iter().zip(&of(then)[cells.clone()]) {
+                assert!((now - then).abs() < 1e-12 * largest, "{now:e} {then:e}");
+            }
+        }
+    }
+    assert!(carrying > 4);
+}
+
+/// Rail that no window has been over is as warm and as worn as it came in, and its friction that of rested rail.
+#[test]
+fn rail_that_nothing_has_touched_is_as_it_came_in() {
+    let parameters = Parameters {
+        friction_memory_distance: 1e-5,
+        friction_slip_share: 0.6,
+        friction_slip_decay: 1.0,
+        ..parameters(Control::Load)
+    };
+    let inputs = Inputs {
+        incoming_temperature: 353.15,
+        incoming_wear_depth: 1e-6,
+        ..displaced(3e-3)
+    };
+    let settings = Settings::default();
+    let operators = SurfaceOperators::build(&parameters, &ProfileContents::default()).unwrap();
+    // Long enough for the rail of the beginning, which is at ambient, to be far behind.
+    let before = fields(&run(&parameters, &inputs, 3000)).clone();
+    let (window, place) = before.used().next().unwrap();
+    let problem = problem(&operators, (&parameters, &settings), inputs);
+    let grid = operators.of(&place).grid;
+    let patch = problem.of(&place);
+    let half = grid.strips / 2;
+    let target = Place {
+        strip: place.strip + half as i32,
+        ..place
+    };
+    let mut after = SurfaceFields::new(&operators);
+    fill(&problem, &before, &target, &mut after.windows[window], window);
+    let (now, then) = (&after.windows[window], &before.windows[window]);
+    // The last strip of the window before has carried nothing.
+    let last = grid.strips - 1;
+    assert_eq!(dense::sum(&then.pressure[grid.row(last)]), 0.0);
+    assert!(then.heat.surface[last * grid.cells] > 30.0);
+    for strip in grid.strips - half..grid.strips {
+        for cell in 0..grid.cells {
+            let [at, beside] = [strip, last].map(|strip| strip * grid.cells + cell);
+            assert!((now.heat.surface[at] / then.heat.surface[beside] - 1.0).abs() < 1e-12);
+            assert!((now.wear.depth[at] / 1e-6 - 1.0).abs() < 1e-9);
+            let rested = patch.friction_at(strip).coefficient(now.heat.surface[at]).0;
+            let memory = &now.memory.now;
+            assert_eq!([memory.friction[at], memory.static_friction[at]], [rested; 2]);
+            assert_eq!([memory.speed[at], memory.flow[at]], [0.0; 2]);
+        }
+    }
+    // Where there has not been a window at all, the rail is as it enters.
+    fill(
+        &problem,
+        &SurfaceFields::new(&operators),
+        &place,
+        &mut after.windows[window],
+        window,
+    );
+    let now = &after.windows[window];
+    for at in 0..grid.strips * grid.cells {
+        assert!((now.heat.content[at] / (60.0 * parameters.skin_depth) - 1.0).abs() < 1e-12);
+        assert_eq!(now.wear.depth[at], 1e-6);
+    }
+}
