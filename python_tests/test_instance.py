@@ -18,7 +18,7 @@ REPOSITORY = Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(REPOSITORY / "python"))
 
 import wheelrail  # noqa: E402
-from wheelrail import Instance, InstanceClosedError, SavedState, SimulationError  # noqa: E402
+from wheelrail import Instance, InstanceClosedError, SavedState, SimulationError, SimulationWarning  # noqa: E402
 
 MOVING = {"creepage": 0.01, "wheel_speed": 40.0}
 READ = ("traction_force", "peak_temperature", "wear_depth", *MOVING)
@@ -245,6 +245,17 @@ def test_a_step_that_fails_can_be_taken_anew(fmu):
     assert (instance.time, instance.get(*READ)) == (0.01, before)
     instance.slave.setRealInputDerivatives(*rising, [0.0])
     instance.step(0.01)
+
+
+def test_a_contact_that_fills_its_window_is_told_of_once(either):
+    """Curvatures of the inputs make the contact broader than the parameters' window: a warning says what sizes it."""
+    broad = {"contact_model": "patch", "patch_geometry": "inputs", "transverse_curvature": 0.3}
+    with Instance(either, **broad, patch_nodes=14, patch_strips=9) as instance:
+        instance.start()
+        with pytest.warns(SimulationWarning, match="fills its window.*largest_load, wheel_radius") as told:
+            for _ in range(3):
+                instance.step(1e-3)
+    assert len(told) == 1
 
 
 def test_reset_leads_out(running):

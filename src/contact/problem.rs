@@ -40,8 +40,8 @@ pub struct Convergence {
     pub iterations: usize,
     /// Last relative change of the interface vector.
     pub residual: f64,
-    /// Whether the contact would reach beyond its window: it is held within it, and the groove that the wheel has worn is as wide
-    /// as the window.
+    /// Whether the contact would reach beyond its window: it is held within it. The wheel has worn a groove as wide as the window, or curvatures that are
+    /// given make the contact broader than those of the parameters.
     pub fills_window: bool,
     /// Whether a part of the step was taken staggered: the mechanics for temperature and wear before it, because neither method found
     /// the solution of the coupled equations within the budget of work. The residual is 1 or more where the pressure was held besides.

@@ -55,6 +55,7 @@ impl Component {
                 self.rates = Inputs::ZERO;
                 self.warn_of_staggered_step();
                 self.warn_of_profile_change();
+                self.warn_of_full_window();
                 self.inform_about_step();
                 Ok(())
             }
@@ -127,6 +128,19 @@ impl Component {
         });
     }
 
+    /// Tells, when it begins, that the contact is held within its window. The status of the step is not touched.
+    fn warn_of_full_window(&mut self) {
+        let fills = self.state.as_ref().is_some_and(|state| state.convergence.fills_window);
+        if fills && !self.told_of_window {
+            let time = self.time;
+            let sizes = self.parameters.window_sizes();
+            self.journal.failure(Blame::Remark, || {
+                format!("t = {time} s: the contact fills its window and is held within it, as if the surfaces ended there; the window is sized by {sizes}")
+            });
+        }
+        self.told_of_window = fills;
+    }
+
     /// Goes on from where a step stopped half-way, as from any communication point.
     pub fn accept_part_of_step(&mut self) {
         if self.mode == Mode::StepFailed {
@@ -141,15 +155,8 @@ impl Component {
                 _ => Default::default(),
             };
             let (iterations, residual) = (convergence.iterations, convergence.residual);
-            let window = if convergence.fills_window {
-                "; the wheel has worn a groove as wide as the contact window, which largest_load sizes"
-            } else {
-                ""
-            };
-            format!(
-                "t = {} s: {iterations} iterations, residual {residual:e}{window}",
-                component.time
-            )
+            let time = component.time;
+            format!("t = {time} s: {iterations} iterations, residual {residual:e}")
         });
     }
 }

@@ -1,6 +1,6 @@
 //! Quantities that follow from the parameters by a formula.
 
-use super::choices::{ContactModel, Side, Wheel};
+use super::choices::{ContactModel, PatchGeometry, Side, Wheel};
 use super::table::Parameters;
 use crate::geometry::hertz::{self, HertzEllipse};
 
@@ -98,6 +98,16 @@ impl Parameters {
     /// Side of the wheelset that the wheel is on: 1 on the left, −1 on the right.
     pub fn side_sign(&self) -> f64 {
         if self.side == Side::Right { -1.0 } else { 1.0 }
+    }
+
+    /// Names of the parameters that the window of the contact is sized by.
+    pub fn window_sizes(&self) -> &'static str {
+        match self.patch_geometry {
+            PatchGeometry::Parameters => "largest_load",
+            PatchGeometry::Inputs => {
+                "largest_load, wheel_radius, rail_transverse_curvature and wheel_transverse_curvature"
+            }
+        }
     }
 
     /// Distance of the running circle from the middle of the wheelset, `m`.

@@ -838,3 +838,28 @@ fn wrong_usage_is_answered_with_the_usage() {
         assert!(!output.stderr.is_empty() && !place.output.exists());
     }
 }
+
+/// A contact that curvatures of the inputs make broader than its window is told of, with what sizes the window.
+#[test]
+fn a_contact_that_fills_its_window_is_told_of() {
+    for (curvature, fills) in [("3.3", false), ("0.3", true)] {
+        let row = format!("60e3,20,43.5,{curvature}");
+        let scenario =
+            format!("time,normal_load,vehicle_speed,wheel_speed,transverse_curvature\n0,{row}\n0.002,{row}\n");
+        let place = Place::new("full_window", &scenario);
+        let inputs = ["--set", "patch_geometry=inputs", "--set", "slip_source=vehicle_speed"];
+        let output = place.simulate(&[&PATCH[..], &inputs].concat());
+        let message = String::from_utf8(output.stderr).unwrap();
+        assert!(output.status.success(), "{message}");
+        assert_eq!(
+            message.contains("2 steps: the contact fills its window"),
+            fills,
+            "{message}"
+        );
+        assert_eq!(
+            message.contains("sized by largest_load, wheel_radius,"),
+            fills,
+            "{message}"
+        );
+    }
+}

@@ -97,10 +97,10 @@ fn fields_add_up_to_the_contacts() {
             );
             stands_where_the_contact_is(window, contact.position, [contact.length, contact.breadth]);
         }
-        // All windows together, turned by the roll of the rail.
+        // All windows together.
         let vertical = |w: &SurfaceWindow, n: usize| {
             let sign = if side == Side::Left { 1.0 } else { -1.0 };
-            let angle = w.strips[n / w.x.len()].inclination + 1e-3;
+            let angle = w.strips[n / w.x.len()].inclination;
             w.nodes[n].pressure * angle.cos() - sign * w.nodes[n].lateral_shear * angle.sin()
         };
         let force: f64 = windows.iter().map(|window| integral(window, vertical)).sum();

@@ -152,13 +152,14 @@ impl Simulate {
 
         let count = steps.len();
         let mut progress = Progress::new(count as u64);
-        let (mut interrupted, mut staggered, mut worn_at_once) = (None, 0, 0f64);
+        let (mut interrupted, mut staggered, mut full, mut worn_at_once) = (None, 0, 0, 0f64);
         for step in steps {
             if let Err(source) = simulation.follow(&step) {
                 interrupted = Some(Box::new(source));
                 break;
             }
             staggered += usize::from(simulation.state.convergence.staggered);
+            full += usize::from(simulation.state.convergence.fills_window);
             worn_at_once = worn_at_once.max(simulation.state.convergence.profile_change);
             columns.write(&mut table, &step.to, simulation.outputs())?;
             progress.step();
@@ -179,6 +180,12 @@ impl Simulate {
         if staggered > 0 {
             eprintln!(
                 "{staggered} steps: mechanics, heat and wear were not solved together, but one after the other; shorter steps may be solved"
+            );
+        }
+        if full > 0 {
+            let sizes = simulation.model.parameters().window_sizes();
+            eprintln!(
+                "{full} steps: the contact fills its window and is held within it, as if the surfaces ended there; the window is sized by {sizes}"
             );
         }
         if let Some(source) = interrupted {
