@@ -23,4 +23,4 @@ class InstanceClosedError(SimulationError):
 
 
 class SimulationWarning(UserWarning):
-    """The component did what it was asked and says something of it: a step was taken staggered, or a contact fills its window."""
+    """The component did what it was asked and remarks on it: a step taken staggered, a contact that fills its window."""
