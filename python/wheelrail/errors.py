@@ -23,4 +23,4 @@ class InstanceClosedError(SimulationError):
 
 
 class SimulationWarning(UserWarning):
-    """The component did what it was asked and remarks on it: a step taken staggered, a contact that fills its window."""
+    """The component did what it was asked and remarks on it: a staggered step, a contact that fills its window."""

@@ -1,9 +1,10 @@
 //! Fields of a contact of profiles: they add up to the outputs, and stand where the outputs say.
 
+use std::path::Path;
 use wheelrail::parameters::{ContactModel, Parameters, ProfileWear, Side, SlipSource};
 use wheelrail::signals::Inputs;
 use wheelrail::wheel_rail::{Model, ProfileDepths, SurfaceWindow, WornPlace};
-use wheelrail::{Error, Simulation};
+use wheelrail::{Body, Error, Profile, Simulation};
 
 fn parameters(side: Side) -> Parameters {
     Parameters {
@@ -277,4 +278,45 @@ fn other_contact_models_have_no_windows() {
     let model = Model::new(Parameters::default()).unwrap();
     let state = model.initial_state(&mut model.workspace(), &Inputs::default()).unwrap();
     assert!(matches!(model.surface_windows(&state), Err(Error::OtherContactModel)));
+}
+
+/// A contact that is broader than the largest window is held within it, and keeps the length of its cells: a wheel hollow to a circle on a rail of a little smaller one.
+#[test]
+fn a_contact_broader_than_the_largest_window_keeps_its_cells() {
+    let arc = |body, radius: f64| {
+        let places = (-340..=340).map(|tenths| 1e-4 * f64::from(tenths));
+        let points: Vec<[f64; 2]> = places.map(|y| [y, (radius * radius - y * y).sqrt() - radius]).collect();
+        Profile::from_points(body, "arc", "arc", &points, 0.0).unwrap()
+    };
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR"));
+    let files = [folder.join("arc.prr"), folder.join("arc.prw")];
+    arc(Body::Rail, 0.3).write(&files[0]).unwrap();
+    arc(Body::Wheel, 0.31).write(&files[1]).unwrap();
+    let [rail_profile, wheel_profile] = files.map(|file| file.to_str().unwrap().to_owned());
+    // The rail's top stands over the running circle.
+    let depth: f64 = 1e-3;
+    let to_face = (0.3_f64.powi(2) - (0.3 - depth).powi(2)).sqrt();
+    let parameters = Parameters {
+        rail_profile,
+        wheel_profile,
+        rail_inclination: 0.0,
+        gauge: 2.0 * (0.75 - to_face),
+        gauge_depth: depth,
+        ..parameters(Side::Left)
+    };
+    let run = |load: f64| {
+        let inputs = Inputs {
+            normal_load: load,
+            vehicle_speed: 20.0,
+            wheel_speed: 20.0 / 0.46,
+            ..Inputs::default()
+        };
+        let mut run = Simulation::new(&parameters, &inputs).unwrap();
+        run.hold(&inputs, 1e-3, 3).unwrap();
+        let fills = run.state.convergence.fills_window;
+        (fills, run.surface_windows().unwrap()[0].cell_length)
+    };
+    let [narrow, broad] = [50e3, 95e3].map(run);
+    assert_eq!([narrow.0, broad.0], [false, true]);
+    assert_eq!(narrow.1, broad.1);
 }

@@ -1,6 +1,7 @@
 //! The patch as an [`Engine`].
 
 use super::begin;
+use super::extent;
 use super::fields::PatchFields;
 use super::heat_and_wear;
 use super::integrals;
@@ -219,15 +220,14 @@ impl Engine for PatchOperators {
     }
 
     fn is_cut_off(problem: &PatchProblem, now: &PatchFields, solvers: &PatchSolvers) -> bool {
-        let grid = &problem.operators.grid;
         let overlap = problem.settings.mechanics.overlap;
-        let overlaps = |place: usize| solvers.normal.separation[place] < -overlap;
-        let at_an_end = |strip: usize| {
-            let row = grid.row(strip);
-            overlaps(row.start) || overlaps(row.end - 1)
-        };
-        let is_loaded = |strip: usize| now.pressure[grid.row(strip)].iter().any(|&pressure| pressure > 0.0);
-        solvers.contact.cells() > 0 && ((0..grid.strips).any(at_an_end) || is_loaded(0) || is_loaded(grid.strips - 1))
+        let [along, across] = extent::is_cut_off(
+            &problem.operators.grid,
+            &now.pressure,
+            &solvers.normal.separation,
+            overlap,
+        );
+        along || across
     }
 
     fn heated_nodes<'f>(

@@ -1,6 +1,7 @@
 //! Length, breadth and area of the cells under pressure.
 
 use super::operators::PatchOperators;
+use crate::body::grid::Grid;
 
 /// Size of a contact.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -93,6 +94,24 @@ fn distance(count: usize, pressure: impl Fn(usize) -> f64) -> f64 {
         }
     };
     (last - first) as f64 + reach(first, first + 1) + reach(last, last.wrapping_sub(1)) - 2.0 * JOINS
+}
+
+/// Whether a contact would reach beyond its window, had it not been held within it: at the ends along the strips, and across them. The surfaces overlap there
+/// by more than `overlap`, or the outermost strips are under pressure.
+pub fn is_cut_off(grid: &Grid, pressure: &[f64], separation: &[f64], overlap: f64) -> [bool; 2] {
+    let is_loaded = |strip: usize| pressure[grid.row(strip)].iter().any(|&pressure| pressure > 0.0);
+    if !(0..grid.strips).any(is_loaded) {
+        return [false; 2];
+    }
+    let overlaps = |place: usize| separation[place] < -overlap;
+    let at_an_end = |strip: usize| {
+        let row = grid.row(strip);
+        overlaps(row.start) || overlaps(row.end - 1)
+    };
+    [
+        (0..grid.strips).any(at_an_end),
+        is_loaded(0) || is_loaded(grid.strips - 1),
+    ]
 }
 
 #[cfg(test)]

@@ -13,8 +13,7 @@ use super::search::LEAST_RISE;
 use super::solvers::SurfaceSolvers;
 use super::windows::{Place, WINDOWS};
 use crate::contact::engine::Engine;
-use crate::contact::patch::mechanics;
-use crate::contact::patch::operators::PatchOperators;
+use crate::contact::patch::{extent, mechanics};
 use crate::contact::problem::Coupling;
 use crate::error::{Error, Result};
 use crate::mechanics::normal::normal_problem::Constraint;
@@ -386,10 +385,14 @@ fn check_room(problem: &SurfaceProblem, fields: &SurfaceFields, solvers: &mut Su
     }
     let mut holds_all = true;
     for (window, place) in fields.used() {
-        let (patch, own) = (problem.of(&place), &solvers.windows[window].patch);
-        if PatchOperators::is_cut_off(&patch, &fields.windows[window], own) {
+        let grid = &problem.operators.of(&place).grid;
+        let (pressure, own) = (&fields.windows[window].pressure, &solvers.windows[window].patch);
+        let overlap = problem.settings.mechanics.overlap;
+        let [along, across] = extent::is_cut_off(grid, pressure, &own.normal.separation, overlap);
+        // The largest window has no larger one: with more room it would only have longer cells.
+        if along && place.length > 0 || across && place.breadth > 0 {
             solvers.outgrown = fields.approach[0];
-            solvers.too_small[window] = Some(place.region(&patch.operators.grid));
+            solvers.too_small[window] = Some(place.region(grid));
             holds_all = false;
         }
     }
