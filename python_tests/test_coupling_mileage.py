@@ -270,6 +270,17 @@ def test_depths_make_the_profile(new):
     assert wheel.depth == pytest.approx(5e-4 * np.exp(-1.0), rel=0.02)
 
 
+def test_wheel_from_two_columns(new, tmp_path):
+    """A file that does not say of which body it is has a wheel, that of its points."""
+    path = tmp_path / "mine.csv"
+    points = new.profile.points[["y", "z"]].to_numpy()
+    np.savetxt(path, 1e3 * points, delimiter=",")
+    found = NewWheel.of(path)
+    assert found.profile.body == "wheel"
+    # Running circle and directions are found anew on the points: to round-off of the file's millimetres, some 1e-9 m.
+    np.testing.assert_allclose(found.z, new.z, atol=1e-8)
+
+
 def test_smoothing_loses_nothing(new):
     """A wave of the given length is halved, and no area is lost."""
     wave = 5e-3
@@ -382,7 +393,7 @@ def test_vehicle_of_the_user():
     ("options", "words"),
     [
         (["--distance", "-5"], "mileage: plan: distance = -5000.0: 1000 to 1e+10 is needed"),
-        (["--wheel", "60E1"], "60E1 is the profile of a rail, and that of a wheel is needed"),
+        (["--wheel", "60E1"], "60E1 is the profile of a rail; a wheel is needed"),
         (["--limit", "flange=22"], "--limit flange: there are flange_height"),
         (["--fresh", "--name", ".."], "--name ..: a name without folders"),
         (["--fresh", "--name", "/somewhere"], "--name /somewhere: a name without folders"),

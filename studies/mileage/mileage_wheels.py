@@ -33,9 +33,10 @@ class NewWheel:
     def of(cls, profile):
         """Take a profile, a name or a path."""
         if not isinstance(profile, wheelrail.Profile):
-            profile = wheelrail.Profile(profile)
+            # A file of two columns does not say of which body it is.
+            profile = wheelrail.Profile(profile, body="wheel")
         if profile.body != "wheel":
-            raise ValueError(f"{profile.name} is the profile of a {profile.body}, and that of a wheel is needed")
+            raise ValueError(f"{profile.name} is the profile of a {profile.body}; a wheel is needed")
         table = profile.points
         arc, turn = table["arc_length"].to_numpy(), np.unwrap(table["inclination"].to_numpy())
         count = int(np.ceil(arc[-1] / GRID))
