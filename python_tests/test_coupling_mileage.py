@@ -392,12 +392,15 @@ def test_vehicle_of_the_user():
 @pytest.mark.parametrize(
     ("options", "words"),
     [
-        (["--distance", "-5"], "mileage: plan: distance = -5000.0: 1000 to 1e+10 is needed"),
+        (["--distance", "-5"], "mileage: plan: distance = -5 km: 1 to 10000000 km is needed"),
+        (["--largest-depth", "0.6"], "mileage: plan: largest_depth = 0.6 mm: 0.001 to 0.5 mm is needed"),
+        (["--smoothing", "30"], "mileage: plan: smoothing = 30 mm: 0 to 20 mm is needed"),
         (["--wheel", "60E1"], "60E1 is the profile of a rail; a wheel is needed"),
         (["--limit", "flange=22"], "--limit flange: there are flange_height"),
         (["--fresh", "--name", ".."], "--name ..: a name without folders"),
         (["--fresh", "--name", "/somewhere"], "--name /somewhere: a name without folders"),
         (["--samples", "0"], "plan: samples = 0: 1 to 99 is needed"),
+        (["--name", "hills", "--small"], "--name hills: the study without options has results of that name"),
         (["--set", "friction=0.3"], "there is no variable friction"),
         (["--set", "friction_law"], "--set friction_law: NAME=VALUE is needed"),
     ],

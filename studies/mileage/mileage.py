@@ -5,9 +5,10 @@
     .venv/bin/python studies mileage --line line.csv --vehicle vehicle.toml --wheel wheel.prw --distance 50000
     .venv/bin/python studies mileage --scheduler tcp://... an existing cluster
 
-mileage_line.py reads line and vehicle, mileage_bogie.py has steady curving and its wear on a worker, mileage_units.py
-its units, mileage_wheels.py the worn wheels, mileage_march.py the way from mileage to mileage, mileage_tables.py and
-mileage_pictures.py what is shown. After a kill, the same command goes on. docs/couplings/mileage.md.
+mileage_line.py reads line and vehicle, mileage_plan.py has what is asked for, mileage_bogie.py steady curving and its
+wear on a worker, mileage_units.py its units, mileage_wheels.py the worn wheels, mileage_march.py the way from mileage
+to mileage, mileage_tables.py and mileage_pictures.py what is shown. After a kill, the same command goes on; results of
+another plan are kept. docs/couplings/mileage.md.
 """
 
 import argparse
@@ -24,8 +25,9 @@ from dask_runs import add_options, client_for, is_done, read_component, write_ta
 from helpers import FMU3, RESULTS, markdown_table, write_tables
 from mileage_bogie import NoEquilibriumError, rates
 from mileage_line import BadInputError, main_line, read_line, read_vehicle, short_line, straight_line, wrong
-from mileage_march import Plan, march, read_state, state_file, to_compute, weighted
+from mileage_march import differing, forget, march, read_state, refuse_another, state_file, to_compute, weighted
 from mileage_pictures import draw_curves, draw_depths, draw_laws, draw_measures, draw_profiles
+from mileage_plan import RANGES, UNITS, OtherPlanError, Plan
 from mileage_tables import (
     NAMES,
     curves_table,
@@ -60,15 +62,8 @@ TRACTIONS = ((0.60, 0.0), (0.25, 10e3), (0.15, -10e3))  # 1, N
 # Treads as flat as these have a conicity that goes to and fro with steps of 0.1 mm.
 PLAIN_DEPTH = 5e-5  # m
 LAWS = ("energy", "archard_map", "archard")
-# Options that are numbers of the plan, and their units on the command line.
-NUMBERS = {
-    "distance": 1e3,
-    "wear_factor": 1.0,
-    "largest_depth": 1e-3,
-    "smoothing": 1e-3,
-    "samples": 1,
-    "samples_straight": 1,
-}
+# Runs of the study by name, and what lies beside them: no run of the user's own is called so.
+STUDY = ("hills", "plain", "rolling", "lubricated", *LAWS[1:], "new_wheels")
 
 
 def main_plan(**changes):
@@ -153,6 +148,9 @@ def study(client, component):
         runs[law] = replace(plan, distance=COMPARED, parameters=parameters, wear_factor=factors[law])
     for name, one in runs.items():
         print(f"  {name}", flush=True)
+        # The page's runs are as if computed in one go.
+        if differing(WORK / name, one, component[1]) is not None:
+            forget(WORK / name)
         march(client, one, WORK / name, component)
     base, straights = WORK / "hills", WORK / "plain"
     finer = {f"{n} × {m}": {"patch_nodes": n, "patch_strips": m} for n, m in FINER}
@@ -222,10 +220,15 @@ def pairs(texts, kind, option):
     return found
 
 
+def in_si(name, value):
+    """A number of the plan in SI units, from the command line's."""
+    return value * UNITS[name][1] if name in UNITS else value
+
+
 def plan_of(chosen):
     """The plan that the options ask for, or None for the study."""
-    numbers = {name: (getattr(chosen, name), unit) for name, unit in NUMBERS.items()}
-    given = {name: value * unit for name, (value, unit) in numbers.items() if value is not None}
+    numbers = {name: getattr(chosen, name) for name in RANGES}
+    given = {name: in_si(name, value) for name, value in numbers.items() if value is not None}
     if chosen.line:
         given["line"] = tuple(read_line(chosen.line))
     if chosen.vehicle:
@@ -270,6 +273,8 @@ def main():
         # --fresh removes the folder of this name.
         if name == ".." or Path(name).name != name:
             raise BadInputError(f"--name {name}: a name without folders is needed")
+        if name in STUDY:
+            raise BadInputError(f"--name {name}: the study without options has results of that name")
         plan = plan_of(chosen)
         limits = {name: 1e-3 * value for name, value in pairs(chosen.limit, float, "limit").items()}
         if unknown := [name for name in limits if name not in MEASURES]:
@@ -278,13 +283,18 @@ def main():
             # What is wrong with either is said before anything is computed.
             NewWheel.of(plan.wheel)
             Wheel("left", FMU3, **plan.parameters).close()
+        component = read_component(FMU3)
+        if plan is not None and not chosen.fresh:
+            refuse_another(WORK / name, plan, component[1])
+    except OtherPlanError as error:
+        sys.exit(f"mileage: --name {name}: {error}; another --name keeps them, --fresh forgets them")
     except (ValueError, OSError) as error:
         sys.exit(f"mileage: {error}")
-    component = read_component(FMU3)
     try:
         with client_for(chosen.scheduler, chosen.workers, MODULES) as client:
             if chosen.fresh:
-                shutil.rmtree(WORK if plan is None else WORK / name, ignore_errors=True)
+                for one in STUDY if plan is None else (name,):
+                    shutil.rmtree(WORK / one, ignore_errors=True)
             if plan is None:
                 study(client, component)
             else:

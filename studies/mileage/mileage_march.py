@@ -12,21 +12,17 @@ computed and the other one is its mirror.
 
 import json
 import time
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass
 
 import numpy as np
 import pyarrow.parquet as pq
-from curve_vehicle import VEHICLE, WHEELS, Vehicle
-from dask_runs import is_done, stamp_of, write_table
-from mileage_bogie import NoEquilibriumError, Settings, Starts, rates_or_error
-from mileage_line import by_size, is_its_own_mirror, named, wrong
+from curve_vehicle import WHEELS
+from dask_runs import is_done, write_table
+from mileage_bogie import NoEquilibriumError, Starts, rates_or_error
+from mileage_line import is_its_own_mirror, named
+from mileage_plan import OtherPlanError, differences, read_plan, write_plan
 from mileage_wheels import NewWheel, smoothed
 
-# Least and largest value of what a plan has as numbers, in SI units.
-RANGES = {"distance": (1e3, 1e10), "wear_factor": (1e-6, 100.0), "largest_depth": (1e-6, 5e-4)}
-# Share of what friction can carry that a wheelset's traction may take: the rest is for the curve and the irregularity.
-MOST_TRACTION = 0.6
-RANGES |= {"smoothing": (0.0, 0.02), "samples": (1, 99), "samples_straight": (1, 99)}
 # Of the four wheels, those of the other side.
 MIRROR = (1, 0, 3, 2)
 UNITS = {
@@ -39,68 +35,6 @@ UNITS = {
     "peak_pressure": "Pa",
     "left": "N",
 }
-
-
-@dataclass(frozen=True)
-class Plan:
-    """A run: the line, the vehicle, the wheel, how far and in which steps.
-
-    Attributes
-    ----------
-    line
-        Classes of the line, whose shares are 1 together.
-    parameters
-        Parameters of the units by name.
-    wheel
-        New profile of all wheels: a name, a path, or a Profile.
-    distance
-        Mileage [m].
-    largest_depth
-        By which a profile changes at most in a step [m].
-    smoothing
-        Wavelength that is halved in what a step takes away [m].
-    wear_factor
-        By which what the law of wear has is multiplied: rails are not as dry as a laboratory's discs.
-    samples, samples_straight
-        States about each equilibrium, in a curve and on straight track.
-    """
-
-    line: tuple
-    distance: float
-    vehicle: Vehicle = VEHICLE
-    parameters: dict = field(default_factory=dict)
-    wheel: object = "S1002"
-    largest_depth: float = 1e-4
-    smoothing: float = 5e-3
-    wear_factor: float = 1.0
-    samples: int = 4
-    samples_straight: int = 7
-
-    def __post_init__(self):
-        """Refuse what is out of range, with its name."""
-        for name, (least, most) in RANGES.items():
-            value = getattr(self, name)
-            if not isinstance(value, int | float) or not least <= value <= most:
-                raise wrong("plan", name, value, f"{least:g} to {most:g}")
-        shares = sum(curve.share for curve in self.line)
-        if abs(shares - 1.0) > 1e-9:
-            raise wrong("plan", "the sum of the line's shares", f"{shares:g}", "1")
-        for name, curve in named(self.line).items():
-            most = MOST_TRACTION * curve.friction * 2.0 * self.vehicle.wheel_load
-            if abs(curve.traction) > most:
-                allowed = f"{-most:.0f} to {most:.0f} N, {MOST_TRACTION:g} of the friction under the wheelset,"
-                raise wrong(name, "traction", f"{curve.traction:g} N", allowed)
-
-    def settings(self):
-        """What tasks need of it."""
-        parameters = tuple(sorted(self.parameters.items()))
-        return Settings(self.vehicle, parameters, self.samples, self.samples_straight)
-
-    def stamp(self, digest, new):
-        """Return what results of this run, with a component, are known by."""
-        given = [digest, sorted(self.line, key=by_size), self.distance, asdict(self.vehicle), self.settings()]
-        given += [self.largest_depth, self.smoothing, self.wear_factor, new.profile._text]
-        return stamp_of(*given)
 
 
 @dataclass
@@ -151,20 +85,23 @@ def march(client, plan, folder, component, report=say):
 
     Raises
     ------
+    OtherPlanError
+        The folder has results of another plan; one that is the same but longer goes on from them.
     NoEquilibriumError
         In a class of the line there is no steady curving; what was computed before is kept.
     """
     data, digest = component
     folder.mkdir(parents=True, exist_ok=True)
+    refuse_another(folder, plan, digest)
     new = NewWheel.of(plan.wheel)
     stamp = plan.stamp(digest, new)
     progress = last_state(folder, stamp) or Progress(0, 0.0, np.stack([new.none()] * len(WHEELS)), {})
     if progress.step:
         report(f"  {progress.step} steps, {1e-3 * progress.distance:.0f} km, are there from before")
     else:
-        for left_over in (path for kind in ("wheels", "classes", "times") for path in folder.glob(f"{kind}_*")):
-            left_over.unlink()
+        forget(folder)
         write_state(folder, stamp, new, progress)
+    write_plan(folder, plan.described(digest, new))
     shared = client.scatter(data, broadcast=True) if client else data
     while progress.distance < plan.distance:
         began = time.perf_counter()
@@ -227,6 +164,36 @@ def weighted(plan, classes, results):
 
 
 # ---- what is kept ---------------------------------------------------------------------------------------------------
+
+
+def differing(folder, plan, digest):
+    """Return where the plan of a folder's results differs from this one, or None: there are no steps of another one.
+
+    Where the folder does not say what its plan was, there is nothing to name.
+    """
+    if not state_file(folder, 1).exists():
+        return None
+    if (there := read_plan(folder)) is None:
+        return []
+    new = NewWheel.of(plan.wheel)
+    found = differences(there, plan.described(digest, new))
+    return None if not found and is_done(state_file(folder, 0), plan.stamp(digest, new)) else found
+
+
+def refuse_another(folder, plan, digest):
+    """Refuse a folder with steps of another plan, but not of one that is the same and shorter."""
+    found = differing(folder, plan, digest)
+    if found is None:
+        return
+    longer = [name for name, *_ in found] == ["distance"] and found[0][2] > found[0][1]
+    if not longer:
+        raise OtherPlanError(folder, found)
+
+
+def forget(folder):
+    """Remove the steps that are there."""
+    for path in (path for kind in ("wheels", "classes", "times") for path in folder.glob(f"{kind}_*")):
+        path.unlink()
 
 
 def write_state(folder, stamp, new, progress):

@@ -33,7 +33,9 @@ def chosen(folder, most=MEASURED):
 def measures(plan, folder, most=MEASURED):
     """Measures of the wheels over the mileage, a column each, which are kept beside the run."""
     steps = chosen(folder, most)
-    stamp = stamp_of(pq.read_schema(state_file(folder, steps[-1])).metadata[b"stamp"], steps)
+    last = state_file(folder, steps[-1])
+    # Runs of the same plan may be of several lengths.
+    stamp = stamp_of(pq.read_schema(last).metadata[b"stamp"], read_state(last).distance, steps)
     path = folder / "measures.parquet"
     if not is_done(path, stamp):
         new = NewWheel.of(plan.wheel)
