@@ -402,6 +402,9 @@ def test_vehicle_of_the_user():
         (["--samples", "0"], "plan: samples = 0: 1 to 99 is needed"),
         (["--name", "hills", "--small"], "--name hills: the study without options has results of that name"),
         (["--set", "friction=0.3"], "there is no variable friction"),
+        (["--set", "patch_nodes=4"], "patch_nodes = 4: allowed is 8 to 201"),
+        (["--set", "rail_profile=5"], "rail_profile = 5.0: a text is needed"),
+        (["--set", "wheel_profile=S1002"], "--set wheel_profile: --wheel gives it"),
         (["--set", "friction_law"], "--set friction_law: NAME=VALUE is needed"),
     ],
 )
@@ -411,3 +414,4 @@ def test_bad_options(monkeypatch, options, words):
     with pytest.raises(SystemExit) as caught:
         mileage.main()
     assert words in str(caught.value.code)
+    assert "\n" not in caught.value.code

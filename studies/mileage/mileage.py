@@ -22,7 +22,7 @@ import numpy as np
 import pyarrow.parquet as pq
 from curve_vehicle import Wheel
 from dask_runs import add_options, client_for, is_done, read_component, write_table
-from helpers import FMU3, RESULTS, markdown_table, write_tables
+from helpers import FMU3, RESULTS, markdown_table, wheelrail, write_tables
 from mileage_bogie import NoEquilibriumError, rates
 from mileage_line import BadInputError, main_line, read_line, read_vehicle, short_line, straight_line, wrong
 from mileage_march import differing, forget, march, read_state, refuse_another, state_file, to_compute, weighted
@@ -64,6 +64,14 @@ PLAIN_DEPTH = 5e-5  # m
 LAWS = ("energy", "archard_map", "archard")
 # Runs of the study by name, and what lies beside them: no run of the user's own is called so.
 STUDY = ("hills", "plain", "rolling", "lubricated", *LAWS[1:], "new_wheels")
+# Parameters of the units that come from elsewhere, and from where.
+ELSEWHERE = {
+    "side": "each wheel has its own",
+    "wheel_profile": "--wheel gives it",
+    "wheel_radius": "the vehicle has it",
+    "friction_cold": "the line has it, as friction",
+    "gauge_face_friction_scale": "the line has it, as gauge_face_friction",
+}
 
 
 def main_plan(**changes):
@@ -238,8 +246,18 @@ def plan_of(chosen):
     parameters = pairs(chosen.set, None, "set") | ({"wear_law": chosen.wear_law} if chosen.wear_law else {})
     if not given and not parameters and not chosen.small:
         return None
+    if taken := [name for name in parameters if name in ELSEWHERE]:
+        raise BadInputError(f"--set {taken[0]}: {ELSEWHERE[taken[0]]}")
     base = small_plan() if chosen.small else main_plan()
     return replace(base, parameters=base.parameters | parameters, **given)
+
+
+def check_units(plan):
+    """Refuse parameters that the component refuses, in its words."""
+    try:
+        Wheel("left", FMU3, **plan.parameters).close()
+    except (wheelrail.SimulationError, TypeError) as error:
+        raise BadInputError(str(error)) from error
 
 
 def options():
@@ -282,7 +300,7 @@ def main():
         if plan is not None:
             # What is wrong with either is said before anything is computed.
             NewWheel.of(plan.wheel)
-            Wheel("left", FMU3, **plan.parameters).close()
+            check_units(plan)
         component = read_component(FMU3)
         if plan is not None and not chosen.fresh:
             refuse_another(WORK / name, plan, component[1])
