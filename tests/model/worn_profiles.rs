@@ -184,6 +184,8 @@ fn folder(name: &str) -> PathBuf {
 }
 
 /// A worn wheel as a file of any format makes the forces of the component that has worn it; read and written once more, it is the same.
+///
+/// At these places the windows of both have the same cells: those of other cells have other forces.
 #[test]
 fn a_worn_wheel_in_a_file_makes_the_same_forces() {
     let parameters = Parameters {
