@@ -6,6 +6,7 @@
 pub mod carter;
 pub mod cattaneo;
 pub mod chained;
+pub mod conformal;
 pub mod contact_points;
 pub mod convergence;
 pub mod creep_curve;
@@ -267,6 +268,10 @@ pub const CHECKS: &[Check] = &[
     Check {
         name: "Profiles: circle on circle",
         rows: profiles_circle::rows,
+    },
+    Check {
+        name: "Profiles: conformal contact",
+        rows: conformal::rows,
     },
     Check {
         name: "Profiles: wear",
