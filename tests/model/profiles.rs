@@ -589,3 +589,46 @@ fn a_contact_in_two_windows_becomes_one() {
         assert!((ratio - 1.0).abs() < 1e-5, "{grid:?}: {ratio}");
     }
 }
+
+/// Rail that comes in colder than the ambient leaves colder, also under a wheel that has been lifted; windows that contacts have left go on such rail as well.
+#[test]
+fn rail_leaves_as_it_comes_in() {
+    let parameters = Parameters {
+        contact_model: ContactModel::Profiles,
+        slip_source: SlipSource::VehicleSpeed,
+        patch_nodes: 18,
+        patch_strips: 11,
+        depth_nodes: 13,
+        ..Parameters::default()
+    };
+    let inputs = |lateral: f64, load: f64| Inputs {
+        normal_load: load,
+        vehicle_speed: 20.0,
+        wheel_speed: 20.0 / 0.46,
+        lateral_displacement: lateral,
+        incoming_temperature: 273.15,
+        incoming_wear_depth: 1e-6,
+        ..Inputs::default()
+    };
+    let mut run = Simulation::new(&parameters, &inputs(-4e-3, 40e3)).unwrap();
+    for step in 0..80 {
+        run.step(&inputs(-4e-3 + 1e-4 * f64::from(step), 40e3), 1e-3).unwrap();
+    }
+    run.hold(&inputs(4e-3, 40e3), 10e-3, 100).unwrap();
+    // Rolling freely heats the rail by next to nothing.
+    let leaving = run.outputs().leaving_temperature;
+    assert!((273.15..275.0).contains(&leaving), "{leaving}");
+    assert_eq!(run.surface_windows().unwrap().len(), 1);
+    run.hold(&inputs(4e-3, 0.0), 10e-3, 100).unwrap();
+    let outputs = run.outputs();
+    assert!(
+        (outputs.leaving_temperature - 273.15).abs() < 0.1,
+        "{}",
+        outputs.leaving_temperature
+    );
+    assert!(
+        (outputs.leaving_wear_depth / 1e-6 - 1.0).abs() < 1e-2,
+        "{:e}",
+        outputs.leaving_wear_depth
+    );
+}
