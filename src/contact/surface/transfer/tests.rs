@@ -6,6 +6,7 @@ use crate::contact::surface::windows;
 use crate::parameters::{Control, Parameters, ProfileContents};
 use crate::settings::Settings;
 use crate::signals::Inputs;
+use crate::wheel_rail::Model;
 
 /// Fills a window as a step does.
 fn fill(problem: &SurfaceProblem, before: &SurfaceFields, place: &Place, into: &mut PatchFields, window: usize) {
@@ -156,4 +157,52 @@ fn rail_that_nothing_has_touched_is_as_it_came_in() {
         assert!((now.heat.content[at] / (60.0 * parameters.skin_depth) - 1.0).abs() < 1e-12);
         assert_eq!(now.wear.depth[at], 1e-6);
     }
+}
+
+/// A wheel that rolls and moves sideways at 50 mm/s, under its heat and wear: each time that its window moves, heat and worn volume in it stay. The strips that it leaves have been
+/// cold and unworn again since the contact was there.
+#[test]
+fn a_wheel_that_moves_sideways_keeps_heat_and_worn_volume() {
+    let parameters = parameters(Control::Load);
+    let settings = Settings::default();
+    let operators = SurfaceOperators::build(&parameters, &ProfileContents::default()).unwrap();
+    let model = Model::new(parameters.clone()).unwrap();
+    let mut workspace = model.workspace();
+    let inputs = |step: i32| Inputs {
+        lateral_displacement: 2e-3 - 5e-5 * f64::from(step),
+        lateral_speed: -0.05,
+        ..displaced(0.0)
+    };
+    let mut state = model.initial_state(&mut workspace, &inputs(0)).unwrap();
+    let sums = |place: &Place, fields: &PatchFields| {
+        let area = operators.of(place).grid.cell_area();
+        [&fields.heat.content, &fields.wear.depth].map(|values| area * values.iter().sum::<f64>())
+    };
+    let mut moves = 0;
+    for step in 1..=120 {
+        let before = fields(&state).clone();
+        model
+            .step(&mut workspace, &mut state, &inputs(step), &Inputs::ZERO, 1e-3)
+            .unwrap();
+        let places = fields(&state).places;
+        if places == before.places {
+            continue;
+        }
+        let (window, old) = before.used().next().unwrap();
+        let new = places[window].unwrap();
+        // A longer window covers more of the warm rail behind.
+        if [new.length, new.cell as usize] != [old.length, old.cell as usize] {
+            continue;
+        }
+        moves += 1;
+        let problem = problem(&operators, (&parameters, &settings), inputs(step));
+        let mut after = SurfaceFields::new(&operators);
+        fill(&problem, &before, &new, &mut after.windows[window], window);
+        let sums = [(&old, &before), (&new, &after)].map(|(place, fields)| sums(place, &fields.windows[window]));
+        for (old, new) in sums[0].into_iter().zip(sums[1]) {
+            // The implicit march leaves a millionth of a column's heat in it when it has rolled on.
+            assert!((new / old - 1.0).abs() < 1e-5, "step {step}: {old:e} {new:e}");
+        }
+    }
+    assert!(moves >= 3, "{moves}");
 }
