@@ -276,7 +276,7 @@ fn no_file_is_written_over() {
 fn what_a_file_does_not_say_has_an_option() {
     let (wheel, block) = (file("unsaid.csv"), file("block.csv"));
     said(&["profile", "S1002", "-o", wheel.to_str().unwrap()]);
-    fs::write(&block, "y,z\n0,0\n4,1\n9,0\n").unwrap();
+    fs::write(&block, "y,z\n0,0\n2,1\n4,1\n6,1\n9,0\n").unwrap();
     for (path, more, option) in [
         (&wheel, &[][..], "--body rail|wheel"),
         (&block, &["--body", "rail"], "--unit m|mm|in"),

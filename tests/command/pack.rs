@@ -208,8 +208,8 @@ fn profiles_that_are_none_of_their_body_are_refused() {
         ["wheel.prw", "text.prr", "unsaid.csv", "short.csv"].map(|name| folder.join(name));
     Profile::built_in("S1002").unwrap().write(&wheel).unwrap();
     write(&text, "a rail").unwrap();
-    write(&unsaid, "y,z\n0,0\n4,1\n9,0\n").unwrap();
-    write(&short, "y [mm],z [mm]\n10,0\n20,1\n30,2\n40,3\n").unwrap();
+    write(&unsaid, "y,z\n0,0\n2,1\n4,1\n6,1\n9,0\n").unwrap();
+    write(&short, "y [mm],z [mm]\n10,0\n20,1\n30,2\n40,3\n50,4\n").unwrap();
     for (option, path, body, words) in [
         (
             "--rail-profile",

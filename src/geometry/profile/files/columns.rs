@@ -1,7 +1,8 @@
 //! Tables of y and z: the first two numbers of each row, separated by commas, semicolons, tabs or blanks, below an optional line of headings.
-//! Comments begin with `#`, `!` or `%`. Headings may have a unit, `y [mm],z [mm]`, the same for both.
+//! Comments begin with `#`, `!` or `%`. Headings may have a unit, `y [mm],z [mm]`, the same for both. A comma may stand for the decimal point ([`Rows`]).
 
-use super::{LengthUnit, Raw, Weighted, numbers};
+use super::numbers::Rows;
+use super::{LengthUnit, Raw, Weighted};
 use crate::error::ProfileError;
 
 pub fn read(text: &str, name: &str) -> Result<Raw, ProfileError> {
@@ -11,20 +12,30 @@ pub fn read(text: &str, name: &str) -> Result<Raw, ProfileError> {
         line,
         reason,
     };
-    let (mut points, mut unit, mut headed) = (Vec::new(), None, false);
+    let (mut points, mut unit, mut headings) = (Vec::new(), None, None);
+    let mut rows = Rows::default();
     for (line, content) in (1..).zip(text.lines()) {
-        let content = content.trim_start_matches('\u{feff}').split(['#', '!', '%']).next();
-        let content = content.unwrap_or_default().trim();
+        let content = content.split(['#', '!', '%']).next().unwrap_or_default().trim();
         if content.is_empty() {
             continue;
         }
-        match numbers(content) {
+        match rows.numbers(line, content).map_err(|reason| refused(line, reason))? {
+            Some(row) if headings.is_some_and(|count| is_twice(content, row.len(), count)) => {
+                return Err(refused(
+                    line,
+                    format!(
+                        "{content:?} is {} numbers below {} headings: a comma is either the decimal point or between numbers",
+                        row.len(),
+                        row.len() / 2
+                    ),
+                ));
+            }
             Some(row) if row.len() >= 2 => points.push(Weighted {
                 place: [row[0], row[1]],
                 weight: 1.0,
             }),
-            None if points.is_empty() && !headed => {
-                headed = true;
+            None if points.is_empty() && headings.is_none() => {
+                headings = Some(content.split(',').count());
                 unit = heading_unit(content).map_err(|reason| refused(line, reason))?;
             }
             _ => return Err(refused(line, format!("{content:?} is no row of two numbers"))),
@@ -38,6 +49,12 @@ pub fn read(text: &str, name: &str) -> Result<Raw, ProfileError> {
         unit: unit.map(LengthUnit::metres),
         ..Raw::default()
     })
+}
+
+/// Whether a row of whole numbers between commas has twice as many of them as there are headings between commas: decimal commas would make that, too.
+fn is_twice(content: &str, numbers: usize, headings: usize) -> bool {
+    let whole = |part: &str| part.trim().parse::<i64>().is_ok();
+    headings > 1 && numbers == 2 * headings && content.split(',').count() == numbers && content.split(',').all(whole)
 }
 
 /// Unit of the first two headings, where they have one.

@@ -6,14 +6,18 @@
 
 mod columns;
 mod miniprof;
+mod numbers;
 mod orientation;
 mod simpack;
 mod vampire;
 mod write;
 
+pub use write::check_ending;
+
 use super::measured::{MOST_POINTS, Weighted};
 use super::{Body, Profile};
 use crate::error::ProfileError;
+use std::borrow::Cow;
 use std::path::Path;
 
 /// Length of a file at most, bytes: 200 for each of the points that a profile may have.
@@ -99,8 +103,12 @@ impl Format {
         let ending = path
             .extension()
             .map(|ending| ending.to_string_lossy().to_ascii_lowercase());
+        let first = text.trim_start_matches(MARK).trim_start();
         match ending.as_deref() {
-            _ if text.trim_start().starts_with("WHEELPROFILE") || text.trim_start().starts_with("RAILPROFILE") => {
+            _ if ["WHEELPROFILE", "RAILPROFILE"]
+                .iter()
+                .any(|title| first.starts_with(title)) =>
+            {
                 Format::Vampire
             }
             Some("prr" | "prw") => Format::Simpack,
@@ -155,6 +163,7 @@ impl Profile {
     /// # Errors
     /// The text is not of its format, does not say what it must, or is no profile of the body that is needed.
     pub fn parse(text: &str, name: &str, format: Format, options: &ReadOptions) -> Result<Profile, ProfileError> {
+        let text = &*plain(text);
         let raw = match format {
             Format::Simpack => simpack::read(text, name)?,
             Format::MiniProf => miniprof::read(text, name, options.part)?,
@@ -206,6 +215,21 @@ impl Profile {
     }
 }
 
+/// Mark of Unicode that may stand before a text.
+const MARK: char = '\u{feff}';
+/// Bytes of that mark in UTF-16, in either order.
+const MARKS_OF_UTF_16: [[u8; 2]; 2] = [[0xff, 0xfe], [0xfe, 0xff]];
+
+/// Text without a mark before it, its lines ended as on Unix: those of old Macs end with a carriage return alone.
+fn plain(text: &str) -> Cow<'_, str> {
+    let text = text.trim_start_matches(MARK);
+    if text.contains('\r') {
+        Cow::Owned(text.replace("\r\n", "\n").replace('\r', "\n"))
+    } else {
+        Cow::Borrowed(text)
+    }
+}
+
 /// Text of a file that holds a profile; letters that are no UTF-8 are replaced.
 ///
 /// # Errors
@@ -224,6 +248,11 @@ pub(crate) fn text_of(path: &Path) -> Result<String, ProfileError> {
         )));
     }
     let bytes = std::fs::read(path).map_err(|error| failed(error.to_string()))?;
+    if MARKS_OF_UTF_16.iter().any(|mark| bytes.starts_with(mark)) {
+        return Err(failed(
+            "it is in UTF-16: allowed is UTF-8, in which an editor can save it".to_owned(),
+        ));
+    }
     // Titles of stations are in all kinds of alphabets; numbers are not.
     Ok(String::from_utf8_lossy(&bytes).into_owned())
 }
@@ -250,7 +279,7 @@ fn name_of(path: &Path) -> String {
 /// The file cannot be read, is no such table, or its headings have no unit.
 pub fn read_depths(path: &Path) -> Result<Vec<[f64; 2]>, ProfileError> {
     let name = name_of(path);
-    let table = columns::read(&text_of(path)?, &name)?;
+    let table = columns::read(&plain(&text_of(path)?), &name)?;
     let unit = table.unit.ok_or_else(|| ProfileError::Content {
         name,
         format: "columns",
@@ -262,21 +291,6 @@ pub fn read_depths(path: &Path) -> Result<Vec<[f64; 2]>, ProfileError> {
         .iter()
         .map(|row| row.place.map(|value| unit * value))
         .collect())
-}
-
-/// Numbers of a line, separated by blanks, tabs, commas or semicolons; `None` where a part is no number. With semicolons or tabs a comma
-/// may stand for the decimal point.
-fn numbers(line: &str) -> Option<Vec<f64>> {
-    let parse = |part: &str| part.parse::<f64>().ok();
-    let decimal_comma = line.contains(',') && line.contains([';', '\t']);
-    let text = if decimal_comma {
-        line.replace(',', ".")
-    } else {
-        line.to_owned()
-    };
-    let parts = text.split(|letter: char| letter.is_whitespace() || letter == ';' || letter == ',');
-    let found: Option<Vec<f64>> = parts.filter(|part| !part.is_empty()).map(parse).collect();
-    found.filter(|numbers| !numbers.is_empty())
 }
 
 #[cfg(test)]

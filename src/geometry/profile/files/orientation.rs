@@ -35,8 +35,34 @@ const LEDGE: (f64, f64) = (25e-3, 0.3);
 /// Deviation up to which a rail is the same from both sides, `m`.
 const SYMMETRIC: f64 = 0.05e-3;
 
+/// Points that the shape of a body takes at least: a flange's tip with one on each side of it, and a tread of two.
+const SHAPE_POINTS: usize = 5;
+
 /// Points in the profile's frame, and what was found out for that, as the end of a sentence.
+///
+/// # Errors
+/// There are too few points, one is not finite, or they have not the shape of the body.
 pub fn framed(
+    name: &str,
+    body: Body,
+    raw: Raw,
+    options: &ReadOptions,
+) -> Result<(Vec<Weighted>, String), ProfileError> {
+    let count = raw.points.len();
+    // Fewer may do where all is known of them, as of a rail's top and its two sides; where they do not, their number is the reason.
+    turned_to_frame(name, body, raw, options).map_err(|error| match error {
+        _ if count < SHAPE_POINTS => ProfileError::NoCurve {
+            name: name.to_owned(),
+            reason: format!(
+                "too few points, {count}: at least {SHAPE_POINTS} show a {}",
+                body.name()
+            ),
+        },
+        error => error,
+    })
+}
+
+fn turned_to_frame(
     name: &str,
     body: Body,
     raw: Raw,

@@ -4,7 +4,8 @@
 //! The options are applied to the points in this order: least distance along y, shift, rotation, bounds of y, limits of z, mirrors,
 //! inversion of the order, unit. y points to the field side and z downward.
 
-use super::{Lateral, Raw, Weighted, numbers};
+use super::numbers::Rows;
+use super::{Lateral, Raw, Weighted};
 use crate::error::ProfileError;
 use crate::geometry::profile::Body;
 
@@ -32,7 +33,7 @@ pub fn read(text: &str, name: &str) -> Result<Raw, ProfileError> {
         reason,
     };
     let (mut block, mut options, mut body) = (Vec::new(), Options::default(), None);
-    let mut points = Vec::new();
+    let (mut points, mut rows) = (Vec::new(), Rows::default());
     for (line, content) in (1..).zip(text.lines()) {
         let content = content.split(['!', '%']).next().unwrap_or_default().trim();
         if content.is_empty() {
@@ -45,8 +46,10 @@ pub fn read(text: &str, name: &str) -> Result<Raw, ProfileError> {
                 return Err(refused(line, format!("{content:?} ends a block that was not begun")));
             }
         } else if block.last() == Some(&"point") {
-            let row = numbers(content).filter(|row| row.len() >= 2);
-            let row = row.ok_or_else(|| refused(line, format!("{content:?} is no point y z")))?;
+            let row = rows.numbers(line, content).map_err(|reason| refused(line, reason))?;
+            let row = row
+                .filter(|row| row.len() >= 2)
+                .ok_or_else(|| refused(line, format!("{content:?} is no point y z")))?;
             let weight = row.get(2).copied().filter(|&weight| weight > 0.0).unwrap_or(1.0);
             points.push(Weighted {
                 place: [row[0], row[1]],
@@ -78,6 +81,16 @@ pub fn read(text: &str, name: &str) -> Result<Raw, ProfileError> {
                 format!("{content:?} is neither an option nor in the block of points"),
             ));
         }
+    }
+    if let Some(open) = block.last() {
+        let inside = match *open {
+            "point" => "the block of points".to_owned(),
+            other => format!("the block {other}"),
+        };
+        return Err(refused(
+            0,
+            format!("it ends within {inside}, before {open}.end: the file is cut off"),
+        ));
     }
     if points.is_empty() {
         return Err(refused(

@@ -289,6 +289,165 @@ fn tables_of_all_kinds_are_read() {
     assert!(error.contains("unit has to say it"), "{error}");
 }
 
+/// Blanks between decimal commas, in all that takes rows of numbers.
+#[test]
+fn decimal_commas_between_blanks_are_read() {
+    let profile = built_in("S1002");
+    // Whole numbers among them stay as they are.
+    let comma = |text: &str| text.replace(".000000000 ", " ").replace('.', ",");
+    for (format, first) in [
+        (Format::Simpack, "point.begin\n"),
+        (Format::Vampire, "FLANGEBACK 1360.0\n"),
+    ] {
+        let text = profile.text(format);
+        let (head, rows) = text.split_once(first).unwrap();
+        let (rows, end) = rows.split_once("  point.end").unwrap_or((rows, ""));
+        let end = if end.is_empty() {
+            ""
+        } else {
+            "  point.end\nspline.end\n"
+        };
+        let text = format!("{head}{first}{}{end}", comma(rows));
+        assert_same(&wheel(&text, format).unwrap(), &profile);
+    }
+    let rows = rows(&profile, [1.0, 1.0], false);
+    for separator in [" ", "\t", "  ", ";"] {
+        let text = comma(&rows).replace(' ', separator);
+        assert_same(&wheel(&text, Format::Columns).unwrap(), &profile);
+    }
+    let name = format!("wheelrail-depths-{}.csv", std::process::id());
+    let path = std::env::temp_dir().join(name);
+    std::fs::write(&path, "\u{feff}arc_length [mm] depth [mm]\r75,0 0,0\r85 2,5\r").unwrap();
+    let depths = read_depths(&path);
+    std::fs::remove_file(&path).unwrap();
+    assert_eq!(depths.unwrap(), [[75e-3, 0.0], [85e-3, 2.5e-3]]);
+}
+
+/// Rows of which either may be meant, and files that have both, are refused with the line.
+#[test]
+fn commas_that_may_be_either_are_refused() {
+    for (text, said) in [
+        (
+            "1.5 2.5\n3,5 4,5\n",
+            "line 2: \"3,5 4,5\" has decimal commas, and line 1 has decimal points",
+        ),
+        (
+            "1,5 2,5\n3\t4\n3.5 4.5\n",
+            "line 3: \"3.5 4.5\" has decimal points, or commas between its numbers, and line 1 has",
+        ),
+        ("1,5 2,5\n3,4\n", "line 2"),
+        (
+            "1,5, 2,5\n",
+            "line 1: \"1,5, 2,5\" is no row of numbers: its commas may be decimal ones or between numbers",
+        ),
+        ("1,5;2.5\n", "line 1: \"1,5;2.5\" is no row of numbers"),
+        (
+            "y [mm],z [mm]\n1,5,2,5\n",
+            "line 2: \"1,5,2,5\" is 4 numbers below 2 headings: a comma is either the decimal point or between numbers",
+        ),
+    ] {
+        let error = wheel(text, Format::Columns).unwrap_err().to_string();
+        assert!(error.contains(said), "{error}");
+    }
+    let simpack = "spline.begin\npoint.begin\n1,5 2,5\n3.5 4.5\npoint.end\nspline.end\n";
+    let error = wheel(simpack, Format::Simpack).unwrap_err().to_string();
+    assert!(error.contains("SIMPACK, line 4"), "{error}");
+    for (row, numbers) in [
+        ("1, 2, 3", [1.0, 2.0, 3.0]),
+        ("1.5,2 ,3,", [1.5, 2.0, 3.0]),
+        ("-1,5 2 3,25", [-1.5, 2.0, 3.25]),
+    ] {
+        assert_eq!(
+            numbers::Rows::default().numbers(1, row),
+            Ok(Some(numbers.to_vec())),
+            "{row}"
+        );
+    }
+}
+
+/// A mark before the text, and line ends of other systems, do not change what is read.
+#[test]
+fn marks_and_line_ends_of_other_systems_are_read() {
+    let profile = built_in("S1002");
+    for format in [Format::Simpack, Format::MiniProf, Format::Columns, Format::Vampire] {
+        for end in ["\r\n", "\r"] {
+            let text = format!("\u{feff}{}", profile.text(format).replace('\n', end));
+            assert_same(&wheel(&text, format).unwrap(), &profile);
+        }
+    }
+    let text = format!("\u{feff}{}", profile.text(Format::Vampire));
+    assert_eq!(Format::of(Path::new("a.txt"), &text), Format::Vampire);
+    let path = std::env::temp_dir().join(format!("wheelrail-utf16-{}.prw", std::process::id()));
+    for mark in MARKS_OF_UTF_16 {
+        std::fs::write(&path, [&mark[..], b"!\0\n\0"].concat()).unwrap();
+        let error = Profile::read(&path, &ReadOptions::default()).unwrap_err().to_string();
+        assert!(error.contains("it is in UTF-16: allowed is UTF-8"), "{error}");
+    }
+    std::fs::remove_file(&path).unwrap();
+}
+
+/// A file whose end is missing is no shorter profile.
+#[test]
+fn files_that_are_cut_off_are_refused() {
+    let profile = built_in("S1002");
+    let text = profile.text(Format::Simpack);
+    let before = |end: &str| text.split_once(end).unwrap().0.to_owned();
+    for (cut, said) in [
+        (
+            before("  point.end"),
+            "it ends within the block of points, before point.end: the file is cut off",
+        ),
+        (
+            text.lines().take(99).map(|line| format!("{line}\n")).collect(),
+            "before point.end: the file is cut off",
+        ),
+        (
+            before("spline.end"),
+            "it ends within the block spline, before spline.end",
+        ),
+        (
+            before("header.end"),
+            "it ends within the block header, before header.end",
+        ),
+    ] {
+        let error = wheel(&cut, Format::Simpack).unwrap_err().to_string();
+        assert!(error.contains(said), "{error}");
+    }
+
+    let text = profile.text(Format::MiniProf);
+    let count = profile.points().len();
+    let cut: String = text.lines().take(count).map(|line| format!("{line}\n")).collect();
+    let error = wheel(&cut, Format::MiniProf).unwrap_err().to_string();
+    let said = format!(
+        "XYPoints={count}, and it has {} rows of points: the file is cut off",
+        count - 4
+    );
+    assert!(error.contains(&said), "{error}");
+    // Rows that are dropped count, and a row that somebody has added does no harm.
+    let (head, rows) = text.split_once("\n\n").unwrap();
+    let (first, rest) = rows.split_once('\n').unwrap();
+    for rows in [format!("{first}\n\" {rest}"), format!("{rows}70.5 -1.0\n")] {
+        wheel(&format!("{head}\n\n{rows}"), Format::MiniProf).unwrap();
+    }
+    let blank = cut.replace(&format!("XYPoints={count}"), "XYPoints=");
+    wheel(&blank, Format::MiniProf).unwrap();
+    let error = wheel(&blank.replace("XYPoints=", "XYPoints=all"), Format::MiniProf)
+        .unwrap_err()
+        .to_string();
+    assert!(
+        error.contains("line 2: XYPoints=all: a number of rows is needed"),
+        "{error}"
+    );
+
+    let sections = |said: usize| format!("[FileInfo]\n[Profile7Info]\nXYPoints={said}\n[Profile7Points]\n{rows}");
+    wheel(&sections(count), Format::MiniProf).unwrap();
+    let error = wheel(&sections(count + 1), Format::MiniProf).unwrap_err().to_string();
+    assert!(
+        error.contains(&format!("it has {count} rows of points: the file is cut off")),
+        "{error}"
+    );
+}
+
 #[test]
 fn files_that_are_none_are_refused() {
     let (s1002, e60) = (
@@ -302,6 +461,14 @@ fn files_that_are_none_are_refused() {
         (wheel("", Format::Simpack), "no points"),
         (wheel("", Format::Vampire), "WHEELPROFILE"),
         (wheel("1 2\n3 x\n", Format::Columns), "line 2"),
+        (
+            wheel("y [mm],z [mm]\n1,2\n", Format::Columns),
+            "too few points, 1: at least 5 show a wheel",
+        ),
+        (
+            rail("1 2\n3 4\n5 6\n", Format::Columns),
+            "too few points, 3: at least 5 show a rail",
+        ),
         (wheel("y [mm],z [m]\n1,2\n", Format::Columns), "different units"),
         (wheel("y [furlong],z\n1,2\n", Format::Columns), "furlong"),
         (wheel(&e60, Format::Columns), "this is no wheel"),

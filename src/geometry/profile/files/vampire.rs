@@ -2,7 +2,8 @@
 //! or the gauge, then rows y z of the left and y z of the right one, from the track's middle outwards, in `mm`. z points upward on
 //! rails, and downward on wheels.
 
-use super::{Lateral, Raw, Weighted, numbers};
+use super::numbers::Rows;
+use super::{Lateral, Raw, Weighted};
 use crate::error::ProfileError;
 use crate::geometry::profile::Body;
 
@@ -68,10 +69,12 @@ pub fn read(text: &str, name: &str, part: Option<usize>) -> Result<Raw, ProfileE
         Some(1) => false,
         Some(other) => return Err(refused(0, format!("part = {other}: allowed is 1 (left) or 2 (right)"))),
     };
-    let mut points = Vec::new();
+    let (mut points, mut rows) = (Vec::new(), Rows::default());
     for (line, content) in lines.filter(|(_, content)| !content.is_empty()) {
-        let row = numbers(content).filter(|row| row.len() >= 4);
-        let row = row.ok_or_else(|| refused(line, format!("{content:?} is no row y z y z")))?;
+        let row = rows.numbers(line, content).map_err(|reason| refused(line, reason))?;
+        let row = row
+            .filter(|row| row.len() >= 4)
+            .ok_or_else(|| refused(line, format!("{content:?} is no row y z y z")))?;
         let [y, z] = if right { [row[2], row[3]] } else { [-row[0], row[1]] };
         points.push(Weighted {
             place: [y - datum, z],

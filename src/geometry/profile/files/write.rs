@@ -11,6 +11,22 @@ const RUNNING_CIRCLE: f64 = 750.0;
 /// Half the gauge that VAMPIRE's file of a rail has, `mm`, and the depth at which it is.
 const GAUGE: [f64; 2] = [717.5, 14.0];
 
+/// Refuses a path for the profile of a body that ends as files of the other body do, and could not be read again.
+///
+/// # Errors
+/// [`ProfileError::OtherEnding`].
+pub fn check_ending(path: &Path, body: Body) -> Result<(), ProfileError> {
+    let name = name_of(path);
+    match body_of(&name).filter(|other| *other != body) {
+        Some(other) => Err(ProfileError::OtherEnding {
+            name,
+            other: other.name(),
+            body: body.name(),
+        }),
+        None => Ok(()),
+    }
+}
+
 impl Profile {
     /// Writes the profile's points to a file, by the end of its name as SIMPACK's (`.prr`, `.prw`), MiniProf's (`.ban`, `.whl`, `.mpt`),
     /// VAMPIRE's (`.rai`, `.whe`) or, with any other one, as a table of y and z in `mm`, y to the field side and z upward.
@@ -18,14 +34,7 @@ impl Profile {
     /// # Errors
     /// The end of the name is that of the other body's files, which could not be read again; the file cannot be written.
     pub fn write(&self, path: &Path) -> Result<(), ProfileError> {
-        let name = name_of(path);
-        if let Some(other) = body_of(&name).filter(|body| *body != self.body()) {
-            return Err(ProfileError::OtherEnding {
-                name,
-                other: other.name(),
-                body: self.body().name(),
-            });
-        }
+        check_ending(path, self.body())?;
         let ending = path
             .extension()
             .map(|ending| ending.to_string_lossy().to_ascii_lowercase());
@@ -33,7 +42,8 @@ impl Profile {
             Some("prr" | "prw") => self.text(Format::Simpack),
             Some("ban" | "whl") => self.text(Format::MiniProf),
             Some("mpt") => format!(
-                "[FileInfo]\nProgramName=wheelrail\n\n[Profile1Points]\n{}",
+                "[FileInfo]\nProgramName=wheelrail\n\n[Profile1Info]\nXYPoints={}\n\n[Profile1Points]\n{}",
+                self.points().len(),
                 self.rows(" ", 0.0, 1.0)
             ),
             Some("rai" | "whe") => self.text(Format::Vampire),
