@@ -345,6 +345,29 @@ fn files_for_worn_profiles_that_cannot_be_written_are_refused_at_once() {
     assert!(!Path::new(fresh).exists());
 }
 
+/// A file for a worn profile that would be refused, or hold the new one, is refused before the first step.
+#[test]
+fn files_for_worn_profiles_that_would_not_be_are_refused_at_once() {
+    let place = Place::new("no_wear", "time,normal_load\n0,60e3\n1e5,60e3\n");
+    let path = |name: &str| place.output.with_file_name(name).to_str().unwrap().to_owned();
+    let both = ["--set", "wheel_profile_wear=on", "--set", "rail_profile_wear=on"];
+    let [wheel, rail] = [
+        ("--worn-wheel", path("a.prr"), "wheel", "rail"),
+        ("--worn-rail", path("a.whl"), "rail", "wheel"),
+    ]
+    .map(|(option, path, body, other)| {
+        let ending = format!("holds a {other}, and the profile is that of a {body}");
+        place.refused(&[&PROFILES[..], &both, &[option, &path]].concat(), &[option, &ending]);
+        (option, body)
+    });
+    for ((option, body), wear) in [(wheel, &both[2..]), (rail, &both[..2])] {
+        let said = format!("the {body} does not wear; with {body}_profile_wear = 2 (on) it does");
+        let worn = path("a.csv");
+        place.refused(&[&PROFILES[..], wear, &[option, &worn]].concat(), &[option, &said]);
+        assert!(!Path::new(&worn).exists());
+    }
+}
+
 /// The inputs that line and patch may have.
 fn inputs() -> impl Iterator<Item = &'static InputSignal> {
     INPUTS.iter().filter(|signal| !signal.is_of_profiles_alone())
@@ -822,6 +845,7 @@ fn steps_that_cannot_be_are_refused() {
     for step in ["0", "-1e-3", "NaN", "inf"] {
         place.refused(&[&format!("--step={step}")], &["--step", "positive, finite"]);
     }
+    place.refused(&["--step", "-1"], &["--step -1", "positive, finite"]);
     place.refused(
         &["--step=1e-12"],
         &["--step 1e-12", "0.002 s", "2e9 steps, more than 1e9"],

@@ -7,10 +7,13 @@ use crate::{fields, names, preset, scenario, wear};
 use clap::Args;
 use std::path::PathBuf;
 use std::sync::Arc;
-use wheelrail::parameters::ProfileSource;
+use wheelrail::parameters::{ProfileSource, ProfileWear};
+use wheelrail::profile_files::check_ending;
 use wheelrail::signals::{InputSignal, OutputSignal};
 use wheelrail::simulation::{self, Point, Schedule};
-use wheelrail::{ContactModel, Error as ModelError, INPUTS, Model, OUTPUTS, Outputs, Parameters, Simulation};
+use wheelrail::{
+    Body, ContactModel, Error as ModelError, INPUTS, Model, OUTPUTS, Outputs, Parameters, ProfileError, Simulation,
+};
 
 /// Depth that a step may wear off a profile without a word, `m`.
 const LARGEST_PROFILE_CHANGE: f64 = 1e-6;
@@ -41,7 +44,7 @@ pub struct Simulate {
     #[arg(long, value_name = "RAIL.prr")]
     worn_rail: Option<PathBuf>,
     /// Communication step, `s`.
-    #[arg(long, value_name = "SECONDS", default_value_t = 1e-3)]
+    #[arg(long, value_name = "SECONDS", default_value_t = 1e-3, allow_hyphen_values = true)]
     step: f64,
     /// Named parameters: one of `wheelrail presets`, or a file of that kind. Repeatable; a later one wins over an earlier one,
     /// and --set over all.
@@ -106,6 +109,24 @@ pub enum Error {
         /// The option that names the file.
         option: &'static str,
     },
+    /// A file of a worn profile whose name is that of the other body's files.
+    #[error("{option}: {source}")]
+    WornEnding {
+        /// The option that names the file.
+        option: &'static str,
+        /// Reason.
+        source: ProfileError,
+    },
+    /// A file of a worn profile that does not wear.
+    #[error("{option}: the {body} does not wear; with {parameter} = 2 (on) it does")]
+    NoWear {
+        /// The option that names the file.
+        option: &'static str,
+        /// "rail" or "wheel".
+        body: &'static str,
+        /// Parameter that makes the body wear.
+        parameter: &'static str,
+    },
     /// The model cannot start.
     #[error("at the start of the scenario: {0}")]
     Start(ModelError),
@@ -139,6 +160,7 @@ impl Simulate {
         if let Some((option, _)) = of_wear.filter(|_| parameters.contact_model != ContactModel::Profiles) {
             return Err(Error::NotProfiles { option });
         }
+        self.check_worn(&parameters)?;
         let model = Arc::new(Model::new(parameters).map_err(Error::Parameter)?);
         let start = schedule.start();
         let mut simulation = Simulation::of(model, &start.inputs).map_err(Error::Start)?;
@@ -248,6 +270,27 @@ impl Simulate {
             files.writes(option, path.as_deref());
         }
         Ok(files.check()?)
+    }
+
+    /// Refuses files of worn profiles whose names are those of the other body's files, and those of a body that does not wear.
+    fn check_worn(&self, parameters: &Parameters) -> Result<(), Error> {
+        let wheel = (Body::Wheel, "wheel_profile_wear", parameters.wheel_profile_wear);
+        let rail = (Body::Rail, "rail_profile_wear", parameters.rail_profile_wear);
+        for (option, path, (body, parameter, wear)) in [
+            ("--worn-wheel", &self.worn_wheel, wheel),
+            ("--worn-rail", &self.worn_rail, rail),
+        ] {
+            let Some(path) = path else { continue };
+            check_ending(path, body).map_err(|source| Error::WornEnding { option, source })?;
+            if wear == ProfileWear::Off {
+                return Err(Error::NoWear {
+                    option,
+                    body: body.name(),
+                    parameter,
+                });
+            }
+        }
+        Ok(())
     }
 
     /// Refuses a step that is short beyond any sense: the run would not end.
