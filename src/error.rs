@@ -105,13 +105,16 @@ pub enum Error {
     /// The wheel touches the rail with its flange's tip or beyond it, or the rail's end, or nothing of it.
     #[error(
         "the wheel has left the rail: with lateral_displacement = {lateral} m and roll_angle = {roll} rad, relative to the rail, it would touch it \
-         at its flange's tip or not at all; the state before is kept"
+         at its flange's tip or not at all{}; the state before is kept",
+        after("; ", because)
     )]
     WheelOffRail {
         /// Lateral displacement of the wheelset relative to the rail, `m`.
         lateral: f64,
         /// Roll of the wheelset relative to the rail, rad.
         roll: f64,
+        /// Roughness of a profile that may be the cause, in words; empty where both are smooth.
+        because: &'static str,
     },
     /// The surface of a body has folded onto itself where it is worn.
     #[error(
@@ -268,9 +271,16 @@ pub enum Error {
     },
     /// The contact reaches the end of the window that was sized for `largest_load`, under a larger load.
     #[error(
-        "the contact reaches the end of the contact window (half-width {half_width} m): the penetration takes a load of {load} N, more than largest_load = {largest_load} N"
+        "{name} = {value} {unit} is too much: the contact reaches the end of the contact window (half-width {half_width} m), and the penetration takes a load \
+         of {load} N; allowed is as deep as largest_load = {largest_load} N takes it"
     )]
     ContactLeavesWindow {
+        /// Variable that gives the penetration.
+        name: &'static str,
+        /// The refused value.
+        value: f64,
+        /// Unit of the value.
+        unit: &'static str,
         /// Half-width of the window, `m`.
         half_width: f64,
         /// The load, `N`.

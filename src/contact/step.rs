@@ -15,7 +15,9 @@ use crate::error::{Error, Result};
 use crate::friction::memory::Memory;
 use crate::mechanics::normal_tangential::TractionChange;
 use crate::numerics::anderson::Anderson;
+use crate::parameters::{ContactModel, Control, Parameters};
 use crate::settings::Settings;
+use crate::signals::Inputs;
 
 /// Factor on the room for contacts after one has outgrown its window.
 const MORE_ROOM: f64 = 1.6;
@@ -343,6 +345,16 @@ fn initial_state_in_room<E: Engine>(
     })
 }
 
+/// Variable that says how deep the wheel is, with its value and unit: the load where the load does.
+fn depth(parameters: &Parameters, inputs: &Inputs) -> (&'static str, f64, &'static str) {
+    match (parameters.control, parameters.contact_model) {
+        (Control::Load, _) => ("normal_load", inputs.normal_load, "N"),
+        (Control::Penetration, _) => ("prescribed_penetration", parameters.prescribed_penetration, "m"),
+        (Control::Height, ContactModel::Profiles) => ("vertical_displacement", inputs.vertical_displacement, "m"),
+        (Control::Height, _) => ("contact_penetration", inputs.contact_penetration, "m"),
+    }
+}
+
 /// Whether the contact is held within its window. Under a load that the window was made for it may be: a wheel that spins on the
 /// spot digs a groove that no window holds, and the groove is as wide as the window then. A load beyond that, by a penetration
 /// that is given, is an error.
@@ -350,7 +362,11 @@ fn fills_window<E: Engine>(problem: &Problem<E>, now: &E::Fields, solvers: &E::S
     let cut_off = E::is_cut_off(problem, now, solvers);
     let load = problem.load(now);
     if cut_off && load > problem.parameters.largest_load * (1.0 + 1e-9) {
+        let (name, value, unit) = depth(problem.parameters, &problem.conditions.inputs);
         return Err(Error::ContactLeavesWindow {
+            name,
+            value,
+            unit,
             half_width: 0.5 * problem.operators.window_length(),
             load,
             largest_load: problem.parameters.largest_load,

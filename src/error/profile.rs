@@ -154,7 +154,7 @@ pub enum ProfileError {
     },
     /// A wheel that stands beside its rail, or on the edge of its profile.
     #[error(
-        "at the lateral displacement {} mm and the yaw {} mrad a wheel touches beside its rail, or with the edge of a profile",
+        "at the lateral displacement {} mm and the yaw {} mrad a wheel touches beside its rail, or with the edge of a profile{because}",
         1e3 * lateral,
         1e3 * yaw
     )]
@@ -163,6 +163,8 @@ pub enum ProfileError {
         lateral: f64,
         /// Yaw of the wheelset, rad.
         yaw: f64,
+        /// Roughness of a profile that may be the cause, as the end of the sentence; empty where all are smooth.
+        because: &'static str,
     },
 }
 

@@ -160,6 +160,32 @@ fn reverse_is_forward_seen_from_the_other_end() {
     );
 }
 
+/// A height at which the bodies lie too deep in each other is refused by its name and value.
+#[test]
+fn a_height_that_is_too_deep_is_refused() {
+    let parameters = Parameters {
+        control: Control::Height,
+        ..bodies(Side::Right)
+    };
+    let model = Model::new(parameters).unwrap();
+    let deep = Inputs {
+        vertical_displacement: -20e-3,
+        vehicle_speed: 20.0,
+        wheel_speed: 20.0 / 0.46,
+        ..Inputs::default()
+    };
+    let error = model
+        .initial_state(&mut model.workspace(), &deep)
+        .unwrap_err()
+        .to_string();
+    for part in [
+        "vertical_displacement = -0.02 m is too much",
+        "as deep as largest_load = ",
+    ] {
+        assert!(error.contains(part), "{error}");
+    }
+}
+
 /// The wheelset's height under a load carries the load where it is given.
 #[test]
 fn a_given_height_carries_the_load_that_belongs_to_it() {

@@ -13,6 +13,7 @@ use crate::contact::fields::Fields;
 use crate::contact::patch::fields::PatchFields;
 use crate::contact::problem::Coupling;
 use crate::error::{Error, Result};
+use crate::geometry::profile::Profile;
 use crate::geometry::unrolled::{PlacedWheel, WheelsetPosition};
 use crate::mechanics::patch::normal::is_free;
 
@@ -166,6 +167,11 @@ fn check_on_rail(problem: &SurfaceProblem, solvers: &SurfaceSolvers, position: &
     Err(Error::WheelOffRail {
         lateral: inputs.lateral_displacement - inputs.rail_lateral_displacement,
         roll: inputs.roll_angle - inputs.rail_roll_angle,
+        because: if operators.profiles.iter().any(Profile::is_rough) {
+            "a profile's direction turns to and fro, as noise does, which profile_smoothing takes off"
+        } else {
+            ""
+        },
     })
 }
 

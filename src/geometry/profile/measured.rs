@@ -16,6 +16,8 @@ pub const MOST_POINTS: usize = 1_000_000;
 const NEAREST: f64 = 5e-6;
 /// Lengths that a profile can have, `m`.
 const LENGTHS: [f64; 2] = [5e-3, 0.5];
+/// Wavelength of the smoothing at most, `m`, as of the parameter `profile_smoothing`.
+const LONGEST_WAVE: f64 = 0.1;
 /// Turn, rad, above which the way goes back.
 const BACK: f64 = 150.0 / 180.0 * std::f64::consts::PI;
 /// Turn, rad, above which a single point is a kink.
@@ -94,12 +96,12 @@ pub fn curve(name: &str, points: &[Weighted], smoothing: f64) -> Result<Curve, P
     if points.len() > MOST_POINTS {
         return Err(refused(format!("{} points, more than {MOST_POINTS}", points.len())));
     }
-    if !(0.0..=LENGTHS[1]).contains(&smoothing) {
+    if !(0.0..=LONGEST_WAVE).contains(&smoothing) {
         return Err(ProfileError::OutOfRange {
             name: "smoothing",
             value: smoothing,
             minimum: 0.0,
-            maximum: LENGTHS[1],
+            maximum: LONGEST_WAVE,
             unit: "m",
         });
     }

@@ -77,6 +77,11 @@ pub struct Profile {
 /// Largest inclination of a rail, rad.
 const STEEPEST_INCLINATION: f64 = 0.2;
 
+/// Turn between neighbouring points, rad, that counts for the roughness of a profile: cells are much shorter than the least radius of a wheel or a rail.
+const SHARP_TURN: f64 = 10.0 / 180.0 * std::f64::consts::PI;
+/// Sum of such turns, rad, above which a profile is rough: many times those at the kinks of a rim and a head's lower edges.
+const MOST_TURNING: f64 = 4.0 * std::f64::consts::PI;
+
 impl Profile {
     /// Profile of a curve in its frame, except for the origin: a rail's is moved to its highest point, a wheel's to the height of its running circle.
     fn of_curve(body: Body, name: &str, source: &str, curve: Curve) -> Result<Profile, ProfileError> {
@@ -188,10 +193,38 @@ impl Profile {
     /// # Errors
     /// The profile is nowhere flat.
     pub fn height_function(&self) -> Result<HeightFunction, ProfileError> {
-        HeightFunction::of_curve(&self.curve, self.middle).ok_or_else(|| ProfileError::NoCurve {
+        HeightFunction::of_curve(&self.curve, self.middle).ok_or_else(|| self.nowhere_flat())
+    }
+
+    /// Error of a profile that is nowhere flat.
+    fn nowhere_flat(&self) -> ProfileError {
+        let turning = self.turning().to_degrees();
+        let noise = if self.is_rough() {
+            format!(
+                ": its direction turns to and fro by {turning:.0} degrees in all, as noise does; profile_smoothing, on the command line \
+                 --smoothing, of a larger wavelength takes that off"
+            )
+        } else {
+            String::new()
+        };
+        ProfileError::NoCurve {
             name: self.name.clone(),
-            reason: "it is nowhere a function of the lateral position".to_owned(),
-        })
+            reason: format!("it is nowhere a function of the lateral position{noise}"),
+        }
+    }
+
+    /// Sum of the sharp turns of the direction over the whole profile, to either side, rad.
+    fn turning(&self) -> f64 {
+        let curve = &self.curve;
+        let tangents = curve.arcs().iter().map(|&arc| curve.at(arc).tangent);
+        let next = tangents.clone().skip(1);
+        let turn = |([uy, uz], [vy, vz]): ([f64; 2], [f64; 2])| (uy * vz - uz * vy).atan2(uy * vy + uz * vz).abs();
+        tangents.zip(next).map(turn).filter(|&angle| angle > SHARP_TURN).sum()
+    }
+
+    /// Whether the profile turns to and fro by more than any wheel or rail does, as one that is measured and not smoothed may.
+    pub(crate) fn is_rough(&self) -> bool {
+        self.turning() > MOST_TURNING
     }
 
     /// Rail that is inclined by an angle, rad, its head towards the track's middle where that is positive, with the origin at its new

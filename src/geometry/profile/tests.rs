@@ -4,6 +4,46 @@ fn built_in(name: &str) -> Profile {
     Profile::built_in(name).unwrap()
 }
 
+/// Points with noise, of a fixed seed: where that leaves no running surface, the error says so and names what smooths it.
+#[test]
+fn noise_is_named_as_the_reason() {
+    let wheel = built_in("S1002");
+    for name in built_in::NAMES {
+        let turning = built_in(name).turning();
+        assert!(turning < 0.5 * MOST_TURNING, "{name}: {turning}");
+    }
+    let mut state = 0x9e37_79b9_7f4a_7c15u64;
+    let mut noise = |size: f64| {
+        // Marsaglia's xorshift.
+        state ^= state << 13;
+        state ^= state >> 7;
+        state ^= state << 17;
+        size * ((state >> 11) as f64 / (1u64 << 52) as f64 - 1.0)
+    };
+    let mut with_noise = |size: f64, smoothing: f64| {
+        let points = wheel.points().into_iter();
+        let points: Vec<_> = points.map(|place| place.map(|value| value + noise(size))).collect();
+        Profile::from_points(Body::Wheel, "a wheel", "a test", &points, smoothing).unwrap()
+    };
+    let rough = with_noise(0.2e-3, 0.0);
+    assert!(rough.is_rough());
+    // Smoothed, or with the noise of a good measurement, a profile is none of these.
+    for (size, smoothing) in [(0.2e-3, 10e-3), (5e-6, 0.0)] {
+        assert!(!with_noise(size, smoothing).is_rough(), "{size}, {smoothing}");
+    }
+    let error = rough.nowhere_flat().to_string();
+    for part in [
+        "it is nowhere a function",
+        "turns to and fro by",
+        "profile_smoothing",
+        "--smoothing",
+    ] {
+        assert!(error.contains(part), "{error}");
+    }
+    let smooth = wheel.nowhere_flat().to_string();
+    assert_eq!(smooth, "S1002: it is nowhere a function of the lateral position");
+}
+
 /// Height of S1002 in `mm`, downward, by the formulas of EN 13715 as they are printed.
 fn s1002(y: f64) -> f64 {
     let root = |v: f64| v.max(0.0).sqrt();

@@ -49,12 +49,8 @@ impl WornHeight {
     /// # Errors
     /// The profile is nowhere flat.
     pub fn new(profile: &Profile, cells: usize) -> Result<WornHeight, ProfileError> {
-        let nowhere_flat = || ProfileError::NoCurve {
-            name: profile.name.clone(),
-            reason: "it is nowhere a function of the lateral position".to_owned(),
-        };
         let curve = &profile.curve;
-        let flat = height::flat_cells(curve, profile.middle).ok_or_else(nowhere_flat)?;
+        let flat = height::flat_cells(curve, profile.middle).ok_or_else(|| profile.nowhere_flat())?;
         let grid = DepthGrid::new([flat.start, flat.end].map(|joint| curve.arcs()[joint]), cells);
         let parts = height::steep_parts(curve, divided(curve, flat, &grid.knots()).into_iter());
         let of_part = |Part { cells, ends }: &Part| {
@@ -91,7 +87,7 @@ impl WornHeight {
         Ok(WornHeight {
             grid,
             knots: knots.collect(),
-            new: HeightFunction::of_parts(curve, &parts).ok_or_else(nowhere_flat)?,
+            new: HeightFunction::of_parts(curve, &parts).ok_or_else(|| profile.nowhere_flat())?,
             ends,
         })
     }

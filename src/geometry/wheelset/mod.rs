@@ -59,8 +59,8 @@ impl Dimensions {
             ("gauge_depth", self.gauge_depth, 1e-3, 50e-3),
             ("flange_back_distance", self.flange_back_distance, 0.2, 3.0),
             ("flange_back_position", self.flange_back_position, 0.0, 0.2),
-            ("wheel_radius of the left wheel", self.wheel_radii[0], 0.05, 2.0),
-            ("wheel_radius of the right wheel", self.wheel_radii[1], 0.05, 2.0),
+            ("wheel_radius of the left wheel", self.wheel_radii[0], 0.05, 5.0),
+            ("wheel_radius of the right wheel", self.wheel_radii[1], 0.05, 5.0),
         ] {
             if !(minimum..=maximum).contains(&value) {
                 return Err(ProfileError::OutOfRange {
@@ -110,6 +110,8 @@ pub struct Wheelset {
     radius: f64,
     /// Whether the axle stays level.
     level: bool,
+    /// Whether the direction of a profile turns to and fro, as noise does.
+    rough: bool,
 }
 
 /// Largest yaw, rad.
@@ -138,6 +140,7 @@ impl Wheelset {
             sides: [pair(0)?, pair(1)?],
             radius: 0.5 * (dimensions.wheel_radii[0] + dimensions.wheel_radii[1]),
             level: false,
+            rough: rails.iter().chain(&wheels).any(|profile| profile.is_rough()),
         })
     }
 
@@ -166,7 +169,15 @@ impl Wheelset {
                 unit: "rad",
             });
         }
-        let beside = || ProfileError::WheelBesideRail { lateral, yaw };
+        let beside = || ProfileError::WheelBesideRail {
+            lateral,
+            yaw,
+            because: if self.rough {
+                ": a profile's direction turns to and fro, as noise does, which --smoothing takes off"
+            } else {
+                ""
+            },
+        };
         // Height of the left wheel's lowest point over its rail, less that of the right one's: rises with the roll.
         let tilt = |roll: f64| -> Option<f64> {
             let [left, right] = Self::attitudes(lateral, yaw, roll);

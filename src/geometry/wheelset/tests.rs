@@ -115,6 +115,10 @@ fn what_is_no_wheelset_is_refused() {
         gauge_depth: 45e-3,
         ..Dimensions::default()
     };
+    let large = Dimensions {
+        wheel_radii: [0.46, 5.5],
+        ..Dimensions::default()
+    };
     let good = Dimensions::default();
     let wheelset = wheelset("60E1", "S1002", &good);
     for (error, said) in [
@@ -129,6 +133,10 @@ fn what_is_no_wheelset_is_refused() {
         (
             Wheelset::new([&rail; 2], [&wheel; 2], &narrow).unwrap_err(),
             "gauge = -1",
+        ),
+        (
+            Wheelset::new([&rail; 2], [&wheel; 2], &large).unwrap_err(),
+            "wheel_radius of the right wheel = 5.5: allowed is 0.05 to 5 m",
         ),
         (
             Wheelset::new([&rail; 2], [&wheel; 2], &deep).unwrap_err(),
