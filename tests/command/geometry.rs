@@ -131,6 +131,27 @@ fn wheels_wear_and_are_measured() {
     assert!(text.contains("worn area                          0.000 mm²"), "{text}");
 }
 
+/// S1002 with a point each sixteenth of a millimetre and noise of a size, `mm`, of a fixed seed.
+fn noise(size: f64) -> String {
+    let mut state = 0x9e37_79b9_7f4a_7c15u64;
+    let mut draw = || {
+        // Marsaglia's xorshift.
+        state ^= state << 13;
+        state ^= state >> 7;
+        state ^= state << 17;
+        size * ((state >> 11) as f64 / (1u64 << 52) as f64 - 1.0)
+    };
+    let points = wheelrail::Profile::built_in("S1002").unwrap().points();
+    let between = points.windows(2).flat_map(|pair| {
+        let at = |part: u8| [0, 1].map(|k| pair[0][k] + (pair[1][k] - pair[0][k]) * 0.25 * f64::from(part));
+        (0..4).map(at).collect::<Vec<_>>()
+    });
+    let rows: String = between
+        .map(|[y, z]| format!("{},{}\n", 1e3 * y + draw(), 1e3 * z + draw()))
+        .collect();
+    format!("y [mm],z [mm]\n{rows}")
+}
+
 #[test]
 fn what_cannot_be_is_refused() {
     let bare = file("bare.csv");
@@ -142,6 +163,11 @@ fn what_cannot_be_is_refused() {
     let two = file("two.csv");
     fs::write(&two, "y [mm],z [mm]\n-36,-14\n0,0\n36,-14\n").unwrap();
     let two = two.to_str().unwrap();
+    let [smooth, noisy, noisier] = ["smooth.prw", "noisy.csv", "noisier.csv"].map(file);
+    let [smooth, noisy, noisier] = [&smooth, &noisy, &noisier].map(|path| path.to_str().unwrap());
+    said(&["profile", "S1002", "-o", smooth]);
+    fs::write(noisy, noise(0.05)).unwrap();
+    fs::write(noisier, noise(0.07)).unwrap();
     for (arguments, words) in [
         (&["geometry", "--rail", "61E1"][..], "did you mean 60E1"),
         (
@@ -153,8 +179,33 @@ fn what_cannot_be_is_refused() {
         (&["geometry", "--to", "0.05"], "beside its rail"),
         (&["geometry", "--gauge", "5"], "gauge = 5"),
         (&["geometry", "--step", "0"], "step = 0"),
+        (&["geometry", "--step", "-1"], "step = -1: allowed is"),
         (
-            &["geometry", "--from", "0.004", "--to", "-0.004"],
+            &["geometry", "--wheel-radius", "-0.46"],
+            "= -0.46: allowed is 0.05 to 5 m",
+        ),
+        (
+            &["geometry", "--wheel", smooth, "--smoothing", "-1e-3"],
+            "smoothing = -0.001: allowed is 0 to 0.1 m",
+        ),
+        (
+            &["geometry", "--rail-inclination", "40"],
+            "rail_inclination = 40: allowed is -0.2 to 0.2 as a slope",
+        ),
+        (
+            &["profile", "60E1", "--inclination", "-0.3"],
+            "rail_inclination = -0.3: allowed is -0.2 to 0.2 as a slope",
+        ),
+        (
+            &["geometry", "--wheel", noisy],
+            "as noise does; profile_smoothing, on the command line --smoothing,",
+        ),
+        (
+            &["geometry", "--wheel", noisier],
+            "as noise does, which --smoothing takes off",
+        ),
+        (
+            &["geometry", "--from", "0.004", "--to", "-4e-3"],
             "last displacement = -0.004: allowed is 0.004 to 0.2 m",
         ),
         (&["profile", rough], "--body"),

@@ -24,40 +24,40 @@ pub struct Geometry {
     #[arg(long, value_name = "NAME|FILE")]
     wheel_right: Option<String>,
     /// Wavelength of the smoothing of profiles from files, `m`: waves of this length are halved.
-    #[arg(long, value_name = "METRES", default_value_t = 0.0)]
+    #[arg(long, value_name = "METRES", default_value_t = 0.0, allow_hyphen_values = true)]
     smoothing: f64,
     /// First lateral displacement of the wheelset, `m`, to the left.
-    #[arg(long, value_name = "METRES", default_value_t = -8e-3, allow_negative_numbers = true)]
+    #[arg(long, value_name = "METRES", default_value_t = -8e-3, allow_hyphen_values = true)]
     from: f64,
     /// Last lateral displacement, `m`.
-    #[arg(long, value_name = "METRES", default_value_t = 8e-3, allow_negative_numbers = true)]
+    #[arg(long, value_name = "METRES", default_value_t = 8e-3, allow_hyphen_values = true)]
     to: f64,
     /// Step of the lateral displacement, `m`.
-    #[arg(long, value_name = "METRES", default_value_t = 1e-4)]
+    #[arg(long, value_name = "METRES", default_value_t = 1e-4, allow_hyphen_values = true)]
     step: f64,
     /// Yaw of the wheelset, rad, anticlockwise from above.
-    #[arg(long, value_name = "RADIANS", default_value_t = 0.0, allow_negative_numbers = true)]
+    #[arg(long, value_name = "RADIANS", default_value_t = 0.0, allow_hyphen_values = true)]
     yaw: f64,
     /// Distance of the rails' running faces, `m`.
-    #[arg(long, value_name = "METRES", default_value_t = Dimensions::default().gauge)]
+    #[arg(long, value_name = "METRES", default_value_t = Dimensions::default().gauge, allow_hyphen_values = true)]
     gauge: f64,
     /// Depth below the rails' tops at which the gauge is measured, `m`.
-    #[arg(long, value_name = "METRES", default_value_t = Dimensions::default().gauge_depth)]
+    #[arg(long, value_name = "METRES", default_value_t = Dimensions::default().gauge_depth, allow_hyphen_values = true)]
     gauge_depth: f64,
     /// Inclination of the rails as a slope: 0 for profiles that are inclined already.
-    #[arg(long, value_name = "SLOPE", default_value_t = 0.025, allow_negative_numbers = true)]
+    #[arg(long, value_name = "SLOPE", default_value_t = 0.025, allow_hyphen_values = true)]
     rail_inclination: f64,
     /// Distance between the backs of the flanges, `m`.
-    #[arg(long, value_name = "METRES", default_value_t = Dimensions::default().flange_back_distance)]
+    #[arg(long, value_name = "METRES", default_value_t = Dimensions::default().flange_back_distance, allow_hyphen_values = true)]
     flange_back_distance: f64,
     /// Distance of the running circles from the backs of their flanges, `m`.
-    #[arg(long, value_name = "METRES", default_value_t = Dimensions::default().flange_back_position)]
+    #[arg(long, value_name = "METRES", default_value_t = Dimensions::default().flange_back_position, allow_hyphen_values = true)]
     flange_back_position: f64,
     /// Radius of the running circles, `m`.
-    #[arg(long, value_name = "METRES", default_value_t = Dimensions::default().wheel_radii[0])]
+    #[arg(long, value_name = "METRES", default_value_t = Dimensions::default().wheel_radii[0], allow_hyphen_values = true)]
     wheel_radius: f64,
     /// Radius of the right wheel, where it is another one, `m`.
-    #[arg(long, value_name = "METRES")]
+    #[arg(long, value_name = "METRES", allow_hyphen_values = true)]
     wheel_radius_right: Option<f64>,
     /// Keep the axle level, each wheel touching by itself: the reference results of EN 15302 are without roll.
     #[arg(long)]
@@ -76,7 +76,7 @@ pub struct Geometry {
         long,
         value_name = "METRES",
         default_value_t = 0.0,
-        allow_negative_numbers = true,
+        allow_hyphen_values = true,
         requires = "outlines"
     )]
     outlines_at: f64,
@@ -184,7 +184,7 @@ impl Geometry {
         let dimensions = Dimensions {
             gauge: self.gauge,
             gauge_depth: self.gauge_depth,
-            rail_inclination: self.rail_inclination.atan(),
+            rail_inclination: profile::angle(self.rail_inclination)?,
             flange_back_distance: self.flange_back_distance,
             flange_back_position: self.flange_back_position,
             wheel_radii: [radius, self.wheel_radius_right.unwrap_or(radius)],

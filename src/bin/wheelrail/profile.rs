@@ -32,13 +32,19 @@ pub struct Options {
     #[arg(long, requires = "profile")]
     part: Option<usize>,
     /// Distance of a wheel's running circle from the back of its flange, `m`, where the file has another origin.
-    #[arg(long, value_name = "METRES", requires = "profile")]
+    #[arg(long, value_name = "METRES", requires = "profile", allow_hyphen_values = true)]
     flange_back_position: Option<f64>,
     /// Wavelength of the smoothing, `m`: waves of this length are halved.
-    #[arg(long, value_name = "METRES", default_value_t = 0.0, requires = "profile")]
+    #[arg(
+        long,
+        value_name = "METRES",
+        default_value_t = 0.0,
+        requires = "profile",
+        allow_hyphen_values = true
+    )]
     smoothing: f64,
     /// Inclination that a rail is given, as a slope.
-    #[arg(long, value_name = "SLOPE", allow_negative_numbers = true, requires = "profile")]
+    #[arg(long, value_name = "SLOPE", allow_hyphen_values = true, requires = "profile")]
     inclination: Option<f64>,
     /// Table of depths by which the profile is worn along its normal, `arc_length [mm],depth [mm]`: positive where material is gone.
     #[arg(long, value_name = "DEPTHS.csv", requires = "profile")]
@@ -119,6 +125,23 @@ fn hint(error: &ProfileError) -> String {
 
 fn unit(text: &str) -> Result<LengthUnit, String> {
     LengthUnit::named(text).ok_or_else(|| "allowed is m, mm or in".to_owned())
+}
+
+/// Steepest inclination of a rail, as a slope: that of the parameter `rail_inclination`.
+const STEEPEST: f64 = 0.2;
+
+/// Inclination of a rail, rad, of an option that gives it as a slope.
+pub fn angle(slope: f64) -> Result<f64, ProfileError> {
+    if (-STEEPEST..=STEEPEST).contains(&slope) {
+        return Ok(slope.atan());
+    }
+    Err(ProfileError::OutOfRange {
+        name: "rail_inclination",
+        value: slope,
+        minimum: -STEEPEST,
+        maximum: STEEPEST,
+        unit: "as a slope",
+    })
 }
 
 /// Profile that is built in or in a file, of a body; smoothed where it is in a file.
@@ -221,7 +244,8 @@ impl Options {
             profile.require(body)?;
         }
         if let Some(slope) = self.inclination {
-            profile = profile.inclined(slope.atan())?;
+            profile.require(Body::Rail)?;
+            profile = profile.inclined(angle(slope)?)?;
         }
         if let Some(path) = &self.worn_by {
             profile = profile.worn_by(&read_depths(path)?)?;
