@@ -1,5 +1,6 @@
 """Profiles and the contact geometry from Python: the command line's results as tables and a picture."""
 
+import re
 import sys
 from pathlib import Path
 
@@ -166,6 +167,9 @@ def test_contact_geometry_is_a_table():
             package.contact_geometry(**wrong)
     with pytest.raises(TypeError, match="no dimension height"):
         package.contact_geometry(height=1.0)
+    for lateral in (5e-3, (1e-3,), (0.0, 1e-3, 2e-3)):
+        with pytest.raises(TypeError, match=f"^lateral = {re.escape(repr(lateral))}: two numbers are needed"):
+            package.contact_geometry(lateral=lateral)
 
 
 def test_the_picture_has_profiles_and_curves():

@@ -516,7 +516,7 @@ def contact_geometry(
     ValueError
         A profile or a dimension does not serve; a wheel stands beside its rail.
     TypeError
-        A dimension that there is not, or one that is no number.
+        A dimension that there is not, or one that is no number; `lateral` is not two numbers.
     OSError
         A profile's file is not there, or cannot be read.
 
@@ -528,7 +528,10 @@ def contact_geometry(
     """
     if others := [name for name in dimensions if name not in DIMENSIONS]:
         raise TypeError(f"there is no dimension {others[0]}; there are {', '.join(DIMENSIONS)}")
-    first, last = lateral
+    try:
+        first, last = lateral
+    except (TypeError, ValueError):
+        raise TypeError(f"lateral = {lateral!r}: two numbers are needed, the first and the last displacement") from None
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         given = {"rail": rail, "wheel": wheel, "rail_right": rail_right, "wheel_right": wheel_right}
