@@ -273,8 +273,8 @@ pub fn rows() -> Result<Vec<Row>> {
     let bound = FRICTION * changed.normal_force;
     for (direction, k) in [("along the rail", 0), ("across it", 1)] {
         let [reference, computed] = [changed, ours].map(|solution| solution.forces[k] / bound);
-        let quantity = format!("force {direction}, profiles");
-        rows.push(Row::absolute(quantity, "μ F_N", reference, computed, FORCE, CHANGED));
+        let quantity = format!("force {direction} over μ F_N, profiles");
+        rows.push(Row::absolute(quantity, "1", reference, computed, FORCE, CHANGED));
     }
     Ok(rows)
 }
