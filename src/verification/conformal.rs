@@ -2,12 +2,12 @@
 //!
 //! The contact is 11 mm broad and turns by 60° from one side to the other. CONTACT's case 4 has the distance of the bodies across the rail, creepages that vary
 //! over the contact as the inclination does, and the influence of half-spaces. Along the rail it takes the curvature of the middle,
-//! cos 45°/r, for all of the contact; that of the wheel is cos δ/r, three times as large on one side as on the other. What this changes is found by a
+//! cos 45°/r, for all of the contact; that of the wheel is cos δ/r, nearly four times as large on one side as on the other. What this changes is found by a
 //! dense solution on CONTACT's own cells with either curvature, its friction along the rigid slip, as nearly all slides: first that solution is compared with CONTACT's,
 //! then ours with CONTACT's results and that change.
 //!
-//! The influence of bodies that are curved is left out here, as everywhere: with it CONTACT (case 5) has a normal force 8 % larger, and 0.07 of μ F_N more
-//! along the rail.
+//! The influence of bodies that are curved is left out here, as everywhere: with it CONTACT (case 5) has a normal force of 99.8 kN in place of 91.8 kN, and
+//! 12.7 kN along the rail in place of 10.5 kN.
 
 use super::row::Row;
 use super::set_up;
