@@ -133,9 +133,8 @@ impl Component {
         let fills = self.state.as_ref().is_some_and(|state| state.convergence.fills_window);
         if fills && !self.told_of_window {
             let time = self.time;
-            let sizes = self.parameters.window_sizes();
             self.journal.failure(Blame::Remark, || {
-                format!("t = {time} s: the contact fills its window and is held within it, as if the surfaces ended there; the window is sized by {sizes}")
+                format!("t = {time} s: {}", self.parameters.full_window_remark())
             });
         }
         self.told_of_window = fills;

@@ -80,8 +80,8 @@ impl DepthBasis {
     }
 
     /// Surface value of a column given by its modal amplitudes.
-    pub fn surface_value(&self, amplitudes: &[f64]) -> f64 {
-        amplitudes.iter().zip(&self.surface).map(|(a, s)| a * s).sum()
+    pub fn surface_value(&self, amplitudes: impl Iterator<Item = f64>) -> f64 {
+        amplitudes.zip(&self.surface).map(|(a, s)| a * s).sum()
     }
 
     /// Value at a row of a column given by its modal amplitudes.
@@ -93,7 +93,7 @@ impl DepthBasis {
     }
 
     /// Integral over the depth of a column given by its modal amplitudes.
-    pub fn content(&self, amplitudes: &[f64]) -> f64 {
-        amplitudes.iter().zip(&self.integral).map(|(a, s)| a * s).sum()
+    pub fn content(&self, amplitudes: impl Iterator<Item = f64>) -> f64 {
+        amplitudes.zip(&self.integral).map(|(a, s)| a * s).sum()
     }
 }

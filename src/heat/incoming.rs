@@ -62,12 +62,12 @@ impl Incoming {
                     .sum()
             })
             .collect();
-        let exact = skin_depth / basis.content(&amplitudes);
+        let exact = skin_depth / basis.content(amplitudes.iter().copied());
         for amplitude in &mut amplitudes {
             *amplitude *= exact;
         }
         Incoming {
-            surface: basis.surface_value(&amplitudes),
+            surface: basis.surface_value(amplitudes.iter().copied()),
             amplitudes,
             skin_depth,
         }
@@ -83,7 +83,7 @@ impl Incoming {
 
     /// Temperature rise over the skin depth that holds the heat of a column given by its modal amplitudes, `K`.
     pub fn equivalent_rise(&self, basis: &DepthBasis, amplitudes: &[f64]) -> f64 {
-        basis.content(amplitudes) / self.skin_depth
+        basis.content(amplitudes.iter().copied()) / self.skin_depth
     }
 }
 
@@ -106,7 +106,7 @@ mod tests {
             let (mesh, basis, incoming) = column(skin_depth);
             let (mut amplitudes, mut surface) = (vec![0.0; basis.len()], 0.0);
             incoming.enter(20.0, &mut amplitudes, &mut surface);
-            assert!((basis.content(&amplitudes) / (20.0 * skin_depth) - 1.0).abs() < 1e-13);
+            assert!((basis.content(amplitudes.iter().copied()) / (20.0 * skin_depth) - 1.0).abs() < 1e-13);
             assert!((incoming.equivalent_rise(&basis, &amplitudes) / 20.0 - 1.0).abs() < 1e-13);
             // P1 on a mesh that grows by a third from row to row.
             assert!((surface / 20.0 - 1.0).abs() < 0.02, "{surface}");

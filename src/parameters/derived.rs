@@ -100,14 +100,17 @@ impl Parameters {
         if self.side == Side::Right { -1.0 } else { 1.0 }
     }
 
-    /// Names of the parameters that the window of the contact is sized by.
-    pub fn window_sizes(&self) -> &'static str {
-        match self.patch_geometry {
+    /// Remark on a contact that fills its window, with the parameters that the window is sized by.
+    pub fn full_window_remark(&self) -> String {
+        let sizes = match self.patch_geometry {
             PatchGeometry::Parameters => "largest_load",
             PatchGeometry::Inputs => {
                 "largest_load, wheel_radius, rail_transverse_curvature and wheel_transverse_curvature"
             }
-        }
+        };
+        format!(
+            "the contact fills its window and is held within it, as if the surfaces ended there; the window is sized by {sizes}"
+        )
     }
 
     /// Distance of the running circle from the middle of the wheelset, `m`.

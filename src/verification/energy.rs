@@ -282,9 +282,15 @@ fn balance(run: &Simulation, before: &LineFields, speed: f64, duration: f64) -> 
             balance.bottom += capacity * (conducted - bottom_cell / 6.0 * lowest * taken_up);
         }
     }
-    let outflow = rail.heat.basis.content(after.column(rail, transport.outflow()));
+    let outflow = rail
+        .heat
+        .basis
+        .content(after.column(rail, transport.outflow()).iter().copied());
     balance.carried_out = capacity * transport.speed() * outflow;
-    let inflow = rail.heat.basis.content(after.column(rail, transport.inflow()));
+    let inflow = rail
+        .heat
+        .basis
+        .content(after.column(rail, transport.inflow()).iter().copied());
     balance.carried_in = capacity * transport.speed() * inflow;
 
     let area = parameters.heat_partition * parameters.contact_width * rail.mesh.contact_spacing();

@@ -205,10 +205,7 @@ impl Simulate {
             );
         }
         if full > 0 {
-            let sizes = simulation.model.parameters().window_sizes();
-            eprintln!(
-                "{full} steps: the contact fills its window and is held within it, as if the surfaces ended there; the window is sized by {sizes}"
-            );
+            eprintln!("{full} steps: {}", simulation.model.parameters().full_window_remark());
         }
         if let Some(source) = interrupted {
             let output = self.output.clone();

@@ -7,7 +7,7 @@ use super::operators::SurfaceOperators;
 use super::problem::SurfaceProblem;
 use super::search::Search;
 use super::solvers::SurfaceSolvers;
-use super::transfer::Untouched;
+use super::transfer::Rail;
 use super::windows::{Place, Region, Sizes, WINDOWS};
 use crate::contact::fields::Fields;
 use crate::contact::patch::fields::PatchFields;
@@ -103,19 +103,15 @@ pub fn place(
         carried.places = now.places;
         let friction =
             |place: &Place, strip: usize, rise: f64| problem.of(place).friction_at(strip).coefficient(rise).0;
-        let untouched = Untouched {
+        let rail = Rail {
+            operators,
             rise: problem.incoming_rise(),
             depth: problem.conditions.inputs.incoming_wear_depth,
             friction: &friction,
         };
+        transfer.begin(&rail, before);
         for (window, place) in now.used() {
-            transfer.fill(
-                (operators, &untouched),
-                before,
-                &place,
-                &mut carried.windows[window],
-                window,
-            );
+            transfer.fill(&rail, before, &place, &mut carried.windows[window], window);
             free_ends(operators, &place, &mut carried.windows[window]);
         }
         carried.approach[0] = now.approach[0];
@@ -445,11 +441,9 @@ fn is_warm(operators: &SurfaceOperators, fields: &SurfaceFields, window: usize, 
     let cells = own.grid.cells;
     let heat = &fields.windows[window].heat;
     (0..cells).any(|cell| {
-        let beside = heat.amplitudes(&own.strips, own.grid.strips, cell);
-        let beside: f64 = beside
-            .zip(&own.basis.surface)
-            .map(|(amplitude, surface)| amplitude * surface)
-            .sum();
+        let beside = own
+            .basis
+            .surface_value(heat.amplitudes(&own.strips, own.grid.strips, cell));
         let column = heat.surface.iter().skip(cell).step_by(cells);
         column.into_iter().any(|rise| (rise - beside).abs() > APPRECIABLE)
     })

@@ -17,13 +17,15 @@ use crate::contact::patch::operators::PatchOperators;
 use crate::numerics::dense::{self, LANES};
 use crate::transport::strips::{Side, Strips};
 
-/// Rail that nothing has touched.
-pub struct Untouched<'a> {
-    /// Temperature with which it comes in, over the ambient, `K`.
+/// Rail under the windows, and how it is where nothing has touched it.
+pub struct Rail<'a> {
+    /// Operators of the windows.
+    pub operators: &'a SurfaceOperators,
+    /// Temperature with which the rail comes in, over the ambient, `K`.
     pub rise: f64,
     /// Depth of wear with which it comes in, `m`.
     pub depth: f64,
-    /// Coefficient of friction on a strip of a window at a temperature over the ambient, `K`.
+    /// Static coefficient of friction on a strip of a window at a temperature over the ambient, `K`.
     pub friction: &'a dyn Fn(&Place, usize, f64) -> f64,
 }
 
@@ -88,18 +90,29 @@ impl Transfer {
         }
     }
 
-    /// Sets the fields of a window at a place from the fields before.
-    pub fn fill(
-        &mut self,
-        (operators, untouched): (&SurfaceOperators, &Untouched),
-        before: &SurfaceFields,
-        place: &Place,
-        into: &mut PatchFields,
-        own: usize,
-    ) {
-        self.trace((operators, untouched), before);
-        self.find(operators, before, place);
-        let window = operators.of(place);
+    /// Begins transfers from the fields before: finds what has happened on the strips of their windows.
+    pub fn begin(&mut self, rail: &Rail, before: &SurfaceFields) {
+        for (window, place) in before.used() {
+            let grid = &rail.operators.of(&place).grid;
+            let own = &before.windows[window];
+            let away = |values: &[f64], from: f64| values.iter().map(|value| (value - from).abs()).sum::<f64>();
+            let traces = (0..grid.strips).map(|strip| {
+                let cells = strip * grid.cells..(strip + 1) * grid.cells;
+                [
+                    dense::sum(&own.pressure[grid.row(strip)]),
+                    away(&own.heat.surface[cells.clone()], rail.rise),
+                    away(&own.wear.depth[cells], rail.depth),
+                ]
+            });
+            self.traces[window].clear();
+            self.traces[window].extend(traces);
+        }
+    }
+
+    /// Sets the fields of a window at a place from the fields before, with which the transfers have begun.
+    pub fn fill(&mut self, rail: &Rail, before: &SurfaceFields, place: &Place, into: &mut PatchFields, own: usize) {
+        self.find(rail.operators, before, place);
+        let window = rail.operators.of(place);
         let grid = &window.grid;
         let sources = &before.windows;
         let stride = grid.stride();
@@ -135,21 +148,14 @@ impl Transfer {
         for (target, of) in targets.into_iter().zip(on_grid) {
             self.mean(grid, stride, |share| of(&sources[share.window]), |_, _| 0.0, target);
         }
-        self.carry_heat_and_wear((operators, untouched), before, place, into, own);
-        self.carry_memory(grid, untouched, before, place, into);
+        self.carry_heat_and_wear(rail, before, place, into, own);
+        self.carry_memory(rail, before, place, into);
         into.relaxation_length = window.relaxation_length;
         into.wheel_temperature = before.wheel_temperature;
     }
 
     /// Carries the history of friction along, strip by strip without the rows' ends.
-    fn carry_memory(
-        &self,
-        grid: &Grid,
-        untouched: &Untouched,
-        before: &SurfaceFields,
-        place: &Place,
-        into: &mut PatchFields,
-    ) {
+    fn carry_memory(&self, rail: &Rail, before: &SurfaceFields, place: &Place, into: &mut PatchFields) {
         // Of `Memory::vectors`: the coefficients, now and at the beginning of the step, and the share of μ(θ) in them. The others are 0 of rested rail.
         const COEFFICIENTS: [usize; 4] = [0, 2, 4, 6];
         const SHARE: usize = 8;
@@ -159,12 +165,13 @@ impl Transfer {
         if !remembers {
             return;
         }
+        let grid = &rail.operators.of(place).grid;
         let rises = &into.heat.surface;
         for (part, values) in into.memory.vectors_mut().into_iter().enumerate() {
             let of = |share: &Share| sources[share.window].memory.vectors()[part];
             let rested = |strip: usize, cell: usize| {
                 if COEFFICIENTS.contains(&part) {
-                    (untouched.friction)(place, strip, rises[strip * grid.cells + cell])
+                    (rail.friction)(place, strip, rises[strip * grid.cells + cell])
                 } else if part == SHARE {
                     1.0
                 } else {
@@ -178,72 +185,39 @@ impl Transfer {
     /// Carries heat and wear along.
     fn carry_heat_and_wear(
         &self,
-        (operators, untouched): (&SurfaceOperators, &Untouched),
+        rail: &Rail,
         before: &SurfaceFields,
         place: &Place,
         into: &mut PatchFields,
         own: usize,
     ) {
-        let window = operators.of(place);
+        let window = rail.operators.of(place);
         let (grid, strips, modes) = (&window.grid, &window.strips, window.basis.len());
         // The rail beside the contact is that of the window with the same number, or else of the first that is used.
         let source = before.places[own]
             .map(|from| (own, from))
             .or_else(|| before.used().next());
-        let beside = source.map(|(window, _)| window);
-        if beside.is_none() {
-            enter(window, untouched, into);
+        match source {
+            Some((beside, from)) => {
+                let [heat, wear]: [fn(&PatchFields) -> &Vec<f64>; 2] =
+                    [|fields| &fields.heat.window, |fields| &fields.wear.window];
+                self.carry(strips, modes, heat, (before, beside), &mut into.heat.window);
+                self.carry(strips, 1, wear, (before, beside), &mut into.wear.window);
+                carry_outer(rail.operators, before, (beside, from), place, into);
+            }
+            None => enter(window, rail, into),
         }
         let (heat, wear) = (&mut into.heat, &mut into.wear);
-        self.carry(
-            strips,
-            modes,
-            |fields| &fields.heat.window,
-            (before, beside),
-            &mut heat.window,
-        );
-        self.carry(
-            strips,
-            1,
-            |fields| &fields.wear.window,
-            (before, beside),
-            &mut wear.window,
-        );
         for strip in 0..grid.strips {
             for cell in 0..grid.cells {
                 let at = strip * grid.cells + cell;
-                let sum = |weights: &[f64]| {
-                    let amplitudes = heat.amplitudes(strips, strip, cell);
-                    amplitudes.zip(weights).map(|(a, weight)| a * weight).sum()
-                };
-                [heat.surface[at], heat.content[at]] = [sum(&window.basis.surface), sum(&window.basis.integral)];
-                wear.depth[at] = wear.window[place_of(strips, strip, cell + 1)];
+                heat.surface[at] = window.basis.surface_value(heat.amplitudes(strips, strip, cell));
+                heat.content[at] = window.basis.content(heat.amplitudes(strips, strip, cell));
+                wear.depth[at] = wear.window[place_of(strips, 1, strip, cell + 1)];
             }
         }
         let fluxes = |share: &Share| &before.windows[share.window].heat.flux;
         self.mean(grid, grid.cells, fluxes, |_, _| 0.0, &mut heat.flux);
-        if let Some(source) = source {
-            carry_outer(operators, before, source, place, into);
-        }
-    }
-
-    /// Finds what happens on the strips of the windows before.
-    fn trace(&mut self, (operators, untouched): (&SurfaceOperators, &Untouched), before: &SurfaceFields) {
-        for (window, place) in before.used() {
-            let grid = &operators.of(&place).grid;
-            let own = &before.windows[window];
-            let away = |values: &[f64], from: f64| values.iter().map(|value| (value - from).abs()).sum::<f64>();
-            let traces = (0..grid.strips).map(|strip| {
-                let cells = strip * grid.cells..(strip + 1) * grid.cells;
-                [
-                    dense::sum(&own.pressure[grid.row(strip)]),
-                    away(&own.heat.surface[cells.clone()], untouched.rise),
-                    away(&own.wear.depth[cells], untouched.depth),
-                ]
-            });
-            self.traces[window].clear();
-            self.traces[window].extend(traces);
-        }
     }
 
     /// Finds the sources of strips, cells and columns.
@@ -367,18 +341,15 @@ impl Transfer {
     }
 
     /// Carries amplitudes of so many modes in the columns of the strips, and of the rail beside the contact, along. Rail that no window has been over has those of the rail
-    /// beside the contact in the given window; without one, those that there are.
+    /// beside the contact in the given window.
     fn carry(
         &self,
         strips: &Strips,
         modes: usize,
         of: fn(&PatchFields) -> &Vec<f64>,
-        (before, beside): (&SurfaceFields, Option<usize>),
+        (before, beside): (&SurfaceFields, usize),
         into: &mut [f64],
     ) {
-        let Some(beside) = beside else {
-            return;
-        };
         into.fill(0.0);
         let mut add = |strip: usize, share: &Share| {
             let from = of(&before.windows[share.window]);
@@ -386,12 +357,10 @@ impl Transfer {
             for column in 0..strips.columns() {
                 for part in sources.of(column) {
                     let weight = share.weight * part.weight;
-                    let to = place_of(strips, strip, column);
-                    let source = place_of(strips, share.index, part.index);
+                    let to = place_of(strips, modes, strip, column);
+                    let source = place_of(strips, modes, share.index, part.index);
                     for mode in 0..modes {
-                        let [to, source] =
-                            [to, source].map(|at| at / LANES * modes * LANES + at % LANES + mode * LANES);
-                        into[to] += weight * from[source];
+                        into[to + mode * LANES] += weight * from[source + mode * LANES];
                     }
                 }
             }
@@ -409,25 +378,25 @@ impl Transfer {
     }
 }
 
-/// Index of a strip's value in a column, of values that are kept in blocks of [`LANES`] strips.
-fn place_of(strips: &Strips, strip: usize, column: usize) -> usize {
-    (strip / LANES * strips.columns() + column) * LANES + strip % LANES
+/// Index of a strip's first mode in a column, of values that are kept in blocks of [`LANES`] strips with so many modes.
+fn place_of(strips: &Strips, modes: usize, strip: usize, column: usize) -> usize {
+    (strip / LANES * strips.columns() + column) * modes * LANES + strip % LANES
 }
 
 /// Sets rail that has come in and nothing has touched in all of a window and on either side of it.
-fn enter(window: &PatchOperators, untouched: &Untouched, into: &mut PatchFields) {
+fn enter(window: &PatchOperators, rail: &Rail, into: &mut PatchFields) {
     let (modes, strips) = (window.basis.len(), &window.strips);
     let [left, right] = &mut into.heat.outer;
     for column in left.chunks_exact_mut(modes).chain(right.chunks_exact_mut(modes)) {
-        window.incoming.enter(untouched.rise, column, &mut 0.0);
+        window.incoming.enter(rail.rise, column, &mut 0.0);
     }
     for column in into.heat.window.chunks_exact_mut(modes * LANES) {
         for (lanes, amplitude) in column.chunks_exact_mut(LANES).zip(&left[..modes]) {
             lanes.fill(*amplitude);
         }
     }
-    into.wear.window.fill(untouched.depth);
-    into.wear.outer.iter_mut().for_each(|outer| outer.fill(untouched.depth));
+    into.wear.window.fill(rail.depth);
+    into.wear.outer.iter_mut().for_each(|outer| outer.fill(rail.depth));
     into.heat.breadth = strips.breadth * strips.strips as f64;
     into.wear.breadth = into.heat.breadth;
 }

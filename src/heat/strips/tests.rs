@@ -253,7 +253,7 @@ proptest! {
                     for (found, expected, size) in [
                         (after.surface[place], single.surface[column], surface),
                         (after.flux[place], single.flux[cell], flux),
-                        (after.content[place], rail.basis.content(&single.amplitudes[column * m..][..m]), content),
+                        (after.content[place], rail.basis.content(single.amplitudes[column * m..][..m].iter().copied()), content),
                     ] {
                         prop_assert!((found - expected).abs() <= tolerance * size, "{strip} {cell}: {found:e} {expected:e}");
                     }

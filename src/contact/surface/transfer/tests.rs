@@ -12,12 +12,15 @@ use crate::wheel_rail::Model;
 fn fill(problem: &SurfaceProblem, before: &SurfaceFields, place: &Place, into: &mut PatchFields, window: usize) {
     let operators = problem.operators;
     let friction = |place: &Place, strip: usize, rise: f64| problem.of(place).friction_at(strip).coefficient(rise).0;
-    let untouched = Untouched {
+    let rail = Rail {
+        operators,
         rise: problem.incoming_rise(),
         depth: problem.conditions.inputs.incoming_wear_depth,
         friction: &friction,
     };
-    Transfer::new(operators).fill((operators, &untouched), before, place, into, window);
+    let mut transfer = Transfer::new(operators);
+    transfer.begin(&rail, before);
+    transfer.fill(&rail, before, place, into, window);
 }
 
 /// Heat and worn depth that a window brings along are those of the window before where it covers them, whatever the size of the cells.
