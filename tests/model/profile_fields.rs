@@ -98,6 +98,20 @@ fn fields_add_up_to_the_contacts() {
             );
             stands_where_the_contact_is(window, contact.position, [contact.length, contact.breadth]);
         }
+        // Of the area in contact, as much sticks as the output says.
+        let area = |counts: fn(f64) -> bool| -> f64 {
+            let counted = |w: &SurfaceWindow, n: usize| {
+                let node = &w.nodes[n];
+                f64::from(node.pressure > 0.0 && counts(node.utilisation))
+            };
+            windows.iter().map(|window| integral(window, counted)).sum()
+        };
+        let sticks = area(|utilisation| utilisation < 0.9999) / area(|_| true);
+        assert!(
+            (outputs.stick_fraction - sticks).abs() < 1e-9,
+            "{} {sticks}",
+            outputs.stick_fraction
+        );
         // All windows together.
         let vertical = |w: &SurfaceWindow, n: usize| {
             let sign = if side == Side::Left { 1.0 } else { -1.0 };

@@ -658,3 +658,31 @@ fn rail_leaves_as_it_comes_in() {
         outputs.leaving_wear_depth
     );
 }
+
+/// Nothing sticks in full slip, however the load and with it the temperature change from step to step; a part does near free rolling.
+#[test]
+fn nothing_sticks_in_full_slip() {
+    for contact_model in [ContactModel::Patch, ContactModel::Profiles] {
+        let parameters = Parameters {
+            contact_model,
+            slip_source: SlipSource::VehicleSpeed,
+            patch_nodes: 18,
+            patch_strips: 11,
+            ..Parameters::default()
+        };
+        let inputs = |load: f64, creepage: f64| Inputs {
+            normal_load: load,
+            vehicle_speed: 20.0,
+            wheel_speed: 20.0 * (1.0 + creepage) / 0.46,
+            ..Inputs::default()
+        };
+        let mut run = Simulation::new(&parameters, &inputs(60e3, 0.03)).unwrap();
+        for step in 0..12 {
+            run.step(&inputs(60e3 + 2e3 * f64::from(step), 0.03), 1e-3).unwrap();
+            assert_eq!(run.outputs().stick_fraction, 0.0, "{contact_model:?} {step}");
+        }
+        run.hold(&inputs(60e3, 1e-3), 1e-3, 30).unwrap();
+        let part = run.outputs().stick_fraction;
+        assert!((0.1..0.9).contains(&part), "{contact_model:?} {part}");
+    }
+}

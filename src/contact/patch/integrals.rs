@@ -13,6 +13,10 @@ use crate::damage::{self, PointDamage};
 use crate::friction::coulomb;
 use crate::heat::isotherm;
 
+/// Distance from the bound, relative, within which a cell slides: the bound is that at the final temperature of a step, to whose tolerance, 1e-5, it is the
+/// one that the shear was solved for.
+const SLIDES: f64 = 1e-4;
+
 /// Integrals of the given fields under the problem's conditions.
 pub fn integrals(problem: &PatchProblem, fields: &PatchFields) -> Integrals {
     let operators = problem.operators;
@@ -81,7 +85,6 @@ fn nodes<'f>(problem: &'f PatchProblem, fields: &'f PatchFields) -> impl Iterato
             let pressure = fields.pressure[place];
             let shear = [fields.shear[0][place], fields.shear[1][place]];
             let bound = fields.friction[place] * pressure;
-            // Coulomb's bound is reached to round-off.
             let utilisation = if bound > 0.0 {
                 coulomb::magnitude(shear) / bound
             } else {
@@ -98,7 +101,7 @@ fn nodes<'f>(problem: &'f PatchProblem, fields: &'f PatchFields) -> impl Iterato
                 friction: fields.friction[place],
                 heat_flux: fields.heat.flux[strip * grid.cells + cell],
                 wear_rate: wear.map_or(0.0, |law| law.rate(&problem.rubbing(fields, place))),
-                sticks: pressure > 0.0 && coulomb::sticks(utilisation * (1.0 + 1e-9), regularisation),
+                sticks: pressure > 0.0 && coulomb::sticks(utilisation * (1.0 + SLIDES), regularisation),
             }
         })
     })
