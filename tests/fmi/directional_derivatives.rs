@@ -139,7 +139,11 @@ fn directional_derivatives_are_the_differences_of_a_rolled_back_step() {
                 ]),
             );
             let creepage = match point % 3 {
-                0 => random.between(-0.0022, -0.001),
+                // The smallest slip: where rail and wheel are stretched alike, which pressure does to a patch by less.
+                0 => match contact {
+                    Line => random.between(-0.0022, -0.001),
+                    Patch | Profiles => random.between(-0.0016, -0.0004),
+                },
                 1 => random.between(-0.003, 0.003),
                 _ => random.between(0.008, 0.2) * if point % 4 < 2 { 1.0 } else { -1.0 },
             };
