@@ -150,6 +150,42 @@ fn stands_where_the_contact_is(window: &SurfaceWindow, position: f64, extents: [
     assert!(low[0] <= position && position <= high[0], "{low:?} {position} {high:?}");
 }
 
+/// Inclinations are those of the rail as it lies in the track, its roll included: the strips' that of the line through their neighbours, the contact's that
+/// of the pressure's middle.
+#[test]
+fn inclinations_are_slopes_in_the_track() {
+    for side in [Side::Left, Side::Right] {
+        let sign = if side == Side::Left { 1.0 } else { -1.0 };
+        // They meet on one arc of the rail's profile, whose chords are as steep as the arc is in their middle.
+        let inputs = Inputs {
+            rail_roll_angle: sign * 0.03,
+            roll_angle: sign * 0.03,
+            ..inputs(side)
+        };
+        let mut run = Simulation::new(&parameters(side), &inputs).unwrap();
+        run.hold(&inputs, 1e-3, 3).unwrap();
+        let (outputs, windows) = (run.outputs(), run.surface_windows().unwrap());
+        let mut carrying = 0;
+        for (contact, window) in outputs.contact.iter().zip(&windows) {
+            if contact.normal_force == 0.0 {
+                continue;
+            }
+            carrying += 1;
+            for around in window.strips.windows(3) {
+                let [one, other] = [around[0].in_track, around[2].in_track];
+                let slope = ((other[1] - one[1]) / (sign * (other[0] - one[0]))).atan();
+                let off = around[1].inclination - slope;
+                assert!(off.abs() < 1e-9, "{side:?}: {slope} and {}", around[1].inclination);
+            }
+            let of_pressure = |w: &SurfaceWindow, n: usize| w.nodes[n].pressure * w.strips[n / w.x.len()].inclination;
+            let mean = integral(window, of_pressure) / contact.normal_force;
+            let off = contact.inclination - mean;
+            assert!(off.abs() < 1e-9, "{side:?}: {mean} and {}", contact.inclination);
+        }
+        assert!(carrying > 0);
+    }
+}
+
 /// Both profiles stand in the track as the contact has them: the rail's strips on the rail's profile, and wheel and rail as far apart as they are pressed
 /// together where they touch.
 #[test]
