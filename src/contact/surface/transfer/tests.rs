@@ -145,6 +145,7 @@ fn rail_that_nothing_has_touched_is_as_it_came_in() {
             let memory = &now.memory.now;
             assert_eq!([memory.friction[at], memory.static_friction[at]], [rested; 2]);
             assert_eq!([memory.speed[at], memory.flow[at]], [0.0; 2]);
+            assert_eq!(now.memory.share[at], 1.0);
         }
     }
     // Where there has not been a window at all, the rail is as it enters.
