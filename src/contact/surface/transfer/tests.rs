@@ -119,11 +119,18 @@ fn rail_that_nothing_has_touched_is_as_it_came_in() {
     let settings = Settings::default();
     let operators = SurfaceOperators::build(&parameters, &ProfileContents::default()).unwrap();
     // Long enough for the rail of the beginning, which is at ambient, to be far behind.
-    let before = fields(&run(&parameters, &inputs, 3000)).clone();
+    let mut before = fields(&run(&parameters, &inputs, 3000)).clone();
     let (window, place) = before.used().next().unwrap();
     let problem = problem(&operators, (&parameters, &settings), inputs);
-    let grid = operators.of(&place).grid;
+    let own = operators.of(&place);
+    let grid = own.grid;
     let patch = problem.of(&place);
+    // The first strip is warmer, so that nothing of it can be taken for the rail beside the contact.
+    let amplitudes = &mut before.windows[window].heat.window;
+    let columns = amplitudes
+        .chunks_exact_mut(LANES)
+        .take(own.basis.len() * own.strips.columns());
+    columns.for_each(|lanes| lanes[0] *= 2.0);
     let half = grid.strips / 2;
     let target = Place {
         strip: place.strip + half as i32,
