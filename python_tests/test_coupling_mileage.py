@@ -212,6 +212,15 @@ class Workers:
         return results
 
 
+def test_gauge_that_no_wheelset_spans(component, new):
+    """Between rails that are too far apart the wheelsets fall, and no wheel carries: no equilibrium, and why."""
+    settings = mileage.small_plan().settings()
+    settings = replace(settings, parameters=(*settings.parameters, ("gauge", 3.0)))
+    wheels = [new.for_units(new.none())] * 4
+    with pytest.raises(NoEquilibriumError, match="wheels are lifted, overloaded or off the rail"):
+        in_equilibrium(local_file(*component), settings, wheels, main_line()[0], None)
+
+
 def test_class_without_an_equilibrium(monkeypatch, tmp_path, component):
     """A worker returns the error, the run raises it, and the command line says it in one line."""
 

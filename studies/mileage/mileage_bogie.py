@@ -216,10 +216,10 @@ class WornBogie(Equilibrium):
         return best, iteration
 
     def attempt(self):
-        """Newton's method as settle(), where an overloaded or derailed wheel counts as not found."""
+        """settle(), where an overloaded or derailed wheel, or none that touches, counts as not found."""
         try:
             return self.settle()
-        except wheelrail.SimulationError:
+        except (wheelrail.SimulationError, np.linalg.LinAlgError):
             return np.inf, MOST_ITERATIONS
 
     def of_wheels(self):
@@ -245,9 +245,10 @@ class NoEquilibriumError(RuntimeError):
 
 def no_equilibrium(curve, offset, left):
     """Return the error that says where, and what force is left [N]; with a text alone, so that it can be pickled."""
+    why = f"{left:.0f} N are left over" if np.isfinite(left) else "wheels are lifted, overloaded or off the rail"
     return NoEquilibriumError(
         f"{curve.name}, {3.6 * curve.speed:.0f} km/h, cant {1e3 * curve.cant:.0f} mm, rails off by"
-        f" {1e3 * offset[0]:.1f} and {1e3 * offset[1]:.1f} mm: no equilibrium found, {left:.0f} N are left over"
+        f" {1e3 * offset[0]:.1f} and {1e3 * offset[1]:.1f} mm: no equilibrium found, {why}"
     )
 
 
