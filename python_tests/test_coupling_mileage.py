@@ -20,7 +20,7 @@ from curve_equilibrium import PULL, PULL_UNIT
 from curve_vehicle import VEHICLE, WHEELS
 from dask_runs import local_file, read_component
 from helpers import FMU3, REPOSITORY, wheelrail
-from mileage_bogie import NoEquilibriumError, in_equilibrium, no_equilibrium
+from mileage_bogie import NoEquilibriumError, in_equilibrium, no_equilibrium, rates
 from mileage_line import (
     STRAIGHT,
     BadInputError,
@@ -33,8 +33,8 @@ from mileage_line import (
     straight_line,
     vehicle_of,
 )
-from mileage_march import MIRROR, march, read_state, state_file, times_file
-from mileage_tables import by_class, classes_of, fatigue_table, run_table
+from mileage_march import MIRROR, Progress, march, read_state, state_file, times_file
+from mileage_tables import by_class, classes_of, fatigue_table, measured, run_table
 from mileage_wheels import NewWheel, smoothed
 
 # The small run in a process of its own, which goes on after each file when it is told to: on workers, or on none.
@@ -210,6 +210,57 @@ class Workers:
     def gather(self, results):
         """Return them."""
         return results
+
+
+def own_geometry(**parameters):
+    """The small plan with parameters beside its own."""
+    return mileage.small_plan(parameters=mileage.PARAMETERS | parameters)
+
+
+def test_conicity_on_the_own_rail(new, tmp_path):
+    """Measures have the conicity on the run's rail, in its dimensions; where a wheel is off its rail there is none."""
+
+    def conicity(plan):
+        return measured(plan, new, Progress(0, 0.0, np.stack([new.none()] * len(WHEELS)), {}))[0]["conicity"]
+
+    def expected(rail="60E1", wheel="S1002", **dimensions):
+        found = wheelrail.contact_geometry(rail, wheel, lateral=(-5e-3, 5e-3), **dimensions)
+        return found.attrs["conicity"]
+
+    dimensions = {"gauge": 1.433, "gauge_depth": 0.013, "rail_inclination": 0.05}
+    dimensions |= {"flange_back_distance": 1.361, "flange_back_position": 0.0705}
+    path = tmp_path / "räil.prr"
+    wheelrail.Profile("54E1").write(path)
+    new.profile.write(tmp_path / "wheel.prw")
+    assert conicity(mileage.small_plan()) == expected()
+    assert conicity(own_geometry(rail_profile="54e1", **dimensions)) == expected("54E1", **dimensions)
+    assert conicity(own_geometry(rail_profile=str(path))) == expected(path) != expected()
+    assert own_geometry(rail_profile=path.as_uri()).rail.points.equals(wheelrail.Profile(path).points)
+    # The units have the new wheel as a file, and smooth it.
+    smooth = expected(wheel=tmp_path / "wheel.prw", smoothing=0.01)
+    assert conicity(own_geometry(profile_smoothing=0.01)) == smooth != expected()
+    assert np.isnan(conicity(own_geometry(gauge=3.0)))
+
+
+def test_workers_without_the_file_of_the_rail(component, new, tmp_path):
+    """They have what is in it: the same wear as where it is, and that of the built-in rail that it is."""
+    path = tmp_path / "rail.prr"
+    wheelrail.Profile("54E1").write(path)
+    wheels = [new.for_units(new.none())] * 4
+    straight = main_line()[0]
+
+    def areas(settings):
+        settings = pickle.loads(pickle.dumps(replace(settings, samples_straight=1)))
+        return rates(*component, settings, wheels, straight, None)["area"]
+
+    settings = own_geometry(rail_profile=str(path)).settings()
+    there = areas(replace(settings, rail=None))
+    path.unlink()
+    named = areas(own_geometry(rail_profile="54E1").settings())
+    for found in (areas(settings), named):
+        for area, expected in zip(found, there, strict=True):
+            assert area.sum() == pytest.approx(expected.sum(), rel=1e-3)
+            assert area.sum() > 0.0
 
 
 def test_gauge_that_no_wheelset_spans(component, new):
@@ -413,6 +464,7 @@ def test_vehicle_of_the_user():
         (["--set", "friction=0.3"], "there is no variable friction"),
         (["--set", "patch_nodes=4"], "patch_nodes = 4: allowed is 8 to 201"),
         (["--set", "rail_profile=5"], "rail_profile = 5.0: a text is needed"),
+        (["--set", "rail_profile=none.prr"], "there is no file none.prr in the working directory"),
         (["--set", "wheel_profile=S1002"], "--set wheel_profile: --wheel gives it"),
         (["--set", "friction_law"], "--set friction_law: NAME=VALUE is needed"),
     ],

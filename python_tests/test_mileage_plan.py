@@ -8,10 +8,11 @@ import mileage
 import numpy as np
 import pytest
 from dask_runs import read_component
-from helpers import FMU3
+from helpers import FMU3, wheelrail
 from mileage_line import BadInputError, Curve
 from mileage_march import march, read_state, state_file
 from mileage_plan import OtherPlanError, differences, plan_file, read_plan
+from mileage_wheels import NewWheel
 
 # The plan of the command line with these options.
 OPTIONS = ["--small", "--distance", "2", "--samples", "1", "--samples-straight", "1", "--name", "mine"]
@@ -85,6 +86,33 @@ def test_results_of_another_plan_are_kept(component, work, monkeypatch):
     # As versions left it that did not keep the plan.
     plan_file(folder).unlink()
     assert "has results of another plan: it does not say which; another --name" in refused(monkeypatch, OPTIONS)
+
+
+def test_another_file_of_the_rail(component, tmp_path):
+    """Of a rail from a file name and points count, and not its folder; a plan keeps those that it has read."""
+    new, digest, path = NewWheel.of(PLAN.wheel), component[1], tmp_path / "rail.prr"
+
+    def planned(rail):
+        return replace(PLAN, parameters=PLAN.parameters | {"rail_profile": str(rail)})
+
+    def parameters(plan):
+        return plan.described(digest, new)["parameters"]
+
+    wheelrail.Profile("54E1").write(path)
+    (tmp_path / "other").mkdir()
+    (tmp_path / "other" / "rail.prr").write_bytes(path.read_bytes())
+    plan = planned(path)
+    assert parameters(plan)["rail_profile"].startswith("rail.prr (")
+    assert planned(tmp_path / "other" / "rail.prr").stamp(digest, new) == plan.stamp(digest, new)
+    folder = tmp_path / "run"
+    assert march(None, plan, folder, component) == 1
+    wheelrail.Profile("60E1").write(path)
+    with pytest.raises(OtherPlanError, match=r"parameters: rail_profile = rail\.prr \(.*there, rail\.prr \(.*here$"):
+        march(None, planned(path), folder, component)
+    assert march(None, plan, folder, component) == 1
+    # Of one that is built in the name is enough.
+    assert parameters(planned("54E1"))["rail_profile"] == "54E1"
+    assert "rail_profile" not in parameters(PLAN)
 
 
 def test_fresh_study_keeps_other_runs(work, monkeypatch):

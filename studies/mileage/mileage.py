@@ -45,7 +45,8 @@ WORK = RESULTS / "mileage"
 # Each behind what it imports: a scheduler and its workers import what they are sent.
 MODULES = ("curve_track", "curve_vehicle", "curve_equilibrium", "mileage_line", "mileage_units", "mileage_bogie")
 DISTANCE = 100_000e3  # m
-# The grid of a contact's window, the coarsest that has a name; a table says how far finer ones are from it.
+# The grid of a contact's window, about as coarse as "fast", the coarsest that has a name, which is 8 x 8; a table says
+# how far finer ones are from it.
 GRID = {"patch_nodes": 10, "patch_strips": 7}
 FINER = ((16, 11), (24, 15))
 # Friction is constant, so that what lubrication changes is seen alone.
@@ -298,9 +299,10 @@ def main():
         if unknown := [name for name in limits if name not in MEASURES]:
             raise BadInputError(f"--limit {unknown[0]}: there are {', '.join(MEASURES)}")
         if plan is not None:
-            # What is wrong with either is said before anything is computed.
+            # What is wrong with wheel, parameters or rail is said before anything is computed.
             NewWheel.of(plan.wheel)
             check_units(plan)
+            plan.settings()
         component = read_component(FMU3)
         if plan is not None and not chosen.fresh:
             refuse_another(WORK / name, plan, component[1])

@@ -50,12 +50,16 @@ ASKED = ("contacts", "wear_number", "rcf_damage", "peak_temperature", "peak_pres
 
 @dataclass(frozen=True)
 class Settings:
-    """What all tasks of a run have in common: the vehicle, parameters of the units, how many states are sampled."""
+    """What all tasks of a run have in common: the vehicle, parameters of the units, how many states are sampled.
+
+    And the rail's profile as a text in SIMPACK's format, where the parameters name a file: workers need not have it.
+    """
 
     vehicle: Vehicle
     parameters: tuple  # pairs of name and value
     samples: int
     samples_straight: int
+    rail: str | None = None
 
 
 @dataclass(frozen=True)
@@ -104,6 +108,8 @@ class WornBogie(Equilibrium):
                 "gauge_face_friction_scale": curve.gauge_face_friction,
             }
         )
+        if settings.rail is not None:
+            parameters["rail_profile"] = str(profile_file(settings.rail, ".prr"))
         track = track_of(curve.radius, curve.cant)
         super().__init__(track, place, curve.speed, settings.vehicle, **parameters)
         # A wheel whose radius has become less stands as if its rail were lower.

@@ -5,10 +5,13 @@ A folder keeps the plan of its results as plan.json, so that those of another pl
 
 import json
 from dataclasses import asdict, dataclass, field
+from functools import cached_property
 from hashlib import sha256
+from urllib.parse import unquote, urlsplit
 
 from curve_vehicle import VEHICLE, Vehicle
 from dask_runs import stamp_of
+from helpers import wheelrail
 from mileage_bogie import Settings
 from mileage_line import FORCE, LENGTH, NUMBER, SPEED, BadInputError, by_size, named, wrong
 
@@ -54,7 +57,7 @@ class Plan:
     line
         Classes of the line, whose shares are 1 together.
     parameters
-        Parameters of the units by name.
+        Parameters of the units by name; a rail_profile that is a file is read once, when it is first needed.
     wheel
         New profile of all wheels: a name, a path, or a Profile.
     distance
@@ -97,20 +100,30 @@ class Plan:
                 allowed = f"{-most:.0f} to {most:.0f} N, {MOST_TRACTION:g} of the friction under the wheelset,"
                 raise wrong(name, "traction", f"{curve.traction:g} N", allowed)
 
+    @cached_property
+    def rail(self):
+        """The profile of a rail_profile that is a file; None of one that is built in, or not given."""
+        text = self.parameters.get("rail_profile")
+        # What is no text the units refuse.
+        if not isinstance(text, str) or text.casefold() in map(str.casefold, wheelrail.Profile.built_in()):
+            return None
+        path = unquote(urlsplit(text).path) if text.casefold().startswith("file:") else text
+        return wheelrail.Profile(path, body="rail")
+
     def settings(self):
         """What tasks need of it."""
         parameters = tuple(sorted(self.parameters.items()))
-        return Settings(self.vehicle, parameters, self.samples, self.samples_straight)
+        rail = self.rail and self.rail._text
+        return Settings(self.vehicle, parameters, self.samples, self.samples_straight, rail)
 
     def described(self, digest, new):
         """Return all that results of this run, with a component, hang on: names, and values that JSON has."""
-        # Its first line has the name of the file, and not of what is in it.
-        points = new.profile._text.partition("\n")[2]
         found = {name: getattr(self, name) for name in RANGES}
-        found["wheel"] = f"{new.profile.name} ({short(points.encode())})"
+        found["wheel"] = with_points(new.profile)
         found["line"] = {name: asdict(curve) for name, curve in named(sorted(self.line, key=by_size)).items()}
         found["vehicle"] = asdict(self.vehicle)
-        found["parameters"] = dict(sorted(self.parameters.items()))
+        rail = {"rail_profile": with_points(self.rail)} if self.rail else {}
+        found["parameters"] = dict(sorted((self.parameters | rail).items()))
         found["component"] = digest[:12]
         return plain(found)
 
@@ -121,9 +134,11 @@ class Plan:
         return stamp_of(json.dumps(found))
 
 
-def short(content):
-    """Return the beginning of a digest, which tells apart what a person looks at."""
-    return sha256(content).hexdigest()[:12]
+def with_points(profile):
+    """Return a profile's name and the beginning of a digest of its points, which tells apart files of one name."""
+    # The first line has the name of the file, and not of what is in it.
+    points = profile._text.partition("\n")[2]
+    return f"{profile.name} ({sha256(points.encode()).hexdigest()[:12]})"
 
 
 def plain(value):

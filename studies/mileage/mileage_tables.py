@@ -8,12 +8,16 @@ from curve_vehicle import AXLES, WHEELS
 from dask_runs import is_done, stamp_of, write_table
 from helpers import markdown_table, wheelrail
 from mileage_march import classes_file, read_state, state_file, times_file
+from mileage_units import profile_file
 from mileage_wheels import MEASURES, NewWheel
 
 NAMES = [f"{axle} {side}" for axle, side in WHEELS]
 # So many states of a run are measured.
 MEASURED = 21
-RAIL = "60E1"
+# Parameters of the units that enter the conicity, as contact_geometry() calls them.
+GEOMETRY = {"rail_profile": "rail", "profile_smoothing": "smoothing"}
+GEOMETRY |= {name: name for name in ("gauge", "gauge_depth", "rail_inclination")}
+GEOMETRY |= {name: name for name in ("flange_back_distance", "flange_back_position")}
 # Displacements of the wheelset that the conicity at 3 mm asks for: short of the flanges, which wear steep.
 TREAD = (-5e-3, 5e-3)  # m
 
@@ -34,8 +38,9 @@ def measures(plan, folder, most=MEASURED):
     """Measures of the wheels over the mileage, a column each, which are kept beside the run."""
     steps = chosen(folder, most)
     last = state_file(folder, steps[-1])
-    # Runs of the same plan may be of several lengths.
-    stamp = stamp_of(pq.read_schema(last).metadata[b"stamp"], read_state(last).distance, steps)
+    # Runs of the same plan may be of several lengths, and older versions left measures with the default geometry.
+    known = pq.read_schema(last).metadata[b"stamp"], read_state(last).distance, steps
+    stamp = stamp_of(*known, *sorted(geometry_of(plan)))
     path = folder / "measures.parquet"
     if not is_done(path, stamp):
         new = NewWheel.of(plan.wheel)
@@ -49,26 +54,38 @@ def measures(plan, folder, most=MEASURED):
     return {name: np.array(table[name].to_pylist()) for name in table.column_names}
 
 
+def geometry_of(plan):
+    """Rail and dimensions that a plan gives, for contact_geometry(), which else has the units' defaults."""
+    found = {GEOMETRY[name]: value for name, value in plan.parameters.items() if name in GEOMETRY}
+    return found | ({"rail": plan.rail} if plan.rail else {})
+
+
 def measured(plan, new, progress):
     """Measures of the four wheels in a state, with the equivalent conicity of their wheelset at 3 mm."""
     worn = [new.worn(depth) for depth in progress.depth]
-    radius = plan.vehicle.wheel_radius
+    radius, given = plan.vehicle.wheel_radius, geometry_of(plan)
     rows = []
     for axle in range(len(AXLES)):
+        units = [new.for_units(progress.depth[2 * axle + side]) for side in range(2)]
         left, right = worn[2 * axle : 2 * axle + 2]
-        depths = [new.for_units(progress.depth[2 * axle + side]).depth for side in range(2)]
-        geometry = wheelrail.contact_geometry(
-            RAIL,
-            left,
-            wheel_right=right,
-            wheel_radius=radius - depths[0],
-            wheel_radius_right=radius - depths[1],
-            lateral=TREAD,
-        )
+        if given.get("smoothing"):
+            # It is of files alone; the units have files of new wheels, too.
+            left, right = (profile_file(one.profile) for one in units)
+        try:
+            conicity = wheelrail.contact_geometry(
+                wheel=left,
+                wheel_right=right,
+                wheel_radius=radius - units[0].depth,
+                wheel_radius_right=radius - units[1].depth,
+                lateral=TREAD,
+                **given,
+            ).attrs["conicity"]
+        except ValueError:
+            # A wheel is off its rail at one of the displacements.
+            conicity = None
         for side in range(2):
             number = 2 * axle + side
             found = worn[number].measures()
-            conicity = geometry.attrs["conicity"]
             row = {"wheel": NAMES[number], "mileage": progress.distance, "worn_area": new.area(progress.depth[number])}
             row |= {"conicity": np.nan if conicity is None else conicity, "largest_depth": progress.depth[number].max()}
             rows.append(row | {name: getattr(found, name) for name in MEASURES})

@@ -33,7 +33,7 @@ class TimedWheel(Wheel):
         return self.timed("derivatives", super().derivative, outputs, known)
 
 
-def profile_file(text):
-    """The file of a profile, of this worker."""
+def profile_file(text, ending=".prw"):
+    """The file of a profile, of this worker: of a wheel, or with the ending of a rail's."""
     content = text.encode()
-    return own_file(f"{hashlib.sha256(content).hexdigest()}.prw", content)
+    return own_file(f"{hashlib.sha256(content).hexdigest()}{ending}", content)
