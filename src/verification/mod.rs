@@ -42,6 +42,7 @@ pub mod patch_power;
 pub mod power_balance;
 pub mod profile_wear;
 pub mod profiles_circle;
+pub mod profiles_power;
 pub mod rigid_wheel;
 pub mod rolling_start;
 mod row;
@@ -268,6 +269,10 @@ pub const CHECKS: &[Check] = &[
     Check {
         name: "Profiles: circle on circle",
         rows: profiles_circle::rows,
+    },
+    Check {
+        name: "Profiles: power of friction",
+        rows: profiles_power::rows,
     },
     Check {
         name: "Profiles: conformal contact",

@@ -5,16 +5,18 @@ use super::operators::SurfaceOperators;
 use super::problem::SurfaceProblem;
 use super::profile_wear;
 use super::solvers::SurfaceSolvers;
+use crate::body::grid::Grid;
 use crate::contact::engine::Engine;
 use crate::contact::integrals::{Integrals, NodeSums};
 use crate::contact::on_wheelset::{OnWheelset, OneContact};
 use crate::contact::outputs::{creepage_speed, damping};
 use crate::contact::patch;
+use crate::contact::patch::fields::PatchFields;
 use crate::contact::patch::operators::PatchOperators;
 use crate::contact::rim::ContactHeat;
 use crate::damage::PointDamage;
 use crate::friction::coulomb;
-use crate::geometry::unrolled::PlacedWheel;
+use crate::geometry::unrolled::{PlacedWheel, RailPoint};
 
 /// Integrals of the given fields under the problem's conditions.
 pub fn integrals(problem: &SurfaceProblem, fields: &SurfaceFields, solvers: &SurfaceSolvers) -> Integrals {
@@ -135,6 +137,14 @@ fn on_wheelset(problem: &SurfaceProblem, fields: &SurfaceFields, solvers: &Surfa
             all.moment[0] += lateral * force[2] - vertical * force[1];
             all.moment[1] += vertical * along - vertical_moment;
             all.moment[2] += lateral_moment - lateral * along;
+            if normal > 0.0 {
+                // Friction acts on the wheel's undeformed surface, along the normal from the rail's.
+                let [along, across] = friction_times_distance(&wheel, (&point, middle), own, grid, strip);
+                let [along, across] = [unit * along, unit * across];
+                all.moment[0] += (point.normal[0] * tangent[1] - point.normal[1] * tangent[0]) * across;
+                all.moment[1] += point.normal[1] * along;
+                all.moment[2] -= point.normal[0] * along;
+            }
         }
         let (x, arc) = (moment_x / contact.normal_force, moment_s / contact.normal_force);
         let point = bodies.rail.at(arc);
@@ -197,4 +207,23 @@ fn on_wheelset(problem: &SurfaceProblem, fields: &SurfaceFields, solvers: &Surfa
         contact.creepages[2] *= operators.side;
     }
     all
+}
+
+/// Sums over the cells of a strip of friction on the wheel, along and across, times how far the wheel's surface lies from the rail's along the normal.
+fn friction_times_distance(
+    wheel: &PlacedWheel,
+    (point, middle): (&RailPoint, f64),
+    fields: &PatchFields,
+    grid: &Grid,
+    strip: usize,
+) -> [f64; 2] {
+    let at = wheel.distance(middle, point, 0.0);
+    let mut sums = [0.0; 2];
+    for (cell, node) in grid.row(strip).enumerate() {
+        let distance = at.farther_along(grid.x(cell));
+        for (sum, shear) in sums.iter_mut().zip(&fields.shear) {
+            *sum -= shear[node] * distance;
+        }
+    }
+    sums
 }
