@@ -279,6 +279,11 @@ pub trait Engine: Sized + 'static {
         0.0
     }
 
+    /// Whether there are more contacts than windows.
+    fn is_crowded(_solvers: &Self::Solvers) -> bool {
+        false
+    }
+
     /// Profiles for plotting.
     fn profiles(problem: &Problem<Self>, fields: &Self::Fields) -> Profiles;
 

@@ -43,6 +43,8 @@ pub struct Convergence {
     /// Whether the contact would reach beyond its window: it is held within it. The wheel has worn a groove as wide as the window, or curvatures that are
     /// given make the contact broader than those of the parameters.
     pub fills_window: bool,
+    /// Whether profiles have more contacts than windows, so that contacts far apart share one.
+    pub crowded: bool,
     /// Whether a part of the step was taken staggered: the mechanics for temperature and wear before it, because neither method found
     /// the solution of the coupled equations within the budget of work. The residual is 1 or more where the pressure was held besides.
     pub staggered: bool,
@@ -51,11 +53,15 @@ pub struct Convergence {
 }
 
 impl Convergence {
+    /// Remark on a crowded step.
+    pub const CROWDED: &str = "wheel and rail touch in more than four places: those next to each other share a window, and count as one contact";
+
     /// Adds that of the next sub-step.
     pub(crate) fn add(&mut self, next: &Convergence) {
         self.iterations += next.iterations;
         self.residual = next.residual;
         self.fills_window |= next.fills_window;
+        self.crowded |= next.crowded;
         self.staggered |= next.staggered;
         self.profile_change = self.profile_change.max(next.profile_change);
     }

@@ -285,6 +285,7 @@ fn finish<E: Engine>(
         iterations,
         residual,
         fills_window,
+        crowded: E::is_crowded(solvers),
         staggered: problem.conditions.coupling.is_staggered(),
         profile_change: E::profile_change(solvers),
     })
@@ -330,6 +331,7 @@ fn initial_state_in_room<E: Engine>(
                 iterations: if rests { 0 } else { iterations },
                 residual: if rests { 0.0 } else { tractions.shear_change },
                 fills_window: fills_window(problem, &now, solvers)?,
+                crowded: E::is_crowded(solvers),
                 staggered: !rests,
                 profile_change: 0.0,
             };

@@ -73,6 +73,8 @@ pub struct Component {
     pub(super) told: u32,
     /// Whether it was told of a contact that fills its window, since it last did not.
     pub(super) told_of_window: bool,
+    /// Whether it was told of more contacts than windows, since there last were not.
+    pub(super) told_of_crowd: bool,
     /// Messages that wait for the end of a call.
     pub journal: Journal,
 }
@@ -97,6 +99,7 @@ impl Component {
             texts: vec![CString::default(); TEXT_PARAMETERS.len()],
             told: 0,
             told_of_window: false,
+            told_of_crowd: false,
             journal,
         }
     }
@@ -203,6 +206,7 @@ impl Component {
         self.rates = Inputs::ZERO;
         self.told = 0;
         self.told_of_window = false;
+        self.told_of_crowd = false;
         self.time = 0.0;
         self.forget_profiles();
         self.inform(Category::Events, |_| "reset to the start values".to_owned());

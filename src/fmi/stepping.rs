@@ -5,7 +5,7 @@ use super::failures::{Blame, Failure};
 use super::logging::Category;
 use super::modes::Mode;
 use crate::signals::{INPUTS, Inputs};
-use crate::wheel_rail::State;
+use crate::wheel_rail::{Convergence, State};
 
 /// Depth that a step may wear off a profile without a remark, `m`: of the size of what the surfaces sink between two strips.
 const LARGEST_PROFILE_CHANGE: f64 = 1e-6;
@@ -56,6 +56,7 @@ impl Component {
                 self.warn_of_staggered_step();
                 self.warn_of_profile_change();
                 self.warn_of_full_window();
+                self.warn_of_crowd();
                 self.inform_about_step();
                 Ok(())
             }
@@ -138,6 +139,17 @@ impl Component {
             });
         }
         self.told_of_window = fills;
+    }
+
+    /// Tells, when it begins, that there are more contacts than windows. The status of the step is not touched.
+    fn warn_of_crowd(&mut self) {
+        let crowded = self.state.as_ref().is_some_and(|state| state.convergence.crowded);
+        if crowded && !self.told_of_crowd {
+            let time = self.time;
+            self.journal
+                .failure(Blame::Remark, || format!("t = {time} s: {}", Convergence::CROWDED));
+        }
+        self.told_of_crowd = crowded;
     }
 
     /// Goes on from where a step stopped half-way, as from any communication point.

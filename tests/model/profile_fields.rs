@@ -1,5 +1,6 @@
 //! Fields of a contact of profiles: they add up to the outputs, and stand where the outputs say.
 
+use std::f64::consts::PI;
 use std::path::Path;
 use wheelrail::parameters::{ContactModel, Parameters, ProfileWear, Side, SlipSource};
 use wheelrail::signals::Inputs;
@@ -330,30 +331,36 @@ fn other_contact_models_have_no_windows() {
     assert!(matches!(model.surface_windows(&state), Err(Error::OtherContactModel)));
 }
 
-/// A contact that is broader than the largest window is held within it, and keeps the length of its cells: a wheel hollow to a circle on a rail of a little smaller one.
-#[test]
-fn a_contact_broader_than_the_largest_window_keeps_its_cells() {
-    let arc = |body, radius: f64| {
-        let places = (-340..=340).map(|tenths| 1e-4 * f64::from(tenths));
-        let points: Vec<[f64; 2]> = places.map(|y| [y, (radius * radius - y * y).sqrt() - radius]).collect();
-        Profile::from_points(body, "arc", "arc", &points, 0.0).unwrap()
-    };
+/// A wheel that is hollow to a circle of the given radius, over a rail of an arc of 300 mm and waves of the given height; in files of the given name.
+fn arcs(name: &str, hollow: f64, waves: impl Fn(f64) -> f64) -> Parameters {
+    const CROWN: f64 = 0.3;
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR"));
-    let files = [folder.join("arc.prr"), folder.join("arc.prw")];
-    arc(Body::Rail, 0.3).write(&files[0]).unwrap();
-    arc(Body::Wheel, 0.31).write(&files[1]).unwrap();
-    let [rail_profile, wheel_profile] = files.map(|file| file.to_str().unwrap().to_owned());
+    let write = |body, ending: &str, height: &dyn Fn(f64) -> f64| {
+        let places = (-340..=340).map(|tenths| 1e-4 * f64::from(tenths));
+        let points: Vec<[f64; 2]> = places.map(|y| [y, height(y)]).collect();
+        let file = folder.join(format!("{name}.{ending}"));
+        let profile = Profile::from_points(body, name, name, &points, 0.0).unwrap();
+        profile.write(&file).unwrap();
+        file.to_str().unwrap().to_owned()
+    };
+    let arc = |radius: f64, y: f64| (radius * radius - y * y).sqrt() - radius;
     // The rail's top stands over the running circle.
     let depth: f64 = 1e-3;
-    let to_face = (0.3_f64.powi(2) - (0.3 - depth).powi(2)).sqrt();
-    let parameters = Parameters {
-        rail_profile,
-        wheel_profile,
+    let to_face = (CROWN.powi(2) - (CROWN - depth).powi(2)).sqrt();
+    Parameters {
+        rail_profile: write(Body::Rail, "prr", &|y| arc(CROWN, y) + waves(y)),
+        wheel_profile: write(Body::Wheel, "prw", &|y| arc(hollow, y)),
         rail_inclination: 0.0,
         gauge: 2.0 * (0.75 - to_face),
         gauge_depth: depth,
         ..parameters(Side::Left)
-    };
+    }
+}
+
+/// A contact that is broader than the largest window is held within it, and keeps the length of its cells: a wheel hollow to a circle on a rail of a little smaller one.
+#[test]
+fn a_contact_broader_than_the_largest_window_keeps_its_cells() {
+    let parameters = arcs("broad", 0.31, |_| 0.0);
     let run = |load: f64| {
         let inputs = Inputs {
             normal_load: load,
@@ -369,4 +376,43 @@ fn a_contact_broader_than_the_largest_window_keeps_its_cells() {
     let [narrow, broad] = [50e3, 95e3].map(run);
     assert_eq!([narrow.0, broad.0], [false, true]);
     assert_eq!(narrow.1, broad.1);
+}
+
+/// Where a wheel touches in more places than there are windows, all of them carry, and the step says so.
+#[test]
+fn more_contacts_than_windows_all_carry() {
+    // Crests 11 mm apart, of which five touch.
+    let parameters = arcs("crests", 0.3001, |y| 5e-5 * (2.0 * PI * y / 11e-3).cos());
+    let inputs = Inputs {
+        normal_load: 75e3,
+        vehicle_speed: 20.0,
+        wheel_speed: 20.0 / 0.46,
+        ..Inputs::default()
+    };
+    let mut run = Simulation::new(&parameters, &inputs).unwrap();
+    run.hold(&inputs, 1e-3, 3).unwrap();
+    assert!(run.state.convergence.crowded);
+    assert_eq!(run.outputs().contacts, 4.0);
+    // Each crest is under pressure, over places that nothing lies between.
+    let windows = run.surface_windows().unwrap();
+    let carries = |window: &SurfaceWindow, strip: usize| {
+        let cells = window.x.len();
+        let row = &window.nodes[strip * cells..(strip + 1) * cells];
+        row.iter().any(|node| node.pressure > 0.0)
+    };
+    let contacts: usize = windows
+        .iter()
+        .map(|window| {
+            let begins = |strip: &usize| carries(window, *strip) && (*strip == 0 || !carries(window, strip - 1));
+            (0..window.strips.len()).filter(begins).count()
+        })
+        .sum();
+    assert_eq!(contacts, 5);
+    // Where no more than four touch each has a window, and nothing is said.
+    let inputs = Inputs {
+        normal_load: 10e3,
+        ..inputs
+    };
+    run.hold(&inputs, 1e-3, 3).unwrap();
+    assert!(!run.state.convergence.crowded);
 }

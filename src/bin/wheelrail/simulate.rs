@@ -11,6 +11,7 @@ use wheelrail::parameters::{ProfileSource, ProfileWear};
 use wheelrail::profile_files::check_ending;
 use wheelrail::signals::{InputSignal, OutputSignal};
 use wheelrail::simulation::{self, Point, Schedule};
+use wheelrail::wheel_rail::Convergence;
 use wheelrail::{
     Body, ContactModel, Error as ModelError, INPUTS, Model, OUTPUTS, Outputs, Parameters, ProfileError, Simulation,
 };
@@ -174,7 +175,7 @@ impl Simulate {
 
         let count = steps.len();
         let mut progress = Progress::new(count as u64);
-        let (mut interrupted, mut staggered, mut full, mut worn_at_once) = (None, 0, 0, 0f64);
+        let (mut interrupted, mut staggered, mut full, mut crowded, mut worn_at_once) = (None, 0, 0, 0, 0f64);
         for step in steps {
             if let Err(source) = simulation.follow(&step) {
                 interrupted = Some(Box::new(source));
@@ -182,6 +183,7 @@ impl Simulate {
             }
             staggered += usize::from(simulation.state.convergence.staggered);
             full += usize::from(simulation.state.convergence.fills_window);
+            crowded += usize::from(simulation.state.convergence.crowded);
             worn_at_once = worn_at_once.max(simulation.state.convergence.profile_change);
             columns.write(&mut table, &step.to, simulation.outputs())?;
             progress.step();
@@ -206,6 +208,9 @@ impl Simulate {
         }
         if full > 0 {
             eprintln!("{full} steps: {}", simulation.model.parameters().full_window_remark());
+        }
+        if crowded > 0 {
+            eprintln!("{crowded} steps: {}", Convergence::CROWDED);
         }
         if let Some(source) = interrupted {
             let output = self.output.clone();

@@ -25,16 +25,12 @@ const ELLIPSE: f64 = 1.2;
 /// Least depth, over the approach, by which the bodies overlap more than the surface sinks where a contact begins: the sinking is known to a few per cent of
 /// the approach.
 const LEAST_DEPTH: f64 = 0.02;
-/// Depth that a contact which carries counts with where the shallowest are left out, `m`: more than any overlap.
-pub const CARRIES: f64 = 1.0;
 
-/// Region for a window, with the depth of the overlap.
+/// Region for a window.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Wanted {
     /// The region.
     pub region: Region,
-    /// Depth of the overlap, `m`.
-    pub depth: f64,
     /// Ends in arc length of the contact itself, half a strip of its window farther on either side, `m`; none of an overlap.
     pub reach: Option<[f64; 2]>,
     /// Extent of what its window has room for, over that of the region.
@@ -43,13 +39,19 @@ pub struct Wanted {
 
 impl Wanted {
     /// An overlap of the bodies.
-    pub fn overlap(region: Region, depth: f64) -> Wanted {
+    pub fn overlap(region: Region) -> Wanted {
         Wanted {
             region,
-            depth,
             reach: None,
             room: 1.0,
         }
+    }
+
+    /// Takes in the next one, farther to the field side.
+    pub fn join(&mut self, next: &Wanted) {
+        self.region = self.region.union(&next.region);
+        self.room = self.room.max(next.room);
+        self.reach = next.reach.or(self.reach);
     }
 
     /// Whether this contact and the next one go on in each other: no more than a strip lies between them, which may be the seam of two windows.
@@ -115,8 +117,7 @@ pub fn find(
             last = f64::NAN;
             continue;
         }
-        let depth = overlap.depth - load_ratio * apart.sinking(operators, [along, across]);
-        if depth <= least {
+        if overlap.depth - load_ratio * apart.sinking(operators, [along, across]) <= least {
             last = f64::NAN;
             continue;
         }
@@ -129,9 +130,8 @@ pub fn find(
         {
             wanted.region = wanted.region.union(&region);
             wanted.region.narrowest = wanted.region.across[1] - wanted.region.across[0];
-            wanted.depth = wanted.depth.max(depth);
         } else if found.len() < CONTACTS {
-            found.push(Wanted::overlap(region, depth));
+            found.push(Wanted::overlap(region));
         }
     }
     found.sort_unstable_by(|a, b| a.region.across[0].total_cmp(&b.region.across[0]));
@@ -160,7 +160,6 @@ fn carrying(operators: &SurfaceOperators, fields: &SurfaceFields, growth: f64, f
                     };
                     found.push(Wanted {
                         region: grown(operators, &region, growth),
-                        depth: CARRIES,
                         reach: Some([run.across[0] - 0.5 * grid.breadth, run.across[1] + 0.5 * grid.breadth]),
                         room: 1.0,
                     });
@@ -221,13 +220,13 @@ mod tests {
         let strip = 0.1e-3;
         let contact = |begin: f64, end: f64| Wanted {
             reach: Some([begin - 0.5 * strip, end + 0.5 * strip]),
-            ..Wanted::overlap(Region::default(), CARRIES)
+            ..Wanted::overlap(Region::default())
         };
         let first = contact(37.0e-3, 38.2e-3);
         for (strips, goes_on) in [(0.0, true), (1.0, true), (2.0, false)] {
             let begin = 38.2e-3 + strips * strip;
             assert_eq!(first.goes_on_in(&contact(begin, begin + strip)), goes_on, "{strips}");
         }
-        assert!(!first.goes_on_in(&Wanted::overlap(Region::default(), CARRIES)));
+        assert!(!first.goes_on_in(&Wanted::overlap(Region::default())));
     }
 }

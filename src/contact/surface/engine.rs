@@ -453,6 +453,10 @@ impl Engine for SurfaceOperators {
         solvers.worn_off.map_or(0.0, |worn| worn.change)
     }
 
+    fn is_crowded(solvers: &SurfaceSolvers) -> bool {
+        solvers.crowded
+    }
+
     fn profiles(problem: &SurfaceProblem, fields: &SurfaceFields) -> Profiles {
         plots::profiles(problem, fields)
     }

@@ -1,7 +1,7 @@
 //! Placement of the windows at the beginning of a step: about the contacts of the step before, and those that begin.
 
 use super::apart;
-use super::contacts::{self, BESIDE, CARRIES, CONTACTS, Expected, Wanted};
+use super::contacts::{self, BESIDE, CONTACTS, Expected, Wanted};
 use super::fields::SurfaceFields;
 use super::operators::SurfaceOperators;
 use super::problem::SurfaceProblem;
@@ -83,13 +83,15 @@ pub fn place(
     }
     let places = now.places;
     let wanted = merged(&operators.sizes, &solvers.wanted);
-    let mut own = assign(problem, &wanted.0[..wanted.1], now);
+    solvers.crowded = wanted.crowded;
+    let mut own = assign(problem, wanted.regions(), now);
     if approach > 0.0 && !holds_first(problem, solvers, now, &own) {
         // Of contacts far apart that were taken for one, a window may have left out the one that carries.
         want_overlaps(problem, approach, solvers);
         let overlaps = merged(&operators.sizes, &solvers.wanted);
+        solvers.crowded = overlaps.crowded;
         now.places = places;
-        own = assign(problem, &overlaps.0[..overlaps.1], now);
+        own = assign(problem, overlaps.regions(), now);
     }
     solvers.moved = before.is_some_and(|before| before.places != now.places);
     if let Some(before) = before
@@ -268,20 +270,19 @@ fn want_overlaps(problem: &SurfaceProblem, approach: f64, solvers: &mut SurfaceS
     let approach = approach * AHEAD * problem.conditions.room;
     // The overlaps come from the field side to the gauge side.
     let overlaps = search.overlaps(approach).iter().rev();
-    wanted.extend(overlaps.map(|overlap| Wanted::overlap(overlap.region, overlap.depth)));
+    wanted.extend(overlaps.map(|overlap| Wanted::overlap(overlap.region)));
     want_first(search, approach, wanted);
 }
 
-/// Sees to it that a region holds the place where the bodies touch first, and is not left out: it carries. On a rough profile they touch between points of the search,
-/// of which none need overlap.
+/// Sees to it that a region holds the place where the bodies touch first. On a rough profile they touch between points of the search, of which none need overlap.
 fn want_first(search: &Search, approach: f64, wanted: &mut Vec<Wanted>) {
     let (Some(place), Some(region)) = (search.first_place(), search.about_first(approach)) else {
         return;
     };
-    if let Some(own) = wanted.iter_mut().find(|wanted| wanted.region.holds(place)) {
-        own.depth = CARRIES;
-    } else if let Some(beside) = wanted.iter_mut().find(|wanted| wanted.region.meets(&region)) {
-        beside.depth = CARRIES;
+    if wanted.iter().any(|wanted| wanted.region.holds(place)) {
+        return;
+    }
+    if let Some(beside) = wanted.iter_mut().find(|wanted| wanted.region.meets(&region)) {
         // The contact in it may be narrower than the distance of the points, and counts as no broader for the place that is added.
         beside.region = Region {
             narrowest: beside.region.narrowest,
@@ -289,7 +290,7 @@ fn want_first(search: &Search, approach: f64, wanted: &mut Vec<Wanted>) {
         };
     } else {
         let before = wanted.partition_point(|wanted| wanted.region.across[0] < region.across[0]);
-        wanted.insert(before, Wanted::overlap(region, CARRIES));
+        wanted.insert(before, Wanted::overlap(region));
     }
 }
 
@@ -319,8 +320,23 @@ fn forget(fields: &mut SurfaceFields) {
     fields.places = [None; WINDOWS];
 }
 
-/// Regions for windows, from the gauge side to the field side, and their number: of wanted ones that are near each other.
-fn merged(sizes: &Sizes, wanted: &[Wanted]) -> ([Wanted; WINDOWS], usize) {
+/// Regions for windows.
+struct Merged {
+    regions: [Wanted; CONTACTS],
+    count: usize,
+    /// Whether there were more than windows.
+    crowded: bool,
+}
+
+impl Merged {
+    /// The regions, as many as there are windows at most, and from the gauge side to the field side.
+    fn regions(&self) -> &[Wanted] {
+        &self.regions[..self.count]
+    }
+}
+
+/// Regions for windows: each of those wanted that are near each other.
+fn merged(sizes: &Sizes, wanted: &[Wanted]) -> Merged {
     let mut regions = [Wanted::default(); CONTACTS];
     let mut count = 0;
     for new in wanted {
@@ -328,24 +344,29 @@ fn merged(sizes: &Sizes, wanted: &[Wanted]) -> ([Wanted; WINDOWS], usize) {
             && let last = &mut regions[count - 1]
             && (share_window(&last.region, &new.region, sizes) || last.goes_on_in(new))
         {
-            last.region = last.region.union(&new.region);
-            last.depth = last.depth.max(new.depth);
-            last.room = last.room.max(new.room);
-            last.reach = new.reach.or(last.reach);
+            last.join(new);
             continue;
         }
         regions[count] = *new;
         count += 1;
     }
-    // The shallowest are left out where there are more than windows.
+    // Where there are more than windows, two next to each other share one: those that are narrowest together.
+    let crowded = count > WINDOWS;
     while count > WINDOWS {
-        let shallowest = (0..count)
-            .min_by(|&a, &b| regions[a].depth.total_cmp(&regions[b].depth))
-            .unwrap_or(0);
-        regions.copy_within(shallowest + 1..count, shallowest);
+        let breadth = |next: usize| regions[next].region.across[1] - regions[next - 1].region.across[0];
+        let next = (1..count)
+            .min_by(|&a, &b| breadth(a).total_cmp(&breadth(b)))
+            .unwrap_or(1);
+        let joined = regions[next];
+        regions[next - 1].join(&joined);
+        regions.copy_within(next + 1..count, next);
         count -= 1;
     }
-    (std::array::from_fn(|i| regions[i]), count)
+    Merged {
+        regions,
+        count,
+        crowded,
+    }
 }
 
 /// Whether two regions share a window: those that touch, and those near each other that it resolves.

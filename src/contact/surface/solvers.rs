@@ -51,6 +51,8 @@ pub struct SurfaceSolvers {
     pub too_small: [Option<Region>; WINDOWS],
     /// Whether contacts of different windows have pushed each other away by turns in this step.
     pub is_unsettled: bool,
+    /// Whether there are more contacts than windows.
+    pub crowded: bool,
 }
 
 /// Solvers and buffers of one window.
@@ -102,6 +104,7 @@ impl SurfaceSolvers {
             outgrown: 0.0,
             too_small: [None; WINDOWS],
             is_unsettled: false,
+            crowded: false,
         }
     }
 }
