@@ -360,6 +360,15 @@ fn files_for_worn_profiles_that_would_not_be_are_refused_at_once() {
         place.refused(&[&PROFILES[..], &both, &[option, &path]].concat(), &[option, &ending]);
         (option, body)
     });
+    let [wheels, rails] = [".prw, .whl, .mpt, .whe, .csv", ".prr, .ban, .mpt, .rai, .csv"];
+    for ((option, body), endings) in [(wheel, wheels), (rail, rails)] {
+        for name in ["w.xyz", "w", "w.prw.bak", ".csv"] {
+            let unknown = path(name);
+            let said = format!("{option} {unknown}: the name of a file of a {body} ends in one of {endings}");
+            place.refused(&[&PROFILES[..], &both, &[option, &unknown]].concat(), &[&said]);
+            assert!(!Path::new(&unknown).exists());
+        }
+    }
     for ((option, body), wear) in [(wheel, &both[2..]), (rail, &both[..2])] {
         let said = format!("the {body} does not wear; with {body}_profile_wear = 2 (on) it does");
         let worn = path("a.csv");

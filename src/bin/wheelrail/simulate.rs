@@ -37,11 +37,11 @@ pub struct Simulate {
     #[arg(long, value_name = "DEPTHS.csv")]
     profile_wear: Option<PathBuf>,
     /// File for the wheel's profile as worn at the end, where contact_model is profiles: SIMPACK's (.prw), MiniProf's (.whl, .mpt), VAMPIRE's
-    /// (.whe)
+    /// (.whe), or a table of y and z (.csv)
     #[arg(long, value_name = "WHEEL.prw")]
     worn_wheel: Option<PathBuf>,
     /// File for the rail's profile as worn at the end, upright, where contact_model is profiles: SIMPACK's (.prr), MiniProf's (.ban, .mpt),
-    /// VAMPIRE's (.rai)
+    /// VAMPIRE's (.rai), or a table of y and z (.csv)
     #[arg(long, value_name = "RAIL.prr")]
     worn_rail: Option<PathBuf>,
     /// Communication step, `s`.
@@ -117,6 +117,18 @@ pub enum Error {
         option: &'static str,
         /// Reason.
         source: ProfileError,
+    },
+    /// A file of a worn profile whose name does not say what is to be written.
+    #[error("{option} {}: the name of a file of a {body} ends in one of {}", path.display(), endings.join(", "))]
+    UnknownEnding {
+        /// The option that names the file.
+        option: &'static str,
+        /// The file.
+        path: PathBuf,
+        /// "rail" or "wheel".
+        body: &'static str,
+        /// Endings that are written.
+        endings: &'static [&'static str],
     },
     /// A file of a worn profile that does not wear.
     #[error("{option}: the {body} does not wear; with {parameter} = 2 (on) it does")]
@@ -274,7 +286,8 @@ impl Simulate {
         Ok(files.check()?)
     }
 
-    /// Refuses files of worn profiles whose names are those of the other body's files, and those of a body that does not wear.
+    /// Refuses files of worn profiles whose names are those of the other body's files or of none that are written, and those of a body
+    /// that does not wear.
     fn check_worn(&self, parameters: &Parameters) -> Result<(), Error> {
         let wheel = (Body::Wheel, "wheel_profile_wear", parameters.wheel_profile_wear);
         let rail = (Body::Rail, "rail_profile_wear", parameters.rail_profile_wear);
@@ -284,6 +297,18 @@ impl Simulate {
         ] {
             let Some(path) = path else { continue };
             check_ending(path, body).map_err(|source| Error::WornEnding { option, source })?;
+            let endings = endings(body);
+            let ending = path
+                .extension()
+                .map(|ending| format!(".{}", ending.to_string_lossy().to_ascii_lowercase()));
+            if !ending.is_some_and(|ending| endings.contains(&ending.as_str())) {
+                return Err(Error::UnknownEnding {
+                    option,
+                    path: path.clone(),
+                    body: body.name(),
+                    endings,
+                });
+            }
             if wear == ProfileWear::Off {
                 return Err(Error::NoWear {
                     option,
@@ -330,6 +355,14 @@ impl Simulate {
         }
         parameters.validate().map_err(Error::Parameter)?;
         Ok(parameters)
+    }
+}
+
+/// Ends of the names of a worn profile's files.
+fn endings(body: Body) -> &'static [&'static str] {
+    match body {
+        Body::Wheel => &[".prw", ".whl", ".mpt", ".whe", ".csv"],
+        Body::Rail => &[".prr", ".ban", ".mpt", ".rai", ".csv"],
     }
 }
 
