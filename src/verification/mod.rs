@@ -267,7 +267,7 @@ pub const CHECKS: &[Check] = &[
         rows: equivalent_conicity::rows,
     },
     Check {
-        name: "Profiles: circle on circle",
+        name: "Profiles: cone on a crown",
         rows: profiles_circle::rows,
     },
     Check {
