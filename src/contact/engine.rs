@@ -1,6 +1,6 @@
-//! Interface between a contact model and the step: the model's operators, built once, are an [`Engine`]. The line and the patch are
-//! two; a third one is another implementation, and the step ([`super::step`]) and its derivatives ([`super::sensitivity`]) stay as
-//! they are.
+//! Interface between a contact model and the step: the model's operators, built once, are an [`Engine`]. The line, the patch and the
+//! surface of profiles are three; a further one is another implementation, and the step ([`super::step`]) and its derivatives
+//! ([`super::sensitivity`]) stay as they are.
 
 use super::fields::{EngineState, Fields};
 use super::integrals::Integrals;

@@ -1,9 +1,10 @@
 //! The contact of wheel and rail: one implicit step of tractions, temperature and wear.
 //!
-//! [`engine`] says what a contact offers, [`mod@line`] and [`patch`] offer it: a contact resolved along the rail, and along and
-//! across it. All else is written once: the [`problem`] of a step, its [`fields`], the [`interface`] vector between mechanics and
-//! heat, the [`step`], [`newton`] for the hard ones, [`sensitivity`] and its [`linear`] system, [`integrals`] of the fields and
-//! [`outputs`] from them, [`profiles`] for plotting, the [`memory`] of friction, the wheel's [`rim`].
+//! [`engine`] says what a contact offers, [`mod@line`], [`patch`] and [`surface`] offer it: a contact resolved along the rail, one
+//! along and across it, and those of profiles, with a patch for each. All else is written once: the [`problem`] of a step, its
+//! [`fields`], the [`interface`] vector between mechanics and heat, the [`step`], [`newton`] for the hard ones, [`sensitivity`] and
+//! its [`linear`] system, [`integrals`] of the fields and [`outputs`] from them, [`profiles`] for plotting, the [`memory`] of
+//! friction, the wheel's [`rim`].
 
 pub mod convergence;
 pub mod engine;
