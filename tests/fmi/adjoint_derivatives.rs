@@ -1,7 +1,9 @@
 //! FMI 3.0: derivatives of weighted sums of outputs, Jᵀ s, against the directional derivatives J e of all outputs with respect to
 //! every input.
 
-use super::importer::{Api, Client, ContactModel, Fmi2, Fmi3, OK, sideways, with_each_contact_model};
+use super::importer::{
+    Api, Client, ContactModel, Fmi2, Fmi3, Line, OK, Patch, Profiles, sideways, with_each_contact_model,
+};
 use wheelrail::signals::{INPUTS, OUTPUTS};
 use wheelrail::torture::random::Random;
 
@@ -68,12 +70,17 @@ fn driven(api: &Api, contact: ContactModel, slip_source: i32, creepage: f64) -> 
 #[test]
 fn adjoint_derivatives_are_the_transposed_directional_ones() {
     let api = &Api::load(Fmi3);
-    with_each_contact_model(api, |api, contact| {
+    for contact in [Line, Patch, Profiles] {
+        println!("{contact:?}");
         let mut random = Random::new(14, 0);
         let (unknowns, knowns) = (api.standard.outputs(), inputs(api));
         let mut entries = 0;
         // Stick, partial slip, sliding; a braked and a driven wheel, by creepage and by speeds.
         for (slip_source, creepage) in [(1, 1e-4), (1, 3e-3), (2, -0.05), (2, 1e-3)] {
+            // Profiles roll by speeds alone.
+            if contact == Profiles && slip_source == 1 {
+                continue;
+            }
             let client = driven(api, contact, slip_source, creepage);
             let columns = jacobian(&client);
             // One output at a time: the row of J itself, to the bit.
@@ -132,7 +139,7 @@ fn adjoint_derivatives_are_the_transposed_directional_ones() {
             assert!(difference.abs() <= allowed, "{difference} {allowed}");
         }
         println!("{entries} derivatives are the same bits transposed");
-    });
+    }
 }
 
 /// An output or an input that is named again counts again.
@@ -153,13 +160,16 @@ fn repeated_names_add_up() {
 #[test]
 fn directional_derivatives_of_both_standards_have_the_same_bits() {
     let [two, three] = [Fmi2, Fmi3].map(Api::load);
-    with_each_contact_model(&two, |two, contact| {
+    for contact in [Line, Patch, Profiles] {
         for (slip_source, creepage) in [(1, 3e-3), (2, -0.05)] {
+            if contact == Profiles && slip_source == 1 {
+                continue;
+            }
             let bits = |api: &Api| {
                 let columns = jacobian(&driven(api, contact, slip_source, creepage));
                 columns.into_iter().flatten().map(f64::to_bits).collect::<Vec<_>>()
             };
-            assert_eq!(bits(two), bits(&three));
+            assert_eq!(bits(&two), bits(&three));
         }
-    });
+    }
 }
