@@ -1,6 +1,7 @@
 //! Contact of profiles: mirror images, a given height, a wheel that is lifted. Forces are in `wheelrail::verification`.
 
 use crate::derivatives;
+use std::f64::consts::FRAC_PI_4;
 use wheelrail::Error;
 use wheelrail::Simulation;
 use wheelrail::parameters::{ContactModel, Control, FrictionLaw, Parameters, PatchGrid, Side, SlipSource};
@@ -688,4 +689,49 @@ fn nothing_sticks_in_full_slip() {
         let part = run.outputs().stick_fraction;
         assert!((0.1..0.9).contains(&part), "{contact_model:?} {part}");
     }
+}
+
+/// The factor on friction at the gauge face acts beyond its angle and the blend in full, on the tread not at all, and half way between by half.
+#[test]
+fn a_lubricated_gauge_face_has_its_share_of_friction() {
+    let friction = |scale: f64, angle: f64, lateral: f64| {
+        let parameters = Parameters {
+            gauge_face_friction_scale: scale,
+            gauge_face_angle: angle,
+            gauge_face_blend: 0.1,
+            friction_law: FrictionLaw::Constant,
+            thermal_expansion: 0.0,
+            wear_coefficient: 0.0,
+            ..bodies(Side::Left)
+        };
+        // Every cell slides.
+        let inputs = Inputs {
+            normal_load: 60e3,
+            vehicle_speed: 20.0,
+            wheel_speed: 1.5 * 20.0 / 0.46,
+            lateral_displacement: lateral,
+            ..Inputs::default()
+        };
+        let run = Simulation::new(&parameters, &inputs).unwrap();
+        let contact = run.outputs().contact[0];
+        let force = contact.longitudinal_force.hypot(contact.lateral_force);
+        (
+            force / contact.normal_force / parameters.friction_cold,
+            contact.inclination,
+        )
+    };
+    for (lateral, steep) in [(0.0, false), (7.5e-3, true)] {
+        let (whole, inclination) = friction(1.0, FRAC_PI_4, lateral);
+        let (share, _) = friction(0.3, FRAC_PI_4, lateral);
+        let expected = if steep { 0.3 } else { 1.0 };
+        assert!(
+            (share / whole / expected - 1.0).abs() < 1e-3,
+            "{lateral}: {share} of {whole} at {inclination}"
+        );
+    }
+    let (whole, inclination) = friction(1.0, FRAC_PI_4, 7.5e-3);
+    // Half of the blend lies below the contact's inclination.
+    let (half, _) = friction(0.3, inclination - 0.05, 7.5e-3);
+    // The blend is odd about its middle, and the contact even about its own.
+    assert!((half / whole / 0.65 - 1.0).abs() < 1e-3, "{half} of {whole}");
 }
