@@ -56,7 +56,7 @@ fn defect(model: &Model, lateral: f64, [yaw, yaw_rate, excess]: [f64; 3]) -> Res
         wheel_speed: SPEED * (1.0 + excess) / model.parameters().wheel_radius,
         lateral_displacement: lateral,
         yaw_angle: yaw,
-        yaw_rate: yaw_rate,
+        yaw_rate,
         ..Inputs::default()
     };
     let outputs = model.initial_state(&mut model.workspace(), &inputs)?.outputs;
