@@ -11,7 +11,7 @@ use std::collections::HashSet;
 pub const MODEL_NAME: &str = "WheelRailContact";
 pub const MODEL_IDENTIFIER: &str = "wheelrail";
 pub const DESCRIPTION: &str =
-    "Thermoelastic wheel-rail rolling contact with temperature-dependent friction, frictional heat and Archard wear";
+    "Thermoelastic wheel-rail rolling contact with temperature-dependent friction, frictional heat and wear";
 pub const AUTHOR: &str = "the wheelrail authors";
 pub const COPYRIGHT: &str = "Copyright (c) the wheelrail authors";
 pub const GENERATION_TOOL: &str = concat!("wheelrail ", env!("CARGO_PKG_VERSION"));
