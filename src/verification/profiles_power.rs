@@ -3,8 +3,8 @@
 //! In steady rolling friction dissipates what the resultants take out of the wheelset's motion,
 //! ∫ |τ·s| dA = −(F·v + M·ω),
 //! v that of the middle of the axle and ω the turning about the axle and by the yaw rate: friction acts on the same surface of the wheel that the slip
-//! is taken on, and does no work on the elastic bodies. This holds exactly for continuous fields, to the size of the cells for discrete ones. Vertical
-//! forces take part in it by nothing: the wheelset keeps its height.
+//! is taken on, and does no work on the elastic bodies. This holds exactly for continuous fields, to the size of the cells for discrete ones. The
+//! wheelset keeps its height and its place across the track, so that vertical and lateral forces have no power.
 
 use super::row::{Row, larger};
 use super::set_up;
@@ -17,8 +17,8 @@ use crate::wheel_rail::Model;
 const SPEED: f64 = 20.0;
 /// Vertical load, `N`.
 const LOAD: f64 = 60e3;
-/// Lateral displacement, `m`: tread, gauge corner, both, flange.
-const PLACES: [f64; 4] = [0.0, 4e-3, 5.4e-3, 6.6e-3];
+/// Lateral displacement, `m`: on the tread, beside it, there and in the gauge corner, in the gauge corner alone, on the flange.
+const PLACES: [f64; 5] = [0.0, 4e-3, 5.4e-3, 6.6e-3, 7.5e-3];
 /// Yaw, rad, yaw rate, rad/s, and excess of the circumference's speed: driving, braking, turning, all.
 const MOTIONS: [[f64; 3]; 4] = [
     [0.0, 0.0, 2.5e-3],

@@ -10,6 +10,7 @@ use super::worn_bodies::WornBodies;
 use crate::body::grid::Grid;
 use crate::contact::engine::Engine;
 use crate::contact::fields::Fields;
+use crate::contact::patch::operators::PatchOperators;
 use crate::contact::patch::undeformed::Undeformed;
 use crate::contact::problem::{Coupling, Problem, StepConditions, Task};
 use crate::contact::surface::fields::SurfaceFields;
@@ -21,6 +22,7 @@ use crate::settings::Settings;
 use crate::signals::{INPUTS, Inputs};
 use crate::torture::random::Random;
 use crate::wheel_rail::{Model, State, Workspace};
+use nalgebra::Vector3;
 use std::ops::Range;
 
 pub fn parameters(control: Control) -> Parameters {
@@ -371,6 +373,54 @@ pub fn problem<'a>(
         conditions,
     };
     Problem::new(operators, &task)
+}
+
+/// Force and moment on the wheelset are those of pressure and shear, cell by cell, at the wheel's undeformed surface.
+#[test]
+fn force_and_moment_are_those_of_the_cells() {
+    let parameters = parameters(Control::Load);
+    let settings = Settings::default();
+    let operators = SurfaceOperators::build(&parameters, &ProfileContents::default()).unwrap();
+    for lateral in [1e-3, 5.4e-3, 7e-3] {
+        let inputs = Inputs {
+            rail_roll_angle: 0.0,
+            ..displaced(lateral)
+        };
+        let state = run(&parameters, &inputs, 3);
+        let (fields, problem) = (fields(&state), problem(&operators, (&parameters, &settings), inputs));
+        let position = problem.pose().at_height(problem.height(fields));
+        let wheel = PlacedWheel::new(&operators.bodies.wheel, &position);
+        let [mut force, mut moment, mut from_rail] = [Vector3::zeros(); 3];
+        for (window, place) in fields.used() {
+            let patch = operators.of(&place);
+            let (grid, unit) = (&patch.grid, PatchOperators::unit_force(patch));
+            let own = &fields.windows[window];
+            let cells = (0..grid.strips).flat_map(|strip| grid.row(strip).enumerate().map(move |cell| (strip, cell)));
+            for (strip, (cell, node)) in cells.filter(|(_, (_, node))| own.pressure[*node] > 0.0) {
+                let point = operators.bodies.rail.at(place.arc(grid, strip));
+                let across_the_rail = |[y, z]: [f64; 2]| Vector3::new(0.0, y, z);
+                let (normal, tangent) = (across_the_rail(point.normal), across_the_rail(point.tangent()));
+                let at = wheel.distance(place.middle_along(grid) + grid.x(cell), &point, 0.0);
+                let friction = -unit * (own.shear[0][node] * Vector3::x() + own.shear[1][node] * tangent);
+                let all = friction + unit * own.pressure[node] * normal;
+                force += all;
+                moment += Vector3::from(at.arm).cross(&all);
+                from_rail += (at.distance * normal).cross(&friction);
+            }
+        }
+        // The right side is computed as the left one's mirror image.
+        let outputs = &state.outputs;
+        let mirrored = Vector3::new(outputs.force_x, -outputs.force_y, outputs.force_z);
+        assert!((mirrored - force).norm() < 1e-12 * force.norm(), "{mirrored} {force}");
+        let mirrored = Vector3::new(-outputs.moment_x, outputs.moment_y, -outputs.moment_z);
+        // The model has the distance to the second order along the rail.
+        let error = (mirrored - moment).norm();
+        assert!(
+            error < 1e-4 * from_rail.norm(),
+            "{lateral}: {error} of {}",
+            from_rail.norm()
+        );
+    }
 }
 
 /// A wheel worn as roughly as its cells are wide touches the rail between the points at which contacts are sought, and under a small load no point overlaps: the place has a window all the same.

@@ -138,10 +138,11 @@ fn on_wheelset(problem: &SurfaceProblem, fields: &SurfaceFields, solvers: &Surfa
             all.moment[1] += vertical * along - vertical_moment;
             all.moment[2] += lateral_moment - lateral * along;
             if normal > 0.0 {
-                // Friction acts on the wheel's undeformed surface, along the normal from the rail's.
-                let [along, across] = friction_times_distance(&wheel, (&point, middle), own, grid, strip);
-                let [along, across] = [unit * along, unit * across];
-                all.moment[0] += (point.normal[0] * tangent[1] - point.normal[1] * tangent[0]) * across;
+                // Friction acts on the wheel's undeformed surface, at a distance h along the normal n from the rail's: its moment
+                // is larger by h n × τ. Across, n × t = (−1, 0, 0).
+                let moved = friction_times_distance(&wheel, (&point, middle), own, grid, strip);
+                let [along, across] = moved.map(|sum| unit * sum);
+                all.moment[0] -= across;
                 all.moment[1] += point.normal[1] * along;
                 all.moment[2] -= point.normal[0] * along;
             }
