@@ -8,7 +8,7 @@ use clap::Args;
 use std::path::PathBuf;
 use std::sync::Arc;
 use wheelrail::parameters::{ProfileSource, ProfileWear};
-use wheelrail::profile_files::check_ending;
+use wheelrail::profile_files::{check_ending, ending_of, written_endings};
 use wheelrail::signals::{InputSignal, OutputSignal};
 use wheelrail::simulation::{self, Point, Schedule};
 use wheelrail::wheel_rail::Convergence;
@@ -119,7 +119,7 @@ pub enum Error {
         source: ProfileError,
     },
     /// A file of a worn profile whose name does not say what is to be written.
-    #[error("{option} {}: the name of a file of a {body} ends in one of {}", path.display(), endings.join(", "))]
+    #[error("{option} {}: the name of a file of a {body} ends in one of .{}", path.display(), endings.join(", ."))]
     UnknownEnding {
         /// The option that names the file.
         option: &'static str,
@@ -127,7 +127,7 @@ pub enum Error {
         path: PathBuf,
         /// "rail" or "wheel".
         body: &'static str,
-        /// Endings that are written.
+        /// Endings that are written, without the dot.
         endings: &'static [&'static str],
     },
     /// A file of a worn profile that does not wear.
@@ -297,11 +297,8 @@ impl Simulate {
         ] {
             let Some(path) = path else { continue };
             check_ending(path, body).map_err(|source| Error::WornEnding { option, source })?;
-            let endings = endings(body);
-            let ending = path
-                .extension()
-                .map(|ending| format!(".{}", ending.to_string_lossy().to_ascii_lowercase()));
-            if !ending.is_some_and(|ending| endings.contains(&ending.as_str())) {
+            let endings = written_endings(body);
+            if !endings.contains(&ending_of(path).as_str()) {
                 return Err(Error::UnknownEnding {
                     option,
                     path: path.clone(),
@@ -355,14 +352,6 @@ impl Simulate {
         }
         parameters.validate().map_err(Error::Parameter)?;
         Ok(parameters)
-    }
-}
-
-/// Ends of the names of a worn profile's files.
-fn endings(body: Body) -> &'static [&'static str] {
-    match body {
-        Body::Wheel => &[".prw", ".whl", ".mpt", ".whe", ".csv"],
-        Body::Rail => &[".prr", ".ban", ".mpt", ".rai", ".csv"],
     }
 }
 

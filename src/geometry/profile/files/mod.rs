@@ -12,7 +12,7 @@ mod simpack;
 mod vampire;
 mod write;
 
-pub use write::check_ending;
+pub use write::{check_ending, written_endings};
 
 use super::measured::{MOST_POINTS, Weighted};
 use super::{Body, Profile};
@@ -100,19 +100,16 @@ pub enum Format {
 impl Format {
     /// Format of a file by the end of its name and its first lines.
     fn of(path: &Path, text: &str) -> Format {
-        let ending = path
-            .extension()
-            .map(|ending| ending.to_string_lossy().to_ascii_lowercase());
         let first = text.trim_start_matches(MARK).trim_start();
-        match ending.as_deref() {
+        match ending_of(path).as_str() {
             _ if ["WHEELPROFILE", "RAILPROFILE"]
                 .iter()
                 .any(|title| first.starts_with(title)) =>
             {
                 Format::Vampire
             }
-            Some("prr" | "prw") => Format::Simpack,
-            Some("ban" | "whl" | "mpt") => Format::MiniProf,
+            "prr" | "prw" => Format::Simpack,
+            "ban" | "whl" | "mpt" => Format::MiniProf,
             _ => Format::Columns,
         }
     }
@@ -265,6 +262,12 @@ fn body_of(name: &str) -> Option<Body> {
         "prw" | "whl" | "whe" => Some(Body::Wheel),
         _ => None,
     }
+}
+
+/// End of a file's name without the dot, in small letters; empty where there is none.
+pub fn ending_of(path: &Path) -> String {
+    path.extension()
+        .map_or_else(String::new, |ending| ending.to_string_lossy().to_ascii_lowercase())
 }
 
 /// Name of a file without its folder.

@@ -68,6 +68,7 @@ fn files_are_written_by_the_end_of_their_names() {
         body: Some(Body::Wheel),
         ..ReadOptions::default()
     };
+    assert_eq!(written_endings(Body::Wheel), ["prw", "whl", "mpt", "whe", "csv"]);
     for ending in ["prw", "whl", "mpt", "whe", "csv", "txt"] {
         let path = folder.join(format!("wheel.{ending}"));
         wheel.write(&path).unwrap();

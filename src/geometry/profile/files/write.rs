@@ -1,6 +1,6 @@
 //! Profiles into files, each as its reader reads it back.
 
-use super::{Format, body_of, name_of};
+use super::{Format, body_of, ending_of, name_of};
 use crate::error::ProfileError;
 use crate::geometry::profile::{Body, Profile};
 use std::fmt::Write;
@@ -27,6 +27,14 @@ pub fn check_ending(path: &Path, body: Body) -> Result<(), ProfileError> {
     }
 }
 
+/// Ends of the names, without the dot, that say what is written of a body: its three formats' and the table's.
+pub fn written_endings(body: Body) -> &'static [&'static str] {
+    match body {
+        Body::Wheel => &["prw", "whl", "mpt", "whe", "csv"],
+        Body::Rail => &["prr", "ban", "mpt", "rai", "csv"],
+    }
+}
+
 impl Profile {
     /// Writes the profile's points to a file, by the end of its name as SIMPACK's (`.prr`, `.prw`), MiniProf's (`.ban`, `.whl`, `.mpt`),
     /// VAMPIRE's (`.rai`, `.whe`) or, with any other one, as a table of y and z in `mm`, y to the field side and z upward.
@@ -35,18 +43,15 @@ impl Profile {
     /// The end of the name is that of the other body's files, which could not be read again; the file cannot be written.
     pub fn write(&self, path: &Path) -> Result<(), ProfileError> {
         check_ending(path, self.body())?;
-        let ending = path
-            .extension()
-            .map(|ending| ending.to_string_lossy().to_ascii_lowercase());
-        let text = match ending.as_deref() {
-            Some("prr" | "prw") => self.text(Format::Simpack),
-            Some("ban" | "whl") => self.text(Format::MiniProf),
-            Some("mpt") => format!(
+        let text = match ending_of(path).as_str() {
+            "prr" | "prw" => self.text(Format::Simpack),
+            "ban" | "whl" => self.text(Format::MiniProf),
+            "mpt" => format!(
                 "[FileInfo]\nProgramName=wheelrail\n\n[Profile1Info]\nXYPoints={}\n\n[Profile1Points]\n{}",
                 self.points().len(),
                 self.rows(" ", 0.0, 1.0)
             ),
-            Some("rai" | "whe") => self.text(Format::Vampire),
+            "rai" | "whe" => self.text(Format::Vampire),
             _ => self.text(Format::Columns),
         };
         std::fs::write(path, text).map_err(|error| ProfileError::File {
