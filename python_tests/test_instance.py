@@ -258,6 +258,32 @@ def test_a_contact_that_fills_its_window_is_told_of_once(either):
     assert len(told) == 1
 
 
+def test_more_contacts_than_windows_are_told_of_once(either, tmp_path):
+    """A hollow wheel on a rail with crests 11 mm apart, of which five touch: one warning, by the first such step."""
+    y = np.linspace(-34.0, 34.0, 681)
+    waves = 0.05 * np.cos(2.0 * np.pi * y / 11.0)
+    files = []
+    for kind, (name, radius, height) in enumerate((("rail.prr", 300.0, waves), ("wheel.prw", 300.1, 0.0))):
+        # SIMPACK's z points down.
+        points = zip(y, radius - np.sqrt(radius**2 - y**2) - height, strict=True)
+        rows = "".join(f"{across} {down}\n" for across, down in points)
+        files.append(tmp_path / name)
+        head = f"header.begin\nversion = 1\ntype = {kind}\nheader.end\n"
+        files[-1].write_text(f"{head}spline.begin\npoint.begin\n{rows}point.end\nspline.end\n")
+    bodies = {"rail_profile": str(files[0]), "wheel_profile": str(files[1]), "contact_model": "profiles"}
+    # The rail's top stands over the running circle.
+    place = {"rail_inclination": 0.0, "gauge": 1.451, "gauge_depth": 0.001, "patch_strips": 13}
+    rolling = {"slip_source": "vehicle_speed", "vehicle_speed": 20.0, "wheel_speed": 43.478, "normal_load": 10e3}
+    with Instance(either, **bodies, **place, **rolling) as instance:
+        instance.start()
+        instance.step(1e-3)
+        instance.set(normal_load=75e3)
+        with pytest.warns(SimulationWarning, match="touch in more than four places: those next to each other") as told:
+            for _ in range(3):
+                instance.step(1e-3)
+    assert len(told) == 1
+
+
 def test_reset_leads_out(running):
     """Terminated through FMPy, an instance says what leads on; reset begins with the start values."""
     running.slave.terminate()

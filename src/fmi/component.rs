@@ -71,10 +71,8 @@ pub struct Component {
     pub(super) texts: Vec<CString>,
     /// The inputs without effect that were told of, a bit for each.
     pub(super) told: u32,
-    /// Whether it was told of a contact that fills its window, since it last did not.
-    pub(super) told_of_window: bool,
-    /// Whether it was told of more contacts than windows, since there last were not.
-    pub(super) told_of_crowd: bool,
+    /// Whether it was told of a contact that fills its window, since it last did not, and of more contacts than windows likewise.
+    pub(super) told_of_windows: [bool; 2],
     /// Messages that wait for the end of a call.
     pub journal: Journal,
 }
@@ -98,8 +96,7 @@ impl Component {
             saved: SavedStates::default(),
             texts: vec![CString::default(); TEXT_PARAMETERS.len()],
             told: 0,
-            told_of_window: false,
-            told_of_crowd: false,
+            told_of_windows: [false; 2],
             journal,
         }
     }
@@ -205,8 +202,7 @@ impl Component {
         self.inputs = Inputs::default();
         self.rates = Inputs::ZERO;
         self.told = 0;
-        self.told_of_window = false;
-        self.told_of_crowd = false;
+        self.told_of_windows = [false; 2];
         self.time = 0.0;
         self.forget_profiles();
         self.inform(Category::Events, |_| "reset to the start values".to_owned());

@@ -4,6 +4,7 @@ use super::component::{Built, Component, Plots};
 use super::failures::{Blame, Failure};
 use super::logging::Category;
 use super::modes::Mode;
+use crate::parameters::Parameters;
 use crate::signals::{INPUTS, Inputs};
 use crate::wheel_rail::{Convergence, State};
 
@@ -55,8 +56,7 @@ impl Component {
                 self.rates = Inputs::ZERO;
                 self.warn_of_staggered_step();
                 self.warn_of_profile_change();
-                self.warn_of_full_window();
-                self.warn_of_crowd();
+                self.warn_of_windows();
                 self.inform_about_step();
                 Ok(())
             }
@@ -129,27 +129,24 @@ impl Component {
         });
     }
 
-    /// Tells, when it begins, that the contact is held within its window. The status of the step is not touched.
-    fn warn_of_full_window(&mut self) {
-        let fills = self.state.as_ref().is_some_and(|state| state.convergence.fills_window);
-        if fills && !self.told_of_window {
-            let time = self.time;
-            self.journal.failure(Blame::Remark, || {
-                format!("t = {time} s: {}", self.parameters.full_window_remark())
-            });
-        }
-        self.told_of_window = fills;
+    /// Tells, when either begins, that the contact is held within its window, and that there are more contacts than windows. The status
+    /// of the step is not touched.
+    fn warn_of_windows(&mut self) {
+        let Some(convergence) = self.state.as_ref().map(|state| state.convergence) else {
+            return;
+        };
+        self.tell_when_it_begins(0, convergence.fills_window, Parameters::full_window_remark);
+        self.tell_when_it_begins(1, convergence.crowded, |_| Convergence::CROWDED.to_owned());
     }
 
-    /// Tells, when it begins, that there are more contacts than windows. The status of the step is not touched.
-    fn warn_of_crowd(&mut self) {
-        let crowded = self.state.as_ref().is_some_and(|state| state.convergence.crowded);
-        if crowded && !self.told_of_crowd {
+    /// Tells the remark of a number in `told_of_windows` where its cause is there and was not at the step before.
+    fn tell_when_it_begins(&mut self, number: usize, is_there: bool, remark: impl Fn(&Parameters) -> String) {
+        let was_there = std::mem::replace(&mut self.told_of_windows[number], is_there);
+        if is_there && !was_there {
             let time = self.time;
             self.journal
-                .failure(Blame::Remark, || format!("t = {time} s: {}", Convergence::CROWDED));
+                .failure(Blame::Remark, || format!("t = {time} s: {}", remark(&self.parameters)));
         }
-        self.told_of_crowd = crowded;
     }
 
     /// Goes on from where a step stopped half-way, as from any communication point.

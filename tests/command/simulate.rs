@@ -5,6 +5,7 @@ use std::fs::{create_dir_all, read_to_string, remove_file, write};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 use wheelrail::signals::{INPUTS, InputSignal, OUTPUTS};
+use wheelrail::{Body, Profile};
 
 const GOOD: &str = "time,normal_load,creepage\n0,60e3,0\n0.002,60e3,0.001\n";
 
@@ -869,6 +870,48 @@ fn wrong_usage_is_answered_with_the_usage() {
         let output = place.simulate(options);
         assert_eq!(output.status.code(), Some(2), "{options:?}");
         assert!(!output.stderr.is_empty() && !place.output.exists());
+    }
+}
+
+/// More contacts than windows are told of: a hollow wheel on a rail with crests 11 mm apart, of which five touch under the larger load.
+#[test]
+fn more_contacts_than_windows_are_told_of() {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("cli").join("crowded");
+    let file = |body: Body, name: &str, radius: f64, waves: f64| {
+        let points = (-340..=340).map(|tenths| {
+            let y = 1e-4 * f64::from(tenths);
+            let arc = (radius * radius - y * y).sqrt() - radius;
+            [y, arc + waves * (std::f64::consts::TAU * y / 11e-3).cos()]
+        });
+        let path = folder.join(name);
+        let profile = Profile::from_points(body, name, name, &points.collect::<Vec<_>>(), 0.0).unwrap();
+        profile.write(&path).unwrap();
+        path.display().to_string()
+    };
+    for (load, crowded) in [("10e3", false), ("75e3", true)] {
+        let row = format!("{load},20,43.478");
+        let scenario = format!("time,normal_load,vehicle_speed,wheel_speed\n0,{row}\n0.002,{row}\n");
+        let place = Place::new("crowded", &scenario);
+        let rail = format!("rail_profile={}", file(Body::Rail, "crests.prr", 0.3, 5e-5));
+        let wheel = format!("wheel_profile={}", file(Body::Wheel, "hollow.prw", 0.3001, 0.0));
+        // The rail's top stands over the running circle.
+        let options = ["--set", &rail, "--set", &wheel, "--set", "rail_inclination=0"];
+        let gauge = [
+            "--set",
+            "gauge=1.451",
+            "--set",
+            "gauge_depth=0.001",
+            "--set",
+            "patch_strips=13",
+        ];
+        let output = place.simulate(&[&PROFILES[..], &options, &gauge].concat());
+        let message = String::from_utf8(output.stderr).unwrap();
+        assert!(output.status.success(), "{message}");
+        assert_eq!(
+            message.contains("2 steps: wheel and rail touch in more than four places"),
+            crowded,
+            "{message}"
+        );
     }
 }
 

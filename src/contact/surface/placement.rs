@@ -82,17 +82,16 @@ pub fn place(
         forget(now);
     }
     let places = now.places;
-    let wanted = merged(&operators.sizes, &solvers.wanted);
-    solvers.crowded = wanted.crowded;
+    let mut wanted = merged(&operators.sizes, &solvers.wanted);
     let mut own = assign(problem, wanted.regions(), now);
     if approach > 0.0 && !holds_first(problem, solvers, now, &own) {
         // Of contacts far apart that were taken for one, a window may have left out the one that carries.
         want_overlaps(problem, approach, solvers);
-        let overlaps = merged(&operators.sizes, &solvers.wanted);
-        solvers.crowded = overlaps.crowded;
+        wanted = merged(&operators.sizes, &solvers.wanted);
         now.places = places;
-        own = assign(problem, overlaps.regions(), now);
+        own = assign(problem, wanted.regions(), now);
     }
+    solvers.crowded = wanted.crowded;
     solvers.moved = before.is_some_and(|before| before.places != now.places);
     if let Some(before) = before
         && solvers.moved
