@@ -88,6 +88,8 @@ def test_results_of_another_plan_are_kept(component, work, monkeypatch):
     assert "has results of another plan: it does not say which; another --name" in refused(monkeypatch, OPTIONS)
 
 
+# On this rail a contact fills its window, which is told; what wears is of no interest here.
+@pytest.mark.filterwarnings("ignore:.*fills its window:wheelrail.SimulationWarning")
 def test_another_file_of_the_rail(component, tmp_path):
     """Of a rail from a file name and points count, and not its folder; a plan keeps those that it has read."""
     new, digest, path = NewWheel.of(PLAN.wheel), component[1], tmp_path / "rail.prr"

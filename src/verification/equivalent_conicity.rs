@@ -7,7 +7,7 @@
 //! 1435 mm, which is 1435.16 mm 14 mm below the rail's top. Its tolerance is the smaller one of 0.05 and a half of the value. Table and
 //! tolerance are as the open program B_ECC (GitHub, criogenox) has them. They are met without roll: with it the contacts move by r₀ times the
 //! roll, and the conicities are larger by 1 to 7 %, B's twice as large, as its contact jumps at 2.99 mm. A ninth conicity there, 0.132, is left out: the
-//! table does not say of which wheels it is. (A beside B of the same radius has 0.128.)
+//! table does not say of which wheels it is.
 
 use super::row::Row;
 use crate::error::{Error, ProfileError, Result};

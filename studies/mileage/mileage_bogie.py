@@ -52,7 +52,7 @@ ASKED = ("contacts", "wear_number", "rcf_damage", "peak_temperature", "peak_pres
 class Settings:
     """What all tasks of a run have in common: the vehicle, parameters of the units, how many states are sampled.
 
-    And the rail's profile as a text in SIMPACK's format, where the parameters name a file: workers need not have it.
+    Where the parameters name a file of a rail, rail is its text in SIMPACK's format: workers need not have the file.
     """
 
     vehicle: Vehicle
@@ -222,7 +222,7 @@ class WornBogie(Equilibrium):
         return best, iteration
 
     def attempt(self):
-        """settle(), where an overloaded or derailed wheel, or none that touches, counts as not found."""
+        """Call settle(); where a wheel is overloaded or derailed, or none touches, no equilibrium is found."""
         try:
             return self.settle()
         except (wheelrail.SimulationError, np.linalg.LinAlgError):

@@ -1,9 +1,7 @@
 //! FMI 3.0: derivatives of weighted sums of outputs, Jᵀ s, against the directional derivatives J e of all outputs with respect to
 //! every input.
 
-use super::importer::{
-    Api, Client, ContactModel, Fmi2, Fmi3, Line, OK, Patch, Profiles, sideways, with_each_contact_model,
-};
+use super::importer::{Api, Client, ContactModel, Fmi2, Fmi3, OK, Profiles, sideways, with_each_contact_model};
 use wheelrail::signals::{INPUTS, OUTPUTS};
 use wheelrail::torture::random::Random;
 
@@ -42,6 +40,14 @@ fn adjoint(client: &Client, unknowns: &[u32], knowns: &[u32], seed: &[f64]) -> V
     values
 }
 
+/// Slips, with their source, that a contact model takes: profiles roll by speeds alone.
+fn taken_by(contact: ContactModel, slips: &[(i32, f64)]) -> impl Iterator<Item = (i32, f64)> {
+    slips
+        .iter()
+        .copied()
+        .filter(move |(source, _)| contact != Profiles || *source == 2)
+}
+
 /// Some steps with a moving load: the rail has warmed up.
 fn driven(api: &Api, contact: ContactModel, slip_source: i32, creepage: f64) -> Client<'_> {
     let client = Client::initializing(api, contact);
@@ -70,17 +76,13 @@ fn driven(api: &Api, contact: ContactModel, slip_source: i32, creepage: f64) -> 
 #[test]
 fn adjoint_derivatives_are_the_transposed_directional_ones() {
     let api = &Api::load(Fmi3);
-    for contact in [Line, Patch, Profiles] {
+    for &contact in ContactModel::ALL {
         println!("{contact:?}");
         let mut random = Random::new(14, 0);
         let (unknowns, knowns) = (api.standard.outputs(), inputs(api));
         let mut entries = 0;
         // Stick, partial slip, sliding; a braked and a driven wheel, by creepage and by speeds.
-        for (slip_source, creepage) in [(1, 1e-4), (1, 3e-3), (2, -0.05), (2, 1e-3)] {
-            // Profiles roll by speeds alone.
-            if contact == Profiles && slip_source == 1 {
-                continue;
-            }
+        for (slip_source, creepage) in taken_by(contact, &[(1, 1e-4), (1, 3e-3), (2, -0.05), (2, 1e-3)]) {
             let client = driven(api, contact, slip_source, creepage);
             let columns = jacobian(&client);
             // One output at a time: the row of J itself, to the bit.
@@ -160,11 +162,8 @@ fn repeated_names_add_up() {
 #[test]
 fn directional_derivatives_of_both_standards_have_the_same_bits() {
     let [two, three] = [Fmi2, Fmi3].map(Api::load);
-    for contact in [Line, Patch, Profiles] {
-        for (slip_source, creepage) in [(1, 3e-3), (2, -0.05)] {
-            if contact == Profiles && slip_source == 1 {
-                continue;
-            }
+    for &contact in ContactModel::ALL {
+        for (slip_source, creepage) in taken_by(contact, &[(1, 3e-3), (2, -0.05)]) {
             let bits = |api: &Api| {
                 let columns = jacobian(&driven(api, contact, slip_source, creepage));
                 columns.into_iter().flatten().map(f64::to_bits).collect::<Vec<_>>()

@@ -139,7 +139,7 @@ fn directional_derivatives_are_the_differences_of_a_rolled_back_step() {
                 ]),
             );
             let creepage = match point % 3 {
-                // The smallest slip: where rail and wheel are stretched alike, which pressure does to a patch by less.
+                // Sticking, about free rolling, at which a rigid wheel creeps backward: ranges in which a line and a patch stick.
                 0 => match contact {
                     Line => random.between(-0.0022, -0.001),
                     Patch | Profiles => random.between(-0.0016, -0.0004),

@@ -157,7 +157,7 @@ fn stands_where_the_contact_is(window: &SurfaceWindow, position: f64, extents: [
 fn inclinations_are_slopes_in_the_track() {
     for side in [Side::Left, Side::Right] {
         let sign = if side == Side::Left { 1.0 } else { -1.0 };
-        // They meet on one arc of the rail's profile, whose chords are as steep as the arc is in their middle.
+        // Wheel and rail meet on one arc of the rail's profile, whose chords are as steep as the arc is in their middle.
         let inputs = Inputs {
             rail_roll_angle: sign * 0.03,
             roll_angle: sign * 0.03,
@@ -393,7 +393,7 @@ fn more_contacts_than_windows_all_carry() {
     run.hold(&inputs, 1e-3, 3).unwrap();
     assert!(run.state.convergence.crowded);
     assert_eq!(run.outputs().contacts, 4.0);
-    // Each crest is under pressure, over places that nothing lies between.
+    // Neighbouring strips under pressure are a contact: there is one for each crest.
     let windows = run.surface_windows().unwrap();
     let carries = |window: &SurfaceWindow, strip: usize| {
         let cells = window.x.len();
