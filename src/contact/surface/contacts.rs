@@ -157,6 +157,7 @@ fn carrying(operators: &SurfaceOperators, fields: &SurfaceFields, growth: f64, f
                         along: run.along,
                         across: run.across,
                         narrowest,
+                        sharpest: f64::INFINITY,
                     };
                     found.push(Wanted {
                         region: grown(operators, &region, growth),

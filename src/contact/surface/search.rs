@@ -17,8 +17,12 @@ const TOUCH_STEPS: usize = 30;
 const LINEAR: f64 = 1e-5;
 /// Least change of the distance with the height that counts: walls of 84° and more carry nothing of a load. The steepest flanges have 75°.
 pub const LEAST_RISE: f64 = 0.1;
-/// Size of the region that a window is placed for over that of the overlap: a contact has 0.71 of it.
+/// Size of the region that a window is placed for over that of the overlap.
 const REGION_SHARE: f64 = 0.82;
+/// Size of a contact over that of the overlap.
+const CONTACT_SHARE: f64 = 0.71;
+/// Points of the search to either side by which curvatures are found: 1 mm, so that waves of a micrometre of a measured profile do not count.
+const CURVED: usize = 2;
 /// Depth of the overlap where that region ends, over the largest depth: of a parabola, 1 less the square of the share.
 const EDGE_SHARE: f64 = 1.0 - REGION_SHARE * REGION_SHARE;
 
@@ -68,6 +72,7 @@ impl Deepest {
             along: [along - self.half_length, along + self.half_length],
             across: [across - half_breadth, across + half_breadth],
             narrowest: 2.0 * half_breadth,
+            sharpest: f64::INFINITY,
         }
     }
 }
@@ -299,6 +304,26 @@ impl Search {
         points.any(|point| between(point.arc) && approach * point.rise > point.distance)
     }
 
+    /// Breadth of a contact whose bodies were curved against each other, all over, as they are between two arc lengths where they overlap and are curved the
+    /// most, `m`. `approach` as in [`Search::is_near`].
+    pub fn sharpest(&self, across: [f64; 2], approach: f64) -> f64 {
+        let chord = CURVED as f64 * self.spacing();
+        let breadth = |number: usize| {
+            let [before, here, after] = [number - CURVED, number, number + CURVED].map(|number| self.points[number]);
+            let deep = approach * here.rise;
+            let carries = deep > here.distance && across[0] <= here.arc && here.arc <= across[1];
+            let curvature = (before.distance + after.distance - 2.0 * here.distance) / (chord * chord);
+            let is_sharp = carries && curvature > 0.0;
+            if is_sharp {
+                2.0 * CONTACT_SHARE * (2.0 * deep / curvature).sqrt()
+            } else {
+                f64::INFINITY
+            }
+        };
+        let numbers = CURVED..self.points.len().saturating_sub(CURVED);
+        numbers.map(breadth).fold(f64::INFINITY, f64::min)
+    }
+
     /// Approach under a vertical load, `m`, about: that of Hertz's ellipses in place of the contacts. `modulus` is the contact modulus.
     pub fn approach(&mut self, load: f64, modulus: f64) -> f64 {
         let mut carried = |approach: f64| -> f64 {
@@ -417,6 +442,7 @@ fn about(points: &[Closest], deepest: usize, depth: &impl Fn(usize) -> f64) -> O
             along: [along[0].min(place - half), along[1].max(place + half)],
             across,
             narrowest: across[1] - across[0],
+            sharpest: f64::INFINITY,
         },
         depth: most,
         rise: points[deepest].rise,

@@ -26,6 +26,10 @@ const FEWEST_STRIPS: [f64; 2] = [0.4, 0.32];
 /// Largest share of a window's strips that the narrowest contact has in a window that stays.
 const MOST_STRIPS: f64 = 0.85;
 
+/// Breadth that counts for the strips, over that of a contact curved all over as the sharpest part of it is: a peak of the pressure there takes
+/// half of the strips that a whole contact does.
+const SHARP: f64 = 2.0;
+
 /// Size and place of a window.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Place {
@@ -48,6 +52,8 @@ pub struct Region {
     pub across: [f64; 2],
     /// Breadth of the narrowest contact in it, `m`.
     pub narrowest: f64,
+    /// Breadth that a contact would have whose bodies were curved all over as they are where they are curved the most, `m`.
+    pub sharpest: f64,
 }
 
 /// Sizes of all windows.
@@ -80,6 +86,7 @@ impl Place {
             along: [cell, cell + grid.cells as f64].map(|count| count * grid.length),
             across: [strip, strip + grid.strips as f64].map(|count| count * grid.breadth),
             narrowest: grid.strips as f64 * grid.breadth,
+            sharpest: f64::INFINITY,
         }
     }
 }
@@ -92,6 +99,7 @@ impl Region {
             along: hull(self.along, other.along),
             across: hull(self.across, other.across),
             narrowest: self.narrowest.min(other.narrowest),
+            sharpest: self.sharpest.min(other.sharpest),
         }
     }
 
@@ -105,7 +113,13 @@ impl Region {
             along: grown(self.along),
             across: grown(self.across),
             narrowest: factor * self.narrowest,
+            sharpest: self.sharpest,
         }
+    }
+
+    /// Breadth that the strips of its window are to resolve, `m`.
+    fn resolved(&self) -> f64 {
+        self.narrowest.min(SHARP * self.sharpest)
     }
 
     /// Whether it has a part at an arc length.
@@ -173,7 +187,7 @@ impl Sizes {
     /// Number of the breadth for a region: the broadest that resolves the narrowest contact, but none finer than the given one.
     fn breadth_of(&self, region: &Region, finest: usize) -> usize {
         let Grid { strips, breadth, .. } = self.largest;
-        let resolved = region.narrowest / (FEWEST_STRIPS[0] * strips as f64);
+        let resolved = region.resolved() / (FEWEST_STRIPS[0] * strips as f64);
         (0..finest)
             .find(|&level| shrunk(breadth, level) <= resolved)
             .unwrap_or(finest)
@@ -197,7 +211,7 @@ impl Sizes {
             inner[0] >= outer[0] + margin && inner[1] <= outer[1] - margin
         };
         let length = (region.along[1] - region.along[0]) / (window.along[1] - window.along[0]);
-        let strips = region.narrowest / (window.across[1] - window.across[0]);
+        let strips = region.resolved() / (window.across[1] - window.across[0]);
         holds(window.along, region.along, grid.length)
             && holds(window.across, region.across, LEAST_MARGIN * grid.breadth)
             && (place.length + 1 == LENGTHS || length > LEAST_SHARE)
