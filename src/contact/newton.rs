@@ -132,6 +132,7 @@ impl<E: Engine> Sweeps<'_, E> {
             let TractionChange {
                 shear_change,
                 set_changed,
+                ..
             } = E::solve_mechanics(problem, self.iterate, self.now, self.solvers, tolerance)?;
             if !set_changed && shear_change <= settings.mechanics_tolerance.max(10.0 * tolerance) {
                 break;

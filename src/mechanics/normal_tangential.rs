@@ -28,6 +28,9 @@ pub struct TractionChange {
     pub shear_change: f64,
     /// Whether other nodes are under pressure than before.
     pub set_changed: bool,
+    /// Residual of the friction law, relative to the peak pressure, beyond the tolerance: of a staggered step, which takes the solution of a
+    /// smoother law where none of the law itself is found.
+    pub law_residual: f64,
 }
 
 impl TractionChange {
@@ -35,6 +38,7 @@ impl TractionChange {
     pub const NONE: TractionChange = TractionChange {
         shear_change: 0.0,
         set_changed: false,
+        law_residual: 0.0,
     };
 
     /// Whether the tractions have converged to a tolerance.
@@ -178,6 +182,11 @@ impl Mechanics {
         Ok(TractionChange {
             shear_change: change / largest,
             set_changed,
+            law_residual: if self.nodes.is_empty() {
+                0.0
+            } else {
+                self.tangential.left() / largest
+            },
         })
     }
 

@@ -26,14 +26,15 @@ pub struct StepSettings {
     /// Number of times in one step that a staggered sub-step that fails is tried again with a quarter of its length.
     pub staggered_retries: usize,
     /// Budget of a step in multiplications and additions, about: counted, not timed. That of a line on any mesh, and of patches and profiles on up to the
-    /// default number of cells; a model on more cells takes so much more as its products do ([`StepSettings::for_cells`]).
+    /// default number of cells; a model on more cells takes so much more as its solutions do ([`StepSettings::for_cells`]).
     pub work: u64,
     /// Work of the mechanics in a staggered sub-step after which they are not solved any closer, with the same factor.
     pub staggered_work: u64,
 }
 
 impl StepSettings {
-    /// Settings with budgets for the cells of the given parameters: a product takes work as the square of the cells along times the strips.
+    /// Settings with budgets for the cells of the given parameters. A product takes work as the square of the cells along times the strips; what
+    /// the friction law's blocks take, as the cube of the cells along, is the largest part on many cells.
     pub fn for_cells(self, parameters: &Parameters) -> StepSettings {
         if parameters.contact_model == ContactModel::Line {
             return self;
@@ -41,7 +42,7 @@ impl StepSettings {
         let default = Parameters::default();
         let along = parameters.patch_nodes as f64 / default.patch_nodes as f64;
         let across = parameters.patch_strips as f64 / default.patch_strips as f64;
-        let factor = (along * along * across).max(1.0);
+        let factor = (along.powi(3) * across).max(1.0);
         let times = |work: u64| (factor * work as f64) as u64;
         StepSettings {
             work: times(self.work),

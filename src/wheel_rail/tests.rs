@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::parameters::{ContactModel, NormalSolver, SlipSource, Wheel, WheelHeating};
+use crate::settings::TangentialSettings;
 use crate::settings::limits::{LIMITS, PATCH_LIMITS};
 
 /// A small model of a rigid wheel, whose normal and tangential problem are coupled, that is heated, and a state from which
@@ -210,6 +211,47 @@ fn a_step_that_is_not_solved_is_taken_staggered() {
     }
 }
 
+/// A step without work to solve the law of friction takes the solution of a smoother law, with a part of the shear; its residual is that of the law itself.
+#[test]
+fn the_residual_of_a_smoother_law_is_that_of_the_law() {
+    let mut settings = Settings::default();
+    (settings.step.work, settings.step.staggered_work) = (10, 10);
+    // Of a line: no exchange of nodes, no other law than the smoothest.
+    settings.tangential = TangentialSettings {
+        exchanges: 0,
+        path_exchanges_per_node: 0,
+        newton_steps: 4,
+        work: 10,
+        ..settings.tangential
+    };
+    let slipping = Inputs {
+        creepage: 4e-3,
+        ..Inputs::default()
+    };
+    for model in [
+        |settings| model(NormalSolver::ActiveSet, settings),
+        |settings| patch(settings),
+    ] {
+        let (sound, idle) = (model(Settings::default()), model(settings));
+        let step = |model: &Model| {
+            let mut state = sound.initial_state(&mut sound.workspace(), &Inputs::default()).unwrap();
+            model
+                .step(&mut model.workspace(), &mut state, &slipping, &Inputs::ZERO, 1e-3)
+                .unwrap();
+            state
+        };
+        let (solved, smoothed) = (step(&sound), step(&idle));
+        let [exact, part] = [&solved, &smoothed].map(|state| state.outputs.traction_force / state.outputs.normal_force);
+        assert!(smoothed.convergence.staggered && part < 0.5 * exact, "{part} {exact}");
+        // Where all of the shear is missing that the law has, the residual is as large as what the forces lack.
+        assert!(
+            smoothed.convergence.residual > exact - part,
+            "{:?}",
+            smoothed.convergence
+        );
+    }
+}
+
 /// A step without work to find the pressure of profiles at another place holds the one that there is, in proportion to the load, and says so; it is the same step in a
 /// workspace that has been used. Under a load that is many times as large it is refused, and changes nothing.
 #[test]
@@ -241,12 +283,14 @@ fn a_pressure_that_is_not_found_is_held() {
         idle.step(workspace, &mut state, inputs, &Inputs::ZERO, 1e-3).unwrap();
         state
     };
-    // A little beside, the first height is found to carry the load but for some per cent, which the residual shows.
+    // A little beside, the first height carries the load; the friction is that of a smoother law, which the residual shows.
     let near = step(&mut workspace, &displaced(60e3, 5e-4));
-    let missing = near.convergence.residual;
+    let carried = near.outputs.force_z / 60e3;
+    assert!((carried - 1.0).abs() < 1e-3, "{carried}");
+    let residual = near.convergence.residual;
     assert!(
-        near.convergence.staggered && missing > 0.01 && missing < 0.1,
-        "{missing}"
+        near.convergence.staggered && residual > 0.1 && residual < 0.3,
+        "{residual}"
     );
     let held = step(&mut workspace, &moved);
     assert!(held.convergence.staggered && held.convergence.residual >= 1.0);

@@ -73,17 +73,19 @@ pub fn follow(
     if solvers.contact.cells() == 0 {
         lift_off(problem, interface, fields, solvers);
         return Ok(TractionChange {
-            shear_change: 0.0,
             set_changed,
+            ..TractionChange::NONE
         });
     }
     solve_friction(problem, interface, fields, solvers, tolerance)?;
     let change = (0..2)
         .map(|component| largest_change(&fields.shear[component], &solvers.shear_before[component]))
         .fold(0.0, f64::max);
+    let peak = largest(&fields.pressure);
     Ok(TractionChange {
-        shear_change: change / largest(&fields.pressure),
+        shear_change: change / peak,
         set_changed,
+        law_residual: solvers.friction.left() / peak,
     })
 }
 

@@ -85,6 +85,7 @@ pub fn solve(
             .shear_change
             .max(if touches { own_change.shear_change } else { 0.0 });
         change.set_changed |= own_change.set_changed;
+        change.law_residual = change.law_residual.max(own_change.law_residual);
     }
     if !problem.is_height_given() {
         // The load that the friction has made of it is another one than asked for: so far have the tractions changed.

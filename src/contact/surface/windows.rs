@@ -249,6 +249,7 @@ mod tests {
             along: [-4e-3, 4e-3],
             across,
             narrowest: 5e-3,
+            sharpest: f64::INFINITY,
         }
     }
 

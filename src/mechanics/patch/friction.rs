@@ -118,6 +118,8 @@ pub struct Friction {
     work: u64,
     /// Multiplications and additions after which Newton's method stops.
     work_limit: u64,
+    /// Residual that the last solve has left of the law, 0 where it is within the tolerance.
+    left: f64,
     /// Newton steps, Krylov iterations and inversions of the blocks since the solver was made.
     iterations: [u64; 3],
 }
@@ -174,6 +176,7 @@ impl Friction {
             on_path: OnPath::new(total),
             work: 0,
             work_limit: u64::MAX,
+            left: 0.0,
             iterations: [0; 3],
         }
     }
@@ -181,12 +184,17 @@ impl Friction {
     /// Forgets what was computed in another step: a step follows from its state alone.
     pub fn start_step(&mut self) {
         self.start_contact();
-        self.work = 0;
+        (self.work, self.left) = (0, 0.0);
     }
 
     /// Multiplications and additions in this step, about: a measure of time that is the same on every machine.
     pub fn work(&self) -> u64 {
         self.work
+    }
+
+    /// Residual that the last solve has left of the law, in units of the shear: 0 where it is within the tolerance.
+    pub fn left(&self) -> f64 {
+        self.left
     }
 
     /// Newton steps, Krylov iterations and inversions of the blocks since the solver was made.
@@ -212,6 +220,7 @@ impl Friction {
         };
         let slack = self.settings.slack;
         self.work_limit = problem.work;
+        self.left = 0.0;
         if self.newton(problem, &scheme, shear, problem.tolerance, slack).is_ok() {
             self.remember(shear);
             return Ok(());
@@ -265,6 +274,7 @@ impl Friction {
         let Err((iterations, residual)) = last else {
             return Ok(());
         };
+        self.left = residual;
         if residual <= problem.accepted {
             // The law of the cells at the last iterate, not at the trial that came after it.
             self.start_rows(problem, &scheme, shear);
@@ -279,6 +289,9 @@ impl Friction {
             self.work_limit = u64::MAX;
             let _ = self.newton(problem, &smooth, shear, rough, 1.0);
             self.remember(shear);
+            // What this solution leaves of the law itself.
+            self.start_rows(problem, &scheme, shear);
+            self.left = self.largest_residual(problem.contact.cells());
             self.start_rows(problem, &smooth, shear);
             return Ok(());
         }

@@ -63,11 +63,14 @@ impl Tangential {
         match (end, regularised) {
             (Ended::Converged(_), _) => self.close_globalised(problem, shear),
             (Ended::Stalled(_), Some(regularisation)) if problem.accepts_regularised => {
+                self.change[..m].copy_from_slice(&self.regularised[..m]);
+                // What this solution leaves of the law itself.
+                self.update_natural_residual(problem, problem.regularisation, shear);
+                self.left = largest(&self.residual[..m]);
                 let problem = TangentialProblem {
                     regularisation,
                     ..*problem
                 };
-                self.change[..m].copy_from_slice(&self.regularised[..m]);
                 // Pressure, slip and μ at that point, which is a solution.
                 steps += self.search(&problem, regularisation, shear, rough).steps();
                 self.close_globalised(&problem, shear);

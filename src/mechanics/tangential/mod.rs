@@ -108,6 +108,8 @@ pub struct Tangential {
     tangent: Vec<f64>,
     /// Whether the methods that are fast where they converge have stalled in this step.
     has_stalled: bool,
+    /// Residual that the last solve has left of the law, `Pa`.
+    left: f64,
     /// Multiplications and additions in this step.
     work: u64,
 }
@@ -142,6 +144,7 @@ impl Tangential {
             by_logarithm: vector(),
             tangent: vector(),
             has_stalled: false,
+            left: 0.0,
             work: 0,
         }
     }
@@ -167,6 +170,11 @@ impl Tangential {
         self.factored = false;
     }
 
+    /// Residual that the last solve has left of the law, `Pa`: 0 where it is within the tolerance.
+    pub fn left(&self) -> f64 {
+        self.left
+    }
+
     /// Point of the last solve, with m nodes.
     pub fn point(&self, m: usize) -> TangentialPoint<'_> {
         TangentialPoint {
@@ -188,6 +196,7 @@ impl Tangential {
     pub fn solve(&mut self, problem: &TangentialProblem, utilisation: &[f64], shear: &mut [f64]) -> Result<f64> {
         let m = shear.len();
         self.change[..m].fill(0.0);
+        self.left = 0.0;
         let mut end = if self.has_stalled {
             Ended::Stalled(0)
         } else if problem.regularisation > 0.0 {
