@@ -15,8 +15,8 @@ pub const CONTACTS: usize = 3 * WINDOWS;
 const GROWTH: f64 = 1.08;
 /// Turn of the rail over a contact, rad, from which on it lies in a gauge corner: 5 mm of one of 13 mm.
 const CORNER_TURN: f64 = 0.4;
-/// The extent across of a contact in a gauge corner, whose ends go slowly: with fine strips a window has little room for it.
-const CORNER_GROWTH: f64 = 1.05;
+/// The extent across of a contact of which a narrow part counts: its ends go slowly, and with fine strips a window has little room for it.
+const NARROW_GROWTH: f64 = 1.05;
 /// Extent about such a region, over that of the region, in which no other contact is looked for: the window there finds it by itself, and so near a
 /// contact the sinking of the surface is not known well.
 pub const BESIDE: f64 = 1.8;
@@ -100,7 +100,13 @@ pub fn find(
         approach,
     } = expected;
     found.clear();
-    carrying(operators, fields, growth, found);
+    carrying(
+        operators,
+        fields,
+        growth,
+        |across| search.sharpest(across, approach),
+        found,
+    );
     found.retain(|own| search.is_near(own.region.across, approach + LIFTED));
     apart.set_resultants(operators, fields);
     let carrying = found.len();
@@ -137,8 +143,14 @@ pub fn find(
     found.sort_unstable_by(|a, b| a.region.across[0].total_cmp(&b.region.across[0]));
 }
 
-/// Finds the contacts of the fields: neighbouring strips that carry.
-fn carrying(operators: &SurfaceOperators, fields: &SurfaceFields, growth: f64, found: &mut Vec<Wanted>) {
+/// Finds the contacts of the fields: neighbouring strips that carry. `sharpest` gives [`Region::sharpest`] between two arc lengths.
+fn carrying(
+    operators: &SurfaceOperators,
+    fields: &SurfaceFields,
+    growth: f64,
+    sharpest: impl Fn([f64; 2]) -> f64,
+    found: &mut Vec<Wanted>,
+) {
     for (window, place) in fields.used() {
         let grid = &operators.of(&place).grid;
         let middle = place.middle_along(grid);
@@ -157,7 +169,7 @@ fn carrying(operators: &SurfaceOperators, fields: &SurfaceFields, growth: f64, f
                         along: run.along,
                         across: run.across,
                         narrowest,
-                        sharpest: f64::INFINITY,
+                        sharpest: sharpest(run.across),
                     };
                     found.push(Wanted {
                         region: grown(operators, &region, growth),
@@ -191,13 +203,19 @@ fn grown(operators: &SurfaceOperators, contact: &Region, growth: f64) -> Region 
     let [[y, z], [v, w]] = contact.across.map(|arc| operators.bodies.rail.at(arc).normal);
     let turn = (y * w - z * v).atan2(y * v + z * w).abs();
     let region = contact.grown(GROWTH * growth);
-    if turn <= CORNER_TURN {
+    let lies_in_corner = turn > CORNER_TURN;
+    if !lies_in_corner && !contact.is_sharp() {
         return region;
     }
-    let [from, to] = contact.grown(CORNER_GROWTH * growth).across;
+    let [from, to] = contact.grown(NARROW_GROWTH * growth).across;
+    let narrowest = if lies_in_corner {
+        region.narrowest.min((to - from) * CORNER_TURN / turn)
+    } else {
+        region.narrowest
+    };
     Region {
         across: [from, to],
-        narrowest: region.narrowest.min((to - from) * CORNER_TURN / turn),
+        narrowest,
         ..region
     }
 }

@@ -252,15 +252,6 @@ fn want(problem: &SurfaceProblem, source: Option<&SurfaceFields>, approach: f64,
     }
     if wanted.is_empty() {
         want_overlaps(problem, approach, solvers);
-    } else {
-        find_sharpest(search, approach, wanted);
-    }
-}
-
-/// Finds how sharply the bodies are curved in each region.
-fn find_sharpest(search: &Search, approach: f64, wanted: &mut [Wanted]) {
-    for own in wanted {
-        own.region.sharpest = search.sharpest(own.reach.unwrap_or(own.region.across), approach);
     }
 }
 
@@ -280,7 +271,9 @@ fn want_overlaps(problem: &SurfaceProblem, approach: f64, solvers: &mut SurfaceS
     let overlaps = search.overlaps(approach).iter().rev();
     wanted.extend(overlaps.map(|overlap| Wanted::overlap(overlap.region)));
     want_first(search, approach, wanted);
-    find_sharpest(search, approach, wanted);
+    for own in wanted.iter_mut() {
+        own.region.sharpest = search.sharpest(own.region.across, approach);
+    }
 }
 
 /// Sees to it that a region holds the place where the bodies touch first. On a rough profile they touch between points of the search, of which none need overlap.

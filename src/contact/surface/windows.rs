@@ -26,9 +26,9 @@ const FEWEST_STRIPS: [f64; 2] = [0.4, 0.32];
 /// Largest share of a window's strips that the narrowest contact has in a window that stays.
 const MOST_STRIPS: f64 = 0.85;
 
-/// Breadth that counts for the strips, over that of a contact curved all over as the sharpest part of it is: a peak of the pressure there takes
-/// half of the strips that a whole contact does.
-const SHARP: f64 = 2.0;
+/// Breadth that counts for the strips, over that of a contact curved all over as the sharpest part of it is. With as many strips for that part as a whole
+/// contact has, peaks of the pressure there would be known to a part in a thousand; with this, to some per cent.
+const SHARP: f64 = 2.5;
 
 /// Size and place of a window.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -115,6 +115,11 @@ impl Region {
             narrowest: factor * self.narrowest,
             sharpest: self.sharpest,
         }
+    }
+
+    /// Whether the bodies are curved so sharply somewhere in it that strips for its contacts would not resolve it.
+    pub fn is_sharp(&self) -> bool {
+        SHARP * self.sharpest < self.narrowest
     }
 
     /// Breadth that the strips of its window are to resolve, `m`.
