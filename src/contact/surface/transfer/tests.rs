@@ -215,5 +215,5 @@ fn a_wheel_that_moves_sideways_keeps_heat_and_worn_volume() {
             assert!((new / old - 1.0).abs() < 1e-5, "step {step}: {old:e} {new:e}");
         }
     }
-    assert!(moves >= 3, "{moves}");
+    assert!(moves >= 2, "{moves}");
 }
