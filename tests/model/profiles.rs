@@ -737,7 +737,7 @@ fn a_lubricated_gauge_face_has_its_share_of_friction() {
 }
 
 /// A contact on the tread reaches over the place where the radius of the rail's head jumps from 300 to 80 mm, and has a peak of the pressure there, 2 mm broad in 20 mm: it
-/// is found to 4 % of what three times as many strips have, whatever load the windows were placed for. With strips for the breadth of the contact alone 17 % are missing.
+/// is found to 4 % of what three times as many strips have, whatever load the windows were placed for. Strips for the breadth of the contact alone miss more than a tenth.
 #[test]
 fn a_peak_where_the_radius_of_the_rail_jumps_is_resolved() {
     let peaks = |patch_strips, lateral| {
