@@ -311,7 +311,7 @@ impl Search {
         let breadth = |number: usize| {
             let [before, here, after] = [number - CURVED, number, number + CURVED].map(|number| self.points[number]);
             let deep = approach * here.rise;
-            let carries = deep > here.distance && across[0] <= here.arc && here.arc <= across[1];
+            let carries = deep > here.distance.max(0.0) && across[0] <= here.arc && here.arc <= across[1];
             let curvature = (before.distance + after.distance - 2.0 * here.distance) / (chord * chord);
             let is_sharp = carries && curvature > 0.0;
             if is_sharp {

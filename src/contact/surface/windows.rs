@@ -26,8 +26,8 @@ const FEWEST_STRIPS: [f64; 2] = [0.4, 0.32];
 /// Largest share of a window's strips that the narrowest contact has in a window that stays.
 const MOST_STRIPS: f64 = 0.85;
 
-/// Breadth that counts for the strips, over that of a contact curved all over as the sharpest part of it is. With as many strips for that part as a whole
-/// contact has, peaks of the pressure there would be known to a part in a thousand; with this, to some per cent.
+/// Breadth that counts for the strips, over that of a contact curved all over as the sharpest part of it is: a peak of the pressure there gets 1/2.5 of the
+/// strips that a contact does, with which it is found to some per cent.
 const SHARP: f64 = 2.5;
 
 /// Size and place of a window.
