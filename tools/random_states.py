@@ -1,0 +1,77 @@
+"""How far default cells are from fine ones: a wheel in random states, peak pressure and forces.
+
+    .venv/bin/python tools/random_states.py [LOAD [STATES]]        kN, 100 by default; 120 states (after `make fmu3`)
+
+The right wheel S1002 on UIC60 without heat and wear, steady: displacement, roll, yaw, lateral speed, yaw rate and
+creepage at random, with a fixed seed. The fine grid has twice the cells along and four times the strips.
+"""
+
+import sys
+from pathlib import Path
+
+import numpy as np
+
+REPOSITORY = Path(__file__).resolve().parent.parent
+sys.path.insert(0, str(REPOSITORY / "python"))
+
+from wheelrail import Instance  # noqa: E402  the package's folder is on the path from here on
+
+FMU = REPOSITORY / "target" / "WheelRailContact-fmi3.fmu"
+SPEED, RADIUS, FRICTION = 20.0, 0.46, 0.3  # m/s, m, 1
+DEFAULT, FINE = (34, 21), (68, 84)
+ROLLING = {"vehicle_speed": SPEED, "wheel_speed": SPEED / RADIUS}
+
+
+def states(count):
+    """Inputs of each state."""
+    random = np.random.default_rng(5)
+    for _ in range(count):
+        yaw = random.uniform(-0.012, 0.012)
+        yield {
+            "lateral_displacement": random.uniform(-8e-3, 6e-3),
+            "roll_angle": random.uniform(-2e-3, 2e-3),
+            "yaw_angle": yaw,
+            "lateral_speed": SPEED * yaw + random.uniform(-0.05, 0.05),
+            "yaw_rate": random.uniform(-0.05, 0.05),
+            "wheel_speed": SPEED / RADIUS * (1.0 + random.uniform(-2e-3, 2e-3)),
+        }
+
+
+def computed(cells, load, count):
+    """Peak pressure and forces of all states, each from a lifted wheel."""
+    bodies = {"contact_model": "profiles", "side": "right", "rail_profile": "UIC60", "wheel_profile": "S1002"}
+    bodies |= {"friction_law": "constant", "friction_cold": FRICTION}
+    bodies |= {"thermal_expansion": 0.0, "wear_coefficient": 0.0, "slip_source": "vehicle_speed"}
+    bodies |= {"patch_nodes": cells[0], "patch_strips": cells[1]}
+    found = []
+    with Instance(FMU, **bodies, normal_load=0.0, **ROLLING) as wheel:
+        wheel.start()
+        lifted = wheel.save()
+        for inputs in states(count):
+            wheel.restore(lifted)
+            wheel.set(normal_load=load, **inputs)
+            wheel.step(0.1)
+            wheel.step(0.1)
+            found.append([float(wheel.get(name)[0]) for name in ("peak_pressure", "force_x", "force_y")])
+    return np.array(found)
+
+
+def main():
+    """Print the errors, and the states with the largest."""
+    load = 1e3 * float(sys.argv[1] if len(sys.argv) > 1 else 100)
+    count = int(sys.argv[2] if len(sys.argv) > 2 else 120)
+    default, fine = (computed(cells, load, count) for cells in (DEFAULT, FINE))
+    peak = np.abs(default[:, 0] / fine[:, 0] - 1.0)
+    force = np.hypot(*(default - fine)[:, 1:].T) / (FRICTION * load)
+    for name, error, limits in (("peak pressure", peak, (0.02, 0.04)), ("forces over μQ", force, (0.01, 0.02))):
+        beyond = ", ".join(f"{(error > limit).sum()} beyond {limit:g}" for limit in limits)
+        quantiles = f"median {np.median(error):.4f}, 95 % {np.quantile(error, 0.95):.4f}, worst {error.max():.4f}"
+        print(f"{name}: {quantiles}; of {count} {beyond}")
+    places = [inputs["lateral_displacement"] for inputs in states(count)]
+    for number in np.argsort(-peak)[:5]:
+        place, share = 1e3 * places[number], 100.0 * peak[number]
+        print(f"  y = {place:.2f} mm: peak off by {share:.1f} %, forces {force[number]:.4f}")
+
+
+if __name__ == "__main__":
+    main()
