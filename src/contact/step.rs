@@ -248,7 +248,7 @@ fn solve_staggered_in_room<E: Engine>(
     let least = if problem.conditions.coupling == Coupling::Held {
         1.0
     } else {
-        tractions.shear_change.max(tractions.law_residual)
+        tractions.residual()
     };
     let residual = iterate.change_to(image, settings.least_temperature).max(least);
     finish(problem, before, iterate, now, solvers, 1, residual)
@@ -329,11 +329,7 @@ fn initial_state_in_room<E: Engine>(
         if rests || staggered && iterations == limit {
             let convergence = Convergence {
                 iterations: if rests { 0 } else { iterations },
-                residual: if rests {
-                    0.0
-                } else {
-                    tractions.shear_change.max(tractions.law_residual)
-                },
+                residual: if rests { 0.0 } else { tractions.residual() },
                 fills_window: fills_window(problem, &now, solvers)?,
                 crowded: E::is_crowded(solvers),
                 staggered: !rests,

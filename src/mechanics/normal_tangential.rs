@@ -41,6 +41,11 @@ impl TractionChange {
         law_residual: 0.0,
     };
 
+    /// What a staggered step shows of tractions that do not rest, or of a friction law that they do not keep.
+    pub fn residual(&self) -> f64 {
+        self.shear_change.max(self.law_residual)
+    }
+
     /// Whether the tractions have converged to a tolerance.
     pub fn has_converged(&self, tolerance: f64) -> bool {
         self.shear_change <= tolerance && !self.set_changed

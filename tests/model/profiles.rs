@@ -756,3 +756,35 @@ fn a_peak_where_the_radius_of_the_rail_jumps_is_resolved() {
         }
     }
 }
+
+/// The budget of a step grows with what the friction law takes on many cells: from a lifted wheel to partial slip under a heavy load, the step is solved.
+#[test]
+fn a_step_on_many_cells_is_within_its_budget() {
+    let parameters = Parameters {
+        patch_nodes: 68,
+        patch_strips: 84,
+        thermal_expansion: 0.0,
+        wear_coefficient: 0.0,
+        ..bodies(Side::Right)
+    };
+    let lifted = inputs([0.0, 0.0, 0.0, -43.478]);
+    let mut run = Simulation::new(
+        &parameters,
+        &Inputs {
+            normal_load: 0.0,
+            ..lifted
+        },
+    )
+    .unwrap();
+    let inputs = Inputs {
+        normal_load: 100e3,
+        lateral_displacement: -8.9e-5,
+        roll_angle: 0.001_591,
+        yaw_angle: -0.011_380,
+        lateral_speed: -0.1932,
+        wheel_speed: 43.459_55,
+        ..lifted
+    };
+    run.step(&inputs, 0.1).unwrap();
+    assert!(!run.state.convergence.staggered, "{:?}", run.state.convergence);
+}

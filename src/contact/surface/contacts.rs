@@ -94,19 +94,13 @@ pub fn find(
     found: &mut Vec<Wanted>,
 ) {
     let Expected {
-        growth,
         beside,
         load_ratio,
         approach,
+        ..
     } = expected;
     found.clear();
-    carrying(
-        operators,
-        fields,
-        growth,
-        |across| search.sharpest(across, approach),
-        found,
-    );
+    carrying(operators, fields, expected, search, found);
     found.retain(|own| search.is_near(own.region.across, approach + LIFTED));
     apart.set_resultants(operators, fields);
     let carrying = found.len();
@@ -143,12 +137,12 @@ pub fn find(
     found.sort_unstable_by(|a, b| a.region.across[0].total_cmp(&b.region.across[0]));
 }
 
-/// Finds the contacts of the fields: neighbouring strips that carry. `sharpest` gives [`Region::sharpest`] between two arc lengths.
+/// Finds the contacts of the fields: neighbouring strips that carry.
 fn carrying(
     operators: &SurfaceOperators,
     fields: &SurfaceFields,
-    growth: f64,
-    sharpest: impl Fn([f64; 2]) -> f64,
+    expected: Expected,
+    search: &Search,
     found: &mut Vec<Wanted>,
 ) {
     for (window, place) in fields.used() {
@@ -169,10 +163,10 @@ fn carrying(
                         along: run.along,
                         across: run.across,
                         narrowest,
-                        sharpest: sharpest(run.across),
+                        sharpest: search.sharpest(run.across, expected.approach),
                     };
                     found.push(Wanted {
-                        region: grown(operators, &region, growth),
+                        region: grown(operators, &region, expected.growth),
                         reach: Some([run.across[0] - 0.5 * grid.breadth, run.across[1] + 0.5 * grid.breadth]),
                         room: 1.0,
                     });

@@ -304,8 +304,8 @@ impl Search {
         points.any(|point| between(point.arc) && approach * point.rise > point.distance)
     }
 
-    /// Breadth of a contact whose bodies were curved against each other, all over, as they are between two arc lengths where they overlap and are curved the
-    /// most, `m`. `approach` as in [`Search::is_near`].
+    /// Breadth of a contact under the same approach whose bodies are curved against each other all over as these are at their sharpest place, `m`: of the places
+    /// between two arc lengths at which they overlap. `approach` as in [`Search::is_near`].
     pub fn sharpest(&self, across: [f64; 2], approach: f64) -> f64 {
         let chord = CURVED as f64 * self.spacing();
         let breadth = |number: usize| {
@@ -313,8 +313,7 @@ impl Search {
             let deep = approach * here.rise;
             let carries = deep > here.distance.max(0.0) && across[0] <= here.arc && here.arc <= across[1];
             let curvature = (before.distance + after.distance - 2.0 * here.distance) / (chord * chord);
-            let is_sharp = carries && curvature > 0.0;
-            if is_sharp {
+            if carries && curvature > 0.0 {
                 2.0 * CONTACT_SHARE * (2.0 * deep / curvature).sqrt()
             } else {
                 f64::INFINITY

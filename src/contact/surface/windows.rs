@@ -52,7 +52,7 @@ pub struct Region {
     pub across: [f64; 2],
     /// Breadth of the narrowest contact in it, `m`.
     pub narrowest: f64,
-    /// Breadth that a contact would have whose bodies were curved all over as they are where they are curved the most, `m`.
+    /// Breadth of a contact under the same approach whose bodies are curved against each other all over as these are at their sharpest place, `m`.
     pub sharpest: f64,
 }
 
@@ -117,9 +117,9 @@ impl Region {
         }
     }
 
-    /// Whether the bodies are curved so sharply somewhere in it that strips for its contacts would not resolve it.
+    /// Whether somewhere in it the bodies are curved so sharply that strips for the breadth of its contacts are too broad there.
     pub fn is_sharp(&self) -> bool {
-        SHARP * self.sharpest < self.narrowest
+        self.resolved() < self.narrowest
     }
 
     /// Breadth that the strips of its window are to resolve, `m`.
