@@ -1,11 +1,13 @@
 """How far default cells are from fine ones: a wheel in random states, peak pressure and forces.
 
-    .venv/bin/python tools/random_states.py [LOAD [STATES]]        kN, 100 by default; 120 states (after `make fmu3`)
+    .venv/bin/python tools/random_states.py                    (after `make fmu3`)
+    .venv/bin/python tools/random_states.py --load 60 --states 20 --to-the-right 5.7 6.1
 
 The right wheel S1002 on UIC60 without heat and wear, steady: displacement, roll, yaw, lateral speed, yaw rate and
 creepage at random, with a fixed seed. The fine grid has twice the cells along and four times the strips.
 """
 
+import argparse
 import sys
 from pathlib import Path
 
@@ -22,13 +24,14 @@ DEFAULT, FINE = (34, 21), (68, 84)
 ROLLING = {"vehicle_speed": SPEED, "wheel_speed": SPEED / RADIUS}
 
 
-def states(count):
+def states(chosen):
     """Inputs of each state."""
     random = np.random.default_rng(5)
-    for _ in range(count):
+    least, most = chosen.to_the_right
+    for _ in range(chosen.states):
         yaw = random.uniform(-0.012, 0.012)
         yield {
-            "lateral_displacement": random.uniform(-8e-3, 6e-3),
+            "lateral_displacement": random.uniform(-1e-3 * most, -1e-3 * least),
             "roll_angle": random.uniform(-2e-3, 2e-3),
             "yaw_angle": yaw,
             "lateral_speed": SPEED * yaw + random.uniform(-0.05, 0.05),
@@ -37,7 +40,7 @@ def states(count):
         }
 
 
-def computed(cells, load, count):
+def computed(cells, chosen):
     """Peak pressure and forces of all states, each from a lifted wheel."""
     bodies = {"contact_model": "profiles", "side": "right", "rail_profile": "UIC60", "wheel_profile": "S1002"}
     bodies |= {"friction_law": "constant", "friction_cold": FRICTION}
@@ -47,30 +50,36 @@ def computed(cells, load, count):
     with Instance(FMU, **bodies, normal_load=0.0, **ROLLING) as wheel:
         wheel.start()
         lifted = wheel.save()
-        for inputs in states(count):
+        for inputs in states(chosen):
             wheel.restore(lifted)
-            wheel.set(normal_load=load, **inputs)
+            wheel.set(normal_load=1e3 * chosen.load, **inputs)
             wheel.step(0.1)
             wheel.step(0.1)
-            found.append([float(wheel.get(name)[0]) for name in ("peak_pressure", "force_x", "force_y")])
+            found.append(np.ravel(wheel.get("peak_pressure", "force_x", "force_y")))
     return np.array(found)
 
 
 def main():
     """Print the errors, and the states with the largest."""
-    load = 1e3 * float(sys.argv[1] if len(sys.argv) > 1 else 100)
-    count = int(sys.argv[2] if len(sys.argv) > 2 else 120)
-    default, fine = (computed(cells, load, count) for cells in (DEFAULT, FINE))
+    parser = argparse.ArgumentParser(description="Default cells against fine ones, in random states")
+    parser.add_argument("--load", type=float, default=100.0, help="vertical load [kN] (100)")
+    parser.add_argument("--states", type=int, default=120, help="how many (120)")
+    place = {"metavar": ("FROM", "TO"), "default": (-6.0, 8.0), "help": "displacement [mm] (-6 to 8)"}
+    parser.add_argument("--to-the-right", type=float, nargs=2, **place)
+    chosen = parser.parse_args()
+    if chosen.states < 1 or not chosen.load > 0.0:
+        parser.error("at least one state and a load above 0 are needed")
+    default, fine = (computed(cells, chosen) for cells in (DEFAULT, FINE))
     peak = np.abs(default[:, 0] / fine[:, 0] - 1.0)
-    force = np.hypot(*(default - fine)[:, 1:].T) / (FRICTION * load)
+    force = np.hypot(*(default - fine)[:, 1:].T) / (1e3 * FRICTION * chosen.load)
     for name, error, limits in (("peak pressure", peak, (0.02, 0.04)), ("forces over μQ", force, (0.01, 0.02))):
         beyond = ", ".join(f"{(error > limit).sum()} beyond {limit:g}" for limit in limits)
         quantiles = f"median {np.median(error):.4f}, 95 % {np.quantile(error, 0.95):.4f}, worst {error.max():.4f}"
-        print(f"{name}: {quantiles}; of {count} {beyond}")
-    places = [inputs["lateral_displacement"] for inputs in states(count)]
+        print(f"{name}: {quantiles}; of {chosen.states} {beyond}")
+    places = [-1e3 * inputs["lateral_displacement"] for inputs in states(chosen)]
     for number in np.argsort(-peak)[:5]:
-        place, share = 1e3 * places[number], 100.0 * peak[number]
-        print(f"  y = {place:.2f} mm: peak off by {share:.1f} %, forces {force[number]:.4f}")
+        share = 100.0 * peak[number]
+        print(f"  {places[number]:.2f} mm to the right: peak off by {share:.1f} %, forces {force[number]:.4f}")
 
 
 if __name__ == "__main__":
