@@ -41,7 +41,7 @@ impl TractionChange {
         law_residual: 0.0,
     };
 
-    /// What a staggered step shows of tractions that do not rest, or of a friction law that they do not keep.
+    /// Residual that a staggered step shows: of tractions that do not rest, or of a friction law that they do not keep.
     pub fn residual(&self) -> f64 {
         self.shear_change.max(self.law_residual)
     }
