@@ -6,17 +6,24 @@
 //! Σ ∫ (p cos δ − τ_s sin δ) dA = Q, with the inclination δ to the track's plane, the roll of the rail included.
 //!
 //! The friction is that of the iteration before, in proportion to the pressure: where all slides, that is exact at once. The approach
-//! is found in [`super::pressure`].
+//! is found in [`super::pressure`]. What the friction that is found then lacks of the load or has too much, pressure and friction are
+//! moved by before heat and wear see them.
 
+use super::approach_response::{advance, stiffness};
 use super::fields::SurfaceFields;
-use super::pressure::{hold, least_load_error, press};
+use super::pressure::{RESPONDS, hold, least_load_error, press};
 use super::problem::SurfaceProblem;
 use super::solvers::SurfaceSolvers;
+use super::windows::Place;
 use crate::contact::interface::Interface;
 use crate::contact::patch::mechanics;
 use crate::contact::problem::Coupling;
 use crate::error::Result;
 use crate::mechanics::normal_tangential::TractionChange;
+
+/// Largest error of the tractions of a window that is alone, relative to the peak pressure: its friction is then known well enough for the load that is missing to be
+/// carried at once.
+const ALONE: f64 = 1e-4;
 
 /// (31): pressure for the load and the shear there is, then friction for that pressure.
 pub fn solve(
@@ -26,12 +33,17 @@ pub fn solve(
     solvers: &mut SurfaceSolvers,
     tolerance: f64,
 ) -> Result<TractionChange> {
+    let tolerance = if is_alone(fields) {
+        tolerance.min(ALONE)
+    } else {
+        tolerance
+    };
     for (window, place) in fields.used() {
-        let [normal, friction] = problem.vertical_forces(fields, solvers, window, &place);
+        let friction_share = friction_share(problem, fields, solvers, window, &place);
         let own = &mut solvers.windows[window];
         own.interface.take_window(interface, window);
         own.contact_before.copy_from(&own.patch.contact);
-        own.friction_share = if normal > 0.0 { friction / normal } else { 0.0 };
+        own.friction_share = friction_share;
     }
     let unloaded = if problem.is_height_given() {
         solvers.reference <= 0.0
@@ -94,10 +106,60 @@ pub fn solve(
         // The pressure does not carry it better than it is solved.
         let missing = (fields.load / load - 1.0).abs() - 2.0 * least_load_error(problem, load);
         change.shear_change = change.shear_change.max(missing);
+        if missing > tolerance && problem.conditions.coupling == Coupling::Implicit {
+            carry_load(problem, fields, solvers);
+        }
     } else {
         fields.load = carried(problem, fields, solvers);
     }
     Ok(change)
+}
+
+/// Whether there is one window, no more.
+fn is_alone(fields: &SurfaceFields) -> bool {
+    fields.used().count() == 1
+}
+
+/// Moves the pressure of a window that is alone by its response until it carries the load with the friction there is, and the shear in proportion to it. Heat and
+/// wear of this iteration are then those of the load but for a small part of what was missing, and most steps on the tread need no third iteration. Several windows
+/// are left as they are: heat changes their friction more than this does.
+fn carry_load(problem: &SurfaceProblem, fields: &mut SurfaceFields, solvers: &mut SurfaceSolvers) {
+    let Some((window, place)) = fields.used().next().filter(|_| is_alone(fields)) else {
+        return;
+    };
+    let missing = problem.vertical_load() - fields.load;
+    if missing.abs() >= RESPONDS * problem.vertical_load() {
+        return;
+    }
+    solvers.windows[window].friction_share = friction_share(problem, fields, solvers, window, &place);
+    let Some(stiffness) = stiffness(problem, fields, solvers) else {
+        return;
+    };
+    let lower = missing / stiffness;
+    let per_approach = lower / problem.operators.of(&place).scales.displacement;
+    let (own, response) = (&mut fields.windows[window], &solvers.windows[window].response);
+    let [along, across] = &mut own.shear;
+    let pressures = own.pressure.iter().zip(&response.pressure);
+    for ((along, across), (pressure, response)) in along.iter_mut().zip(across).zip(pressures) {
+        if *pressure > 0.0 {
+            let ratio = (1.0 + per_approach * response / pressure).max(0.0);
+            (*along, *across) = (ratio * *along, ratio * *across);
+        }
+    }
+    advance(problem, lower, fields, solvers);
+    fields.approach[0] += lower;
+}
+
+/// Vertical force of a window's friction over that of its pressure.
+fn friction_share(
+    problem: &SurfaceProblem,
+    fields: &SurfaceFields,
+    solvers: &SurfaceSolvers,
+    window: usize,
+    place: &Place,
+) -> f64 {
+    let [normal, friction] = problem.vertical_forces(fields, solvers, window, place);
+    if normal > 0.0 { friction / normal } else { 0.0 }
 }
 
 /// Vertical force of all windows, `N`.

@@ -34,7 +34,7 @@ const FIRST_TOLERANCE: f64 = 1e-3;
 /// Error of the pressure at an approach over that of the load at the one before.
 const TOLERANCE_SHARE: f64 = 0.03;
 /// Excess of load, relative, below which the responses of the pressures tell the next approach.
-const RESPONDS: f64 = 0.1;
+pub const RESPONDS: f64 = 0.1;
 /// Factor on that share where the responses tell the approach: so much less is left after it.
 const RESPONSE_SHARE: f64 = 0.1;
 /// Part of an excess of load that is left where the responses no longer tell what the pressure does.
