@@ -6,8 +6,8 @@
 //! Σ ∫ (p cos δ − τ_s sin δ) dA = Q, with the inclination δ to the track's plane, the roll of the rail included.
 //!
 //! The friction is that of the iteration before, in proportion to the pressure: where all slides, that is exact at once. The approach
-//! is found in [`super::pressure`]. What the friction that is found then lacks of the load or has too much, pressure and friction are
-//! moved by before heat and wear see them.
+//! is found in [`super::pressure`]. The friction that follows is a slightly different one, and with it the load is no longer met. A window that is alone
+//! has its pressure and friction corrected for that at once, before heat and wear see them.
 
 use super::approach_response::{advance, stiffness};
 use super::fields::SurfaceFields;
@@ -21,8 +21,8 @@ use crate::contact::problem::Coupling;
 use crate::error::Result;
 use crate::mechanics::normal_tangential::TractionChange;
 
-/// Largest error of the tractions of a window that is alone, relative to the peak pressure: its friction is then known well enough for the load that is missing to be
-/// carried at once.
+/// Largest error of the tractions of a window that is alone, relative to the peak pressure, even if the caller would accept a larger one: what is missing of the load, which is
+/// corrected for, is known no better than the friction is.
 const ALONE: f64 = 1e-4;
 
 /// (31): pressure for the load and the shear there is, then friction for that pressure.
@@ -120,9 +120,9 @@ fn is_alone(fields: &SurfaceFields) -> bool {
     fields.used().count() == 1
 }
 
-/// Moves the pressure of a window that is alone by its response until it carries the load with the friction there is, and the shear in proportion to it. Heat and
-/// wear of this iteration are then those of the load but for a small part of what was missing, and most steps on the tread need no third iteration. Several windows
-/// are left as they are: heat changes their friction more than this does.
+/// Corrects the pressure of a window that is alone, by its response to the approach, so that it carries the load with the friction there is. The shear of each cell
+/// changes in proportion to the pressure on it. Most steps on the tread then need two iterations in place of three. Several windows are left as they are: heat
+/// changes their friction by more, and the correction saved none.
 fn carry_load(problem: &SurfaceProblem, fields: &mut SurfaceFields, solvers: &mut SurfaceSolvers) {
     let Some((window, place)) = fields.used().next().filter(|_| is_alone(fields)) else {
         return;

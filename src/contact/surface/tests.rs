@@ -502,6 +502,40 @@ fn a_pressure_that_is_held_knows_no_separation() {
     }
 }
 
+/// Pressure and shear are corrected, to the second order, for a friction that has changed by more than a thousandth of the load: at two displacements of the wheelset.
+#[test]
+fn a_window_alone_carries_what_friction_changes_of_the_load() {
+    let parameters = parameters(Control::Load);
+    let settings = Settings::default();
+    let operators = SurfaceOperators::build(&parameters, &ProfileContents::default()).unwrap();
+    let mut solvers = operators.solvers(&settings);
+    for lateral in [1e-3, 8e-3] {
+        let before = displaced(lateral);
+        let state = run(&parameters, &before, 0);
+        let inputs = Inputs {
+            lateral_speed: before.lateral_speed - 0.05,
+            ..before
+        };
+        let problem = problem(&operators, (&parameters, &settings), inputs);
+        let mut now = SurfaceFields::new(&operators);
+        now.guess_from(fields(&state));
+        SurfaceOperators::begin(&problem, Some(fields(&state)), &mut now, &mut solvers).unwrap();
+        let mut interface = operators.interface();
+        SurfaceOperators::read(&problem, &now, &mut solvers, &mut interface);
+        SurfaceOperators::solve_mechanics(&problem, &interface, &mut now, &mut solvers, 1e-4).unwrap();
+        assert_eq!(now.used().count(), 1);
+        let (window, place) = now.used().next().unwrap();
+        let load = problem.vertical_load();
+        let missing = (now.load / load - 1.0).abs();
+        let [normal, friction] = problem.vertical_forces(&now, &solvers, window, &place);
+        let left = ((normal + friction) / load - 1.0).abs();
+        assert!(
+            missing > 1e-3 && left < 0.5 * missing.powi(2),
+            "{lateral}: {missing:e} {left:e}"
+        );
+    }
+}
+
 /// The displacement of one window by the pressure of another is the sum over its cells as point forces, to the second order in the size of a block over
 /// the distance: of a/r, the interpolation between places that are d from each other leaves d²/4r² or less, the block as much. Close contacts have
 /// smaller blocks.
