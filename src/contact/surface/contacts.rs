@@ -31,10 +31,19 @@ const LEAST_DEPTH: f64 = 0.02;
 pub struct Wanted {
     /// The region.
     pub region: Region,
-    /// Ends in arc length of the contact itself, half a strip of its window farther on either side, `m`; none of an overlap.
-    pub reach: Option<[f64; 2]>,
+    /// Ends in arc length of the contact itself, and the breadth of its window's strips, `m`; none of an overlap.
+    pub reach: Option<Reach>,
     /// Extent of what its window has room for, over that of the region.
     pub room: f64,
+}
+
+/// Ends of a contact across the rail.
+#[derive(Debug, Clone, Copy)]
+pub struct Reach {
+    /// Ends in arc length of the strips that carry, `m`.
+    pub across: [f64; 2],
+    /// Breadth of a strip, `m`.
+    pub strip: f64,
 }
 
 impl Wanted {
@@ -54,11 +63,11 @@ impl Wanted {
         self.reach = next.reach.or(self.reach);
     }
 
-    /// Whether this contact and the next one go on in each other: no more than a strip lies between them, which may be the seam of two windows.
+    /// Whether this contact and the next one go on in each other: no more than a strip lies between them, the broader one of two windows, which may be the seam of
+    /// these.
     pub fn goes_on_in(&self, next: &Wanted) -> bool {
         match (self.reach, next.reach) {
-            // Each reaches half a strip farther than it carries.
-            (Some([_, end]), Some([begin, _])) => end - begin > -ROUND_OFF,
+            (Some(own), Some(next)) => next.across[0] - own.across[1] < own.strip.max(next.strip) + ROUND_OFF,
             _ => false,
         }
     }
@@ -167,7 +176,10 @@ fn carrying(
                     };
                     found.push(Wanted {
                         region: grown(operators, &region, expected.growth),
-                        reach: Some([run.across[0] - 0.5 * grid.breadth, run.across[1] + 0.5 * grid.breadth]),
+                        reach: Some(Reach {
+                            across: run.across,
+                            strip: grid.breadth,
+                        }),
                         room: 1.0,
                     });
                 }
@@ -227,18 +239,25 @@ struct Run {
 mod tests {
     use super::*;
 
-    /// A strip between two contacts, to round-off, leaves them one; two strips do not, and an overlap is no contact yet.
+    /// A strip between two contacts, the broader one of theirs, leaves them one, to round-off; more does not, and an overlap is no contact yet.
     #[test]
     fn contacts_with_a_strip_between_them_go_on_in_each_other() {
         let strip = 0.1e-3;
-        let contact = |begin: f64, end: f64| Wanted {
-            reach: Some([begin - 0.5 * strip, end + 0.5 * strip]),
+        let contact = |across: [f64; 2], strip: f64| Wanted {
+            reach: Some(Reach { across, strip }),
             ..Wanted::overlap(Region::default())
         };
-        let first = contact(37.0e-3, 38.2e-3);
-        for (strips, goes_on) in [(0.0, true), (1.0, true), (2.0, false)] {
-            let begin = 38.2e-3 + strips * strip;
-            assert_eq!(first.goes_on_in(&contact(begin, begin + strip)), goes_on, "{strips}");
+        let first = contact([37.0e-3, 38.2e-3], strip);
+        for (breadth, between, goes_on) in [
+            (strip, 0.0, true),
+            (strip, 1.0, true),
+            (strip, 1.1, false),
+            (4.0 * strip, 4.0, true),
+            (4.0 * strip, 4.1, false),
+        ] {
+            let begin = 38.2e-3 + between * strip;
+            let next = contact([begin, begin + breadth], breadth);
+            assert_eq!(first.goes_on_in(&next), goes_on, "{breadth}: {between}");
         }
         assert!(!first.goes_on_in(&Wanted::overlap(Region::default())));
     }
