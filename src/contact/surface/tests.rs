@@ -5,6 +5,7 @@ use super::operators::SurfaceOperators;
 use super::placement::place;
 use super::pressure::hold;
 use super::problem::SurfaceProblem;
+use super::solvers::SurfaceSolvers;
 use super::windows::Place;
 use super::worn_bodies::WornBodies;
 use crate::body::grid::Grid;
@@ -74,6 +75,14 @@ pub fn fields(state: &State) -> &SurfaceFields {
         panic!("another contact model");
     };
     &own.fields
+}
+
+/// Default settings, and operators and solvers with the built-in profiles.
+fn built(parameters: &Parameters) -> (Settings, SurfaceOperators, SurfaceSolvers) {
+    let settings = Settings::default();
+    let operators = SurfaceOperators::build(parameters, &ProfileContents::default()).unwrap();
+    let solvers = operators.solvers(&settings);
+    (settings, operators, solvers)
 }
 
 /// Gap and rigid slip that the cells of a window see.
@@ -431,9 +440,7 @@ fn rough_bodies_have_a_window_where_they_touch_first() {
         wheel_profile_wear: ProfileWear::On,
         ..parameters(Control::Load)
     };
-    let settings = Settings::default();
-    let operators = SurfaceOperators::build(&parameters, &ProfileContents::default()).unwrap();
-    let mut solvers = operators.solvers(&settings);
+    let (settings, operators, mut solvers) = built(&parameters);
     let mut random = Random::new(1, 0);
     solvers.worn = worn_wheel(&operators, -30e-3..30e-3, |_| random.between(0.0, 3e-4));
     // The load was carried at next to no approach, and elsewhere.
@@ -458,9 +465,7 @@ fn rough_bodies_have_a_window_where_they_touch_first() {
 #[test]
 fn the_approach_of_a_small_load_does_not_grow_with_it() {
     let parameters = parameters(Control::Load);
-    let settings = Settings::default();
-    let operators = SurfaceOperators::build(&parameters, &ProfileContents::default()).unwrap();
-    let mut solvers = operators.solvers(&settings);
+    let (settings, operators, mut solvers) = built(&parameters);
     let inputs = displaced(1e-3);
     let mut before = SurfaceFields::new(&operators);
     before.copy_from(fields(&run(&parameters, &inputs, 0)));
@@ -482,9 +487,7 @@ fn the_approach_of_a_small_load_does_not_grow_with_it() {
 #[test]
 fn a_pressure_that_is_held_knows_no_separation() {
     let parameters = parameters(Control::Load);
-    let settings = Settings::default();
-    let operators = SurfaceOperators::build(&parameters, &ProfileContents::default()).unwrap();
-    let mut solvers = operators.solvers(&settings);
+    let (settings, operators, mut solvers) = built(&parameters);
     let inputs = displaced(1e-3);
     let problem = problem(&operators, (&parameters, &settings), inputs);
     let state = run(&parameters, &inputs, 0);
@@ -506,9 +509,7 @@ fn a_pressure_that_is_held_knows_no_separation() {
 #[test]
 fn a_window_alone_carries_what_friction_changes_of_the_load() {
     let parameters = parameters(Control::Load);
-    let settings = Settings::default();
-    let operators = SurfaceOperators::build(&parameters, &ProfileContents::default()).unwrap();
-    let mut solvers = operators.solvers(&settings);
+    let (settings, operators, mut solvers) = built(&parameters);
     for lateral in [1e-3, 8e-3] {
         let before = displaced(lateral);
         let state = run(&parameters, &before, 0);
