@@ -63,8 +63,8 @@ impl Wanted {
         self.reach = next.reach.or(self.reach);
     }
 
-    /// Whether this contact and the next one go on in each other: no more than a strip lies between them, the broader one of two windows, which may be the seam of
-    /// these.
+    /// Whether this contact and the next one are one: no more than a strip lies between them. Where they have two windows, the broader strip counts, as what lies
+    /// between may be no more than the seam of the windows.
     pub fn goes_on_in(&self, next: &Wanted) -> bool {
         match (self.reach, next.reach) {
             (Some(own), Some(next)) => next.across[0] - own.across[1] < own.strip.max(next.strip) + ROUND_OFF,
@@ -239,7 +239,7 @@ struct Run {
 mod tests {
     use super::*;
 
-    /// A strip between two contacts, the broader one of theirs, leaves them one, to round-off; more does not, and an overlap is no contact yet.
+    /// Two contacts with a strip between them, to round-off, are one, and the broader strip counts; with more between them they are two. An overlap is no contact yet.
     #[test]
     fn contacts_with_a_strip_between_them_go_on_in_each_other() {
         let strip = 0.1e-3;
