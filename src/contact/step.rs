@@ -20,7 +20,7 @@ use crate::settings::Settings;
 use crate::signals::Inputs;
 
 /// Factor on the room for contacts after one has outgrown its window.
-const MORE_ROOM: f64 = 1.6;
+pub(super) const MORE_ROOM: f64 = 1.6;
 
 /// Solvers and buffers of a step and of its derivatives. What a step leaves in them changes no result of another one.
 pub struct StepWorkspace<E: Engine> {

@@ -33,8 +33,8 @@ pub struct Wanted {
     pub region: Region,
     /// Ends in arc length of the contact itself, and the breadth of its window's strips, `m`; none of an overlap.
     pub reach: Option<Reach>,
-    /// Extent of what its window has room for, over that of the region.
-    pub room: f64,
+    /// Extents along and across of what its window has room for, over those of the region.
+    pub room: [f64; 2],
 }
 
 /// Ends of a contact across the rail.
@@ -52,14 +52,14 @@ impl Wanted {
         Wanted {
             region,
             reach: None,
-            room: 1.0,
+            room: [1.0; 2],
         }
     }
 
     /// Takes in the next one, farther to the field side.
     pub fn join(&mut self, next: &Wanted) {
         self.region = self.region.union(&next.region);
-        self.room = self.room.max(next.room);
+        self.room = std::array::from_fn(|way| self.room[way].max(next.room[way]));
         self.reach = next.reach.or(self.reach);
     }
 
@@ -180,7 +180,7 @@ fn carrying(
                             across: run.across,
                             strip: grid.breadth,
                         }),
-                        room: 1.0,
+                        room: [1.0; 2],
                     });
                 }
                 continue;

@@ -19,6 +19,7 @@ mod plots;
 mod pressure;
 mod problem;
 mod profile_wear;
+mod seams;
 mod search;
 pub mod solvers;
 pub mod tangent;

@@ -5,10 +5,11 @@ use super::contacts::{self, BESIDE, CONTACTS, Expected, Wanted};
 use super::fields::SurfaceFields;
 use super::operators::SurfaceOperators;
 use super::problem::SurfaceProblem;
+use super::seams::{self, CutOff};
 use super::search::Search;
 use super::solvers::SurfaceSolvers;
 use super::transfer::Rail;
-use super::windows::{Place, Region, Sizes, WINDOWS};
+use super::windows::{EVERYWHERE, Place, Region, Sizes, WINDOWS};
 use crate::contact::fields::Fields;
 use crate::contact::patch::fields::PatchFields;
 use crate::contact::problem::Coupling;
@@ -59,6 +60,8 @@ pub fn place(
         solvers.outgrown = 0.0;
         solvers.too_small = [None; WINDOWS];
         solvers.is_unsettled = false;
+        solvers.cut_off.clear();
+        solvers.room_before = 1.0;
     }
     let mut approach =
         known.unwrap_or_else(|| expected_approach(problem, before, now.touch - pose.position.height, solvers));
@@ -74,7 +77,8 @@ pub fn place(
     let source = before.or(known.map(|_| &*now));
     if problem.conditions.coupling == Coupling::Held {
         solvers.moved = false;
-        see(problem, now, solvers, &[[f64::NEG_INFINITY, f64::INFINITY]; WINDOWS]);
+        solvers.own = [EVERYWHERE; WINDOWS];
+        see(problem, now, solvers);
         return Ok(());
     }
     want(problem, source, approach, solvers);
@@ -82,12 +86,12 @@ pub fn place(
         forget(now);
     }
     let places = now.places;
-    let mut wanted = merged(&operators.sizes, &solvers.wanted);
+    let mut wanted = merged(&operators.sizes, &solvers.wanted, &solvers.cut_off);
     let mut own = assign(problem, wanted.regions(), now);
     if approach > 0.0 && !holds_first(problem, solvers, now, &own) {
         // Of contacts far apart that were taken for one, a window may have left out the one that carries.
         want_overlaps(problem, approach, solvers);
-        wanted = merged(&operators.sizes, &solvers.wanted);
+        wanted = merged(&operators.sizes, &solvers.wanted, &solvers.cut_off);
         now.places = places;
         own = assign(problem, wanted.regions(), now);
     }
@@ -123,12 +127,13 @@ pub fn place(
         carried.worn.copy_from(&now.worn);
         now.guess_from(carried);
     }
-    see(problem, now, solvers, &own);
+    solvers.own = own;
+    see(problem, now, solvers);
     Ok(())
 }
 
 /// Sets what the cells of the windows see of wheel and rail, at the reference approach; of the surface between the arc lengths that each has to itself.
-fn see(problem: &SurfaceProblem, now: &SurfaceFields, solvers: &mut SurfaceSolvers, own: &[[f64; 2]; WINDOWS]) {
+fn see(problem: &SurfaceProblem, now: &SurfaceFields, solvers: &mut SurfaceSolvers) {
     let (operators, pose) = (problem.operators, problem.pose());
     let bodies = solvers.worn.of(operators);
     let wheel = PlacedWheel::new(&bodies.wheel, &pose.at_height(now.touch - solvers.reference));
@@ -140,7 +145,7 @@ fn see(problem: &SurfaceProblem, now: &SurfaceFields, solvers: &mut SurfaceSolve
             (&bodies.rail, &wheel),
             &place,
             &pose.motion,
-            own[window],
+            solvers.own[window],
             &mut own_solvers.patch.undeformed,
         );
         own_solvers.gap.copy_from_slice(&own_solvers.patch.undeformed.gap);
@@ -211,6 +216,7 @@ fn want(problem: &SurfaceProblem, source: Option<&SurfaceFields>, approach: f64,
         wanted,
         is_unsettled,
         too_small,
+        room_before,
         ..
     } = solvers;
     wanted.clear();
@@ -232,12 +238,19 @@ fn want(problem: &SurfaceProblem, source: Option<&SurfaceFields>, approach: f64,
             approach: approach * AHEAD,
         };
         contacts::find(problem.operators, source, expected, search, apart, wanted);
+        let more = room / *room_before;
         for own in wanted.iter_mut() {
             if *is_unsettled {
                 // Those that are so large meet, and share a window.
-                own.region = own.region.grown(room);
-            } else if too_small.iter().flatten().any(|window| window.meets(&own.region)) {
-                own.room = room;
+                own.region = own.region.grown(more);
+                continue;
+            }
+            for outgrown in too_small
+                .iter()
+                .flatten()
+                .filter(|window| window.region.meets(&own.region))
+            {
+                own.room = std::array::from_fn(|way| if outgrown.ways[way] { more } else { own.room[way] });
             }
         }
         // A wheelset that has jumped touches elsewhere: the contacts of the step before say nothing then.
@@ -338,18 +351,22 @@ impl Merged {
 }
 
 /// Regions for windows: each of those wanted that are near each other.
-fn merged(sizes: &Sizes, wanted: &[Wanted]) -> Merged {
+fn merged(sizes: &Sizes, wanted: &[Wanted], cut_off: &[CutOff]) -> Merged {
     let mut regions = [Wanted::default(); CONTACTS];
     let mut count = 0;
     for new in wanted {
-        if count > 0
-            && let last = &mut regions[count - 1]
-            && (share_window(&last.region, &new.region, sizes) || last.goes_on_in(new))
-        {
-            last.join(new);
-            continue;
+        let mut new = *new;
+        if count > 0 {
+            let last = &mut regions[count - 1];
+            if share_window(&last.region, &new.region, sizes)
+                || last.goes_on_in(&new)
+                || !seams::give_room(last, &mut new, cut_off)
+            {
+                last.join(&new);
+                continue;
+            }
         }
-        regions[count] = *new;
+        regions[count] = new;
         count += 1;
     }
     // Where there are more than windows, two next to each other share one: those that are narrowest together.
@@ -417,14 +434,13 @@ fn assign(problem: &SurfaceProblem, wanted: &[Wanted], now: &mut SurfaceFields) 
             now.places[window] = None;
         }
         let window = window_of[number];
-        now.places[window] = Some(sizes.place(&wanted_here.region.grown(wanted_here.room), now.places[window]));
-        let between = |a: &Wanted, b: &Wanted| 0.5 * (a.region.across[1] + b.region.across[0]);
-        let low = number
-            .checked_sub(1)
-            .map_or(f64::NEG_INFINITY, |last| between(&wanted[last], wanted_here));
+        now.places[window] = Some(sizes.place(&wanted_here.region.with_room(wanted_here.room), now.places[window]));
+        let low = number.checked_sub(1).map_or(f64::NEG_INFINITY, |last| {
+            seams::between(&wanted[last].region, &wanted_here.region)
+        });
         let high = wanted
             .get(number + 1)
-            .map_or(f64::INFINITY, |next| between(wanted_here, next));
+            .map_or(f64::INFINITY, |next| seams::between(&wanted_here.region, &next.region));
         own[window] = [low, high];
     }
     now.are_close = (1..wanted.len()).any(|next| {

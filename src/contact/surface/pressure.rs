@@ -9,12 +9,14 @@ use super::fields::SurfaceFields;
 use super::geometry::ELSEWHERE;
 use super::operators::SurfaceOperators;
 use super::problem::SurfaceProblem;
+use super::seams::{self, CUTS};
 use super::search::LEAST_RISE;
-use super::solvers::SurfaceSolvers;
+use super::solvers::{Outgrown, SurfaceSolvers};
 use super::windows::{Place, WINDOWS};
 use crate::contact::engine::Engine;
 use crate::contact::patch::{extent, mechanics};
 use crate::contact::problem::Coupling;
+use crate::contact::step::MORE_ROOM;
 use crate::error::{Error, Result};
 use crate::mechanics::normal::normal_problem::Constraint;
 use crate::numerics::dense;
@@ -378,26 +380,43 @@ fn press_window(
     Ok(())
 }
 
-/// Refuses a contact that has become larger than its window, as long as there are larger ones.
+/// Refuses a contact that has become larger than its window, as long as there are larger ones, or is cut off at a seam.
 fn check_room(problem: &SurfaceProblem, fields: &SurfaceFields, solvers: &mut SurfaceSolvers) -> Result<()> {
     if problem.conditions.room >= LARGEST_ROOM {
         return Ok(());
     }
     let mut holds_all = true;
+    let cuts = solvers.cut_off.len();
     for (window, place) in fields.used() {
         let grid = &problem.operators.of(&place).grid;
         let (pressure, own) = (&fields.windows[window].pressure, &solvers.windows[window].patch);
+        for cut in seams::cut_off(grid, &place, solvers.own[window], pressure)
+            .into_iter()
+            .flatten()
+        {
+            if solvers.cut_off.len() < CUTS {
+                solvers.cut_off.push(cut);
+                holds_all = false;
+            }
+        }
         let overlap = problem.settings.mechanics.overlap;
         let [along, across] = extent::is_cut_off(grid, pressure, &own.normal.separation, overlap);
         // The largest window has no larger one: with more room it would only have longer cells.
-        if along && place.length > 0 || across && place.breadth > 0 {
+        let ways = [along && place.length > 0, across && place.breadth > 0];
+        if ways != [false; 2] {
             solvers.outgrown = fields.approach[0];
-            solvers.too_small[window] = Some(place.region(grid));
+            let region = place.region(grid);
+            solvers.too_small[window] = Some(Outgrown { region, ways });
             holds_all = false;
         }
     }
     if holds_all {
         return Ok(());
+    }
+    if solvers.cut_off.len() > cuts {
+        // The windows will stand elsewhere, and may hold their contacts there.
+        solvers.too_small = [None; WINDOWS];
+        solvers.room_before = problem.conditions.room * MORE_ROOM;
     }
     Err(Error::ContactOutgrowsWindow)
 }

@@ -5,9 +5,10 @@ use super::contacts::{CONTACTS, Wanted};
 use super::fields::SurfaceFields;
 use super::geometry::WindowGeometry;
 use super::operators::SurfaceOperators;
+use super::seams::{CUTS, CutOff};
 use super::search::Search;
 use super::transfer::Transfer;
-use super::windows::{LENGTHS, Region, WINDOWS};
+use super::windows::{EVERYWHERE, LENGTHS, Region, WINDOWS};
 use super::worn_bodies::{WornBodies, WornOff};
 use crate::contact::interface::Interface;
 use crate::contact::patch::solvers::PatchSolvers;
@@ -43,16 +44,31 @@ pub struct SurfaceSolvers {
     pub responded: bool,
     /// Regions to place windows for.
     pub wanted: Vec<Wanted>,
+    /// Arc lengths between which each window has the surface to itself, `m`; infinite where there is no other one.
+    pub own: [[f64; 2]; WINDOWS],
     /// Approach for which the geometry is that of the windows, `m`.
     pub reference: f64,
     /// Approach at which a contact has outgrown its window in this step, `m`.
     pub outgrown: f64,
-    /// Regions of the windows that contacts have outgrown in this step.
-    pub too_small: [Option<Region>; WINDOWS],
+    /// Windows that contacts have outgrown in this step.
+    pub too_small: [Option<Outgrown>; WINDOWS],
+    /// Room in the first try after contacts were cut off, with which the windows stand elsewhere: they have no more of it than this over that.
+    pub room_before: f64,
+    /// Contacts that have been cut off at the seams between windows in this step.
+    pub cut_off: Vec<CutOff>,
     /// Whether contacts of different windows have pushed each other away by turns in this step.
     pub is_unsettled: bool,
     /// Whether there are more contacts than windows.
     pub crowded: bool,
+}
+
+/// A window that a contact has outgrown.
+#[derive(Debug, Clone, Copy)]
+pub struct Outgrown {
+    /// Region that it covers.
+    pub region: Region,
+    /// Whether along and across.
+    pub ways: [bool; 2],
 }
 
 /// Solvers and buffers of one window.
@@ -100,9 +116,12 @@ impl SurfaceSolvers {
             apart_response: Apart::new(operators),
             responded: false,
             wanted: Vec::with_capacity(CONTACTS),
+            own: [EVERYWHERE; WINDOWS],
             reference: 0.0,
             outgrown: 0.0,
             too_small: [None; WINDOWS],
+            room_before: 1.0,
+            cut_off: Vec::with_capacity(CUTS),
             is_unsettled: false,
             crowded: false,
         }

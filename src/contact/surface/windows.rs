@@ -15,6 +15,9 @@ pub const LENGTHS: usize = 5;
 /// Number of breadths that a window may have.
 pub const BREADTHS: usize = 6;
 
+/// Arc lengths of a window that has the whole surface to itself, `m`.
+pub const EVERYWHERE: [f64; 2] = [f64::NEG_INFINITY, f64::INFINITY];
+
 /// Cells along the window, and strips across it, that stay free on either side of a region that a window is placed for.
 const MARGIN: [f64; 2] = [1.5, 1.0];
 /// Strips across the window that stay free on either side of a region in a window that stays.
@@ -114,6 +117,14 @@ impl Region {
             across: grown(self.across),
             narrowest: factor * self.narrowest,
             sharpest: self.sharpest,
+        }
+    }
+
+    /// The region grown about its middle by a factor along and one across, with the contact in it as broad as the region has become broader.
+    pub fn with_room(&self, [along, across]: [f64; 2]) -> Region {
+        Region {
+            along: self.grown(along).along,
+            ..self.grown(across)
         }
     }
 
