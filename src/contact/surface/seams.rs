@@ -73,7 +73,7 @@ mod tests {
     const OWN: [f64; 2] = [14e-3, 20e-3];
 
     fn cuts(loaded: std::ops::Range<usize>, own: [f64; 2]) -> [bool; 2] {
-        let grid = Grid::new(8, 12, 8e-3, 12e-3);
+        let grid = Grid::new(8, 12, 4e-3, 6e-3);
         let place = Place {
             length: 0,
             breadth: 0,
