@@ -96,10 +96,15 @@ fn distance(count: usize, pressure: impl Fn(usize) -> f64) -> f64 {
     (last - first) as f64 + reach(first, first + 1) + reach(last, last.wrapping_sub(1)) - 2.0 * JOINS
 }
 
+/// Whether a strip is under pressure anywhere.
+pub fn is_loaded(grid: &Grid, pressure: &[f64], strip: usize) -> bool {
+    pressure[grid.row(strip)].iter().any(|&pressure| pressure > 0.0)
+}
+
 /// Whether a contact would reach beyond its window, had it not been held within it: at the ends along the strips, and across them. The surfaces overlap there
 /// by more than `overlap`, or the outermost strips are under pressure.
 pub fn is_cut_off(grid: &Grid, pressure: &[f64], separation: &[f64], overlap: f64) -> [bool; 2] {
-    let is_loaded = |strip: usize| pressure[grid.row(strip)].iter().any(|&pressure| pressure > 0.0);
+    let is_loaded = |strip: usize| is_loaded(grid, pressure, strip);
     if !(0..grid.strips).any(is_loaded) {
         return [false; 2];
     }

@@ -11,7 +11,7 @@ use super::profile_wear;
 use super::solvers::SurfaceSolvers;
 use super::tangent::{self, SurfaceTangent};
 use super::totals;
-use super::windows::WINDOWS;
+use super::windows::{EVERYWHERE, WINDOWS};
 use crate::contact::engine::{Along, Direction, Engine, Linearised};
 use crate::contact::fields::EngineState;
 use crate::contact::integrals::Integrals;
@@ -398,14 +398,13 @@ impl Engine for SurfaceOperators {
             apart.displace(operators, window, &place);
             let own = &mut solvers.windows[window];
             own.prepare(place.length);
-            let everywhere = [f64::NEG_INFINITY, f64::INFINITY];
             let undeformed = &mut own.patch.undeformed;
             own.geometry.set(
                 operators,
                 (&bodies.rail, &wheel),
                 &place,
                 &pose.motion,
-                everywhere,
+                EVERYWHERE,
                 undeformed,
             );
             add_multiple(&apart.displacement[window], 1.0, &mut undeformed.gap);

@@ -1,15 +1,16 @@
 //! Seams: where the part of the surface that one window has to itself ends, and that of the next window begins.
 //!
-//! They are placed half-way between the regions that windows are wanted for, before the contacts are known. A contact that reaches one would go on beyond it, and where it is
-//! cut off its pressure has a false peak. The step is then tried again: the window of that contact gets the surface up to the other region, and where the contact reaches that end too, or both
-//! contacts have reached the seam, they share a window.
+//! A seam is placed half-way between two regions that windows are wanted for, before the contacts in them are known. A contact that reaches the seam would go on beyond it. It is
+//! cut off there, and its pressure has a false peak. The step is then tried again, and the window of that contact gets the surface up to the other region. Where the contact reaches the end of that as
+//! well, or both contacts have reached the seam, one window is made for both.
 
 use super::contacts::Wanted;
 use super::windows::{Place, Region, WINDOWS};
 use crate::body::grid::Grid;
+use crate::contact::patch::extent::is_loaded;
 
-/// Number of contacts that are found to be cut off in a step, at most.
-pub const CUTS: usize = 4 * WINDOWS;
+/// Number of contacts that are found to be cut off in a step, at most: at both ends of each window in three tries.
+pub const CUTS: usize = 6 * WINDOWS;
 /// Distance of two seams, over the mean breadth of the regions beside one, below which they are the same: between two tries the regions change a little with the approach.
 const SAME: f64 = 0.1;
 
@@ -24,11 +25,12 @@ pub struct CutOff {
 
 /// Contacts of a window that are cut off at the ends of what it has to itself: the last strip before one is under pressure.
 pub fn cut_off(grid: &Grid, place: &Place, own: [f64; 2], pressure: &[f64]) -> [Option<CutOff>; 2] {
-    let carries = |strip: usize| pressure[grid.row(strip)].iter().any(|&pressure| pressure > 0.0);
     [0, 1].map(|end| {
         let seam = own[end];
         let is_beside = |&strip: &usize| (place.arc(grid, strip) - seam).abs() <= grid.breadth;
-        let is_cut_off = (0..grid.strips).filter(is_beside).any(carries);
+        let is_cut_off = (0..grid.strips)
+            .filter(is_beside)
+            .any(|strip| is_loaded(grid, pressure, strip));
         is_cut_off.then_some(CutOff {
             seam,
             is_on_gauge_side: end == 1,
@@ -43,6 +45,7 @@ pub fn between(first: &Region, next: &Region) -> f64 {
 
 /// Moves the seam between two regions to the end of one of them, where the contact of the other one has been cut off. Returns whether they may have windows of their own.
 pub fn give_room(first: &mut Wanted, next: &mut Wanted, cut_off: &[CutOff]) -> bool {
+    let seam = between(&first.region, &next.region);
     let (own, other) = (&mut first.region.across, &mut next.region.across);
     let near = SAME * 0.5 * (own[1] - own[0] + other[1] - other[0]);
     let is_cut_off = |is_on_gauge_side: bool, seam: f64| {
@@ -50,7 +53,6 @@ pub fn give_room(first: &mut Wanted, next: &mut Wanted, cut_off: &[CutOff]) -> b
         cuts.any(|cut| (cut.seam - seam).abs() <= near)
     };
     let (end, begin) = (own[1], other[0]);
-    let seam = 0.5 * (end + begin);
     match [is_cut_off(true, seam), is_cut_off(false, seam)] {
         [false, false] => true,
         [true, false] if begin > end && !is_cut_off(true, begin) => {
@@ -67,6 +69,7 @@ pub fn give_room(first: &mut Wanted, next: &mut Wanted, cut_off: &[CutOff]) -> b
 
 #[cfg(test)]
 mod tests {
+    use super::super::windows::EVERYWHERE;
     use super::*;
 
     /// A window with strips of 1 mm from 10 mm on, of which those from 14 to 20 mm, to round-off, belong to it.
@@ -92,7 +95,7 @@ mod tests {
         assert_eq!(cuts(5..9, OWN), [false, false]);
         assert_eq!(cuts(4..9, OWN), [true, false]);
         assert_eq!(cuts(5..10, OWN), [false, true]);
-        assert_eq!(cuts(0..12, [f64::NEG_INFINITY, f64::INFINITY]), [false, false]);
+        assert_eq!(cuts(0..12, EVERYWHERE), [false, false]);
     }
 
     /// Regions of 2 mm with 4 mm between them: the seam goes to the end of the region whose contact has not reached it, and there is none where that was not enough or both have.

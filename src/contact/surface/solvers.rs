@@ -52,7 +52,7 @@ pub struct SurfaceSolvers {
     pub outgrown: f64,
     /// Windows that contacts have outgrown in this step.
     pub too_small: [Option<Outgrown>; WINDOWS],
-    /// Room in the first try after contacts were cut off, with which the windows stand elsewhere: they have no more of it than this over that.
+    /// Room for contacts, as in the conditions, in the first try with the seams there are now. What contacts have outgrown since gets the room of the conditions over this one.
     pub room_before: f64,
     /// Contacts that have been cut off at the seams between windows in this step.
     pub cut_off: Vec<CutOff>,
@@ -67,7 +67,7 @@ pub struct SurfaceSolvers {
 pub struct Outgrown {
     /// Region that it covers.
     pub region: Region,
-    /// Whether along and across.
+    /// Whether it is too short along the rail, and whether too narrow across it.
     pub ways: [bool; 2],
 }
 

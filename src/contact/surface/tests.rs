@@ -6,7 +6,7 @@ use super::placement::place;
 use super::pressure::hold;
 use super::problem::SurfaceProblem;
 use super::solvers::SurfaceSolvers;
-use super::windows::Place;
+use super::windows::{EVERYWHERE, Place};
 use super::worn_bodies::WornBodies;
 use crate::body::grid::Grid;
 use crate::contact::engine::Engine;
@@ -88,8 +88,7 @@ fn built(parameters: &Parameters) -> (Settings, SurfaceOperators, SurfaceSolvers
 /// Gap and rigid slip that the cells of a window see.
 fn seen(operators: &SurfaceOperators, bodies: (&PlacedRail, &PlacedWheel), place: &Place, pose: &Pose) -> Undeformed {
     let mut undeformed = Undeformed::none(&operators.of(place).grid);
-    let everywhere = [f64::NEG_INFINITY, f64::INFINITY];
-    WindowGeometry::new(operators).set(operators, bodies, place, &pose.motion, everywhere, &mut undeformed);
+    WindowGeometry::new(operators).set(operators, bodies, place, &pose.motion, EVERYWHERE, &mut undeformed);
     undeformed
 }
 
@@ -123,13 +122,12 @@ fn the_change_of_the_geometry_is_its_difference() {
                 let wheel = PlacedWheel::new(&operators.bodies.wheel, &pose.position);
                 let mut tangent = Undeformed::none(grid);
                 let mut own = WindowGeometry::new(&operators);
-                let everywhere = [f64::NEG_INFINITY, f64::INFINITY];
                 own.set(
                     &operators,
                     (&operators.bodies.rail, &wheel),
                     &place,
                     &pose.motion,
-                    everywhere,
+                    EVERYWHERE,
                     &mut tangent,
                 );
                 own.set_change(&operators, &place, &wheel, (&pose, &change), &mut tangent);
