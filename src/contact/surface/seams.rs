@@ -2,7 +2,8 @@
 //!
 //! A seam is placed half-way between two regions that windows are wanted for, before the contacts in them are known. A contact that reaches the seam would go on beyond it. It is
 //! cut off there, and its pressure has a false peak. The step is then tried again, and the window of that contact gets the surface up to the other region. Where the contact reaches the end of that as
-//! well, or both contacts have reached the seam, one window is made for both.
+//! well, or both contacts have reached the seam, one window is made for both. One window at once would have cells for the larger region, and the forces of a wheel that goes sideways step by more
+//! where it comes and goes.
 
 use super::contacts::Wanted;
 use super::windows::{Place, Region, WINDOWS};
