@@ -2,8 +2,8 @@
 //!
 //! A seam is placed half-way between two regions that windows are wanted for, before the contacts in them are known. A contact that reaches the seam would go on beyond it. It is
 //! cut off there, and its pressure has a false peak. The step is then tried again, and the window of that contact gets the surface up to the other region. Where the contact reaches the end of that as
-//! well, or both contacts have reached the seam, one window is made for both. One window at once would have cells for the larger region, and the forces of a wheel that goes sideways step by more
-//! where it comes and goes.
+//! well, or both contacts have reached the seam, one window is made for both. Not at once: a window for both has
+//! the cells of the larger region, and the forces of a wheel that moves sideways step by more where windows are joined.
 
 use super::contacts::Wanted;
 use super::windows::{Place, Region, WINDOWS};
