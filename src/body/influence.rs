@@ -48,6 +48,16 @@ pub struct ScalarTables<T> {
 pub struct SourceTables<T> {
     even: Vec<T>,
     odd: Vec<T>,
+    ends: Vec<EndTables<T>>,
+}
+
+/// Further effects of the load of one cell of each strip, in proportion to it: the harmonics of the kernels A and B of that, row by row with the
+/// cells that it acts on.
+#[derive(Debug, Clone)]
+pub struct EndTables<T> {
+    cell: usize,
+    even: Vec<T>,
+    odd: Vec<T>,
 }
 
 /// Everything that products on a grid share for one number of harmonics.
@@ -158,11 +168,39 @@ impl Transform {
         }
     }
 
-    /// The tables of kernels A and B alone.
-    pub fn source_tables(&self, a: impl Fn(Lag) -> f64, b: impl Fn(Lag) -> f64) -> SourceTables<f64> {
+    /// The tables of kernels A and B alone, and of what else some cells do.
+    pub fn source_tables(
+        &self,
+        a: impl Fn(Lag) -> f64,
+        b: impl Fn(Lag) -> f64,
+        ends: Vec<EndTables<f64>>,
+    ) -> SourceTables<f64> {
         SourceTables {
             even: self.table(f64::cos, a),
             odd: self.table(f64::sin, b),
+            ends,
+        }
+    }
+
+    /// The tables of kernels A and B with which a cell does something else than by its lag, as functions of the cell that it acts on and the
+    /// strips to the left; along x there are so many cells.
+    pub fn end_tables(
+        &self,
+        cell: usize,
+        cells: usize,
+        a: impl Fn(usize, isize) -> f64,
+        b: impl Fn(usize, isize) -> f64,
+    ) -> EndTables<f64> {
+        let table = |wave, kernel: &dyn Fn(usize, isize) -> f64| {
+            self.table(wave, |(lag, across)| match lag.checked_add_unsigned(self.stride) {
+                Some(on) if (on as usize) < cells => kernel(on as usize, across),
+                _ => 0.0,
+            })
+        };
+        EndTables {
+            cell,
+            even: table(f64::cos, &a),
+            odd: table(f64::sin, &b),
         }
     }
 
@@ -295,16 +333,6 @@ impl ScalarTables<f64> {
     }
 }
 
-impl SourceTables<f64> {
-    /// Tables in single precision.
-    pub fn single(&self) -> SourceTables<f32> {
-        SourceTables {
-            even: rounded(&self.even),
-            odd: rounded(&self.odd),
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -337,7 +365,9 @@ mod tests {
             let transform = Transform::new(&grid, window.strips.len());
             let [a, b, c] = kernels();
             let tables = transform.tables(a, b, c);
-            let (scalar, source) = (transform.scalar_tables(a), transform.source_tables(a, b));
+            let (at_end, odd_at_end) = (|on: usize, across: isize| a((2 * on as isize, across)), |on: usize, across: isize| b((on as isize, across)));
+            let ends = [0, cells - 1].map(|end| transform.end_tables(end, cells, at_end, odd_at_end));
+            let (scalar, source) = (transform.scalar_tables(a), transform.source_tables(a, b, ends.to_vec()));
             let loaded = |strip: usize, cell: usize| window.strips.contains(&strip) && window.loaded.contains(&cell);
             let mut load = [vec![0.0; grid.len()], vec![0.0; grid.len()]];
             for strip in 0..strips {
@@ -376,6 +406,10 @@ mod tests {
                             alone[1] += a(lag) * y;
                             of_source[0] += a(lag) * x;
                             of_source[1] += b(lag) * x;
+                            if cell_loaded == 0 || cell_loaded == cells - 1 {
+                                of_source[0] += at_end(cell, lag.1) * x;
+                                of_source[1] += odd_at_end(cell, lag.1) * x;
+                            }
                         }
                     }
                     let place = grid.place(strip, cell);

@@ -139,7 +139,8 @@ impl<T: Precision> Kernels for ScalarTables<T> {
     }
 }
 
-/// The load travels as that of [`ScalarTables`], the result as that of [`Tables`]: out_x = A τ, out_y = B τ.
+/// The load travels as that of [`ScalarTables`], the result as that of [`Tables`]: out_x = A τ, out_y = B τ. What its ends do besides is added
+/// to the transform of the result: a sum over strips and cells for each strip would take longer than all the rest.
 impl<T: Precision> Kernels for SourceTables<T> {
     type Real = T;
     type Load<'a> = &'a [T];
@@ -171,7 +172,14 @@ impl<T: Precision> Kernels for SourceTables<T> {
             let lags = transform.lags_of(harmonic);
             convolve_one(simd, &tables.even[lags.clone()], [re, im], &ranges, [sum_xr, sum_xi]);
             // The transform of an odd kernel is −i b: the product's is Σ b im − i Σ b re.
-            convolve_one(simd, &tables.odd[lags], [im, re], &ranges, [sum_yr, sum_yi]);
+            convolve_one(simd, &tables.odd[lags.clone()], [im, re], &ranges, [sum_yr, sum_yi]);
+            for end in tables.ends.iter().filter(|end| window.loaded.contains(&end.cell)) {
+                let cell = end.cell - window.loaded.start;
+                let [even, odd] = [&end.even, &end.odd].map(|table| &table[lags.clone()][window.read.start..][..read]);
+                let values = [re[cell], im[cell]];
+                add_product(simd, even, values, [sum_xr, sum_xi]);
+                add_product(simd, odd, [values[1], values[0]], [sum_yr, sum_yi]);
+            }
             negate(simd, &mut sum_yi[..read]);
             let [own, mirror] = places(size, harmonic, read);
             put_together(simd, [sum_xr, sum_xi, sum_yr, sum_yi], &own, &mirror, other);
@@ -376,6 +384,17 @@ fn convolve_one_block<T: Real, S: Simd, const VECTORS: usize>(
     }
     for (out, sums) in out.iter_mut().zip([sum_re, sum_im]) {
         T::vectors_mut::<S>(&mut out[start..start + block]).copy_from_slice(&sums);
+    }
+}
+
+/// Adds a kernel times a complex value.
+#[inline(always)]
+fn add_product<T: Real, S: Simd>(simd: S, kernel: &[T], value: [T; 2], out: [&mut [T]; 2]) {
+    for (value, out) in value.into_iter().zip(out) {
+        let value = T::splat(simd, value);
+        for (out, kernel) in T::vectors_mut::<S>(out).iter_mut().zip(T::vectors::<S>(kernel)) {
+            *out = T::multiply_add(simd, *kernel, value, *out);
+        }
     }
 }
 

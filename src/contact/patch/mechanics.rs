@@ -100,7 +100,7 @@ pub fn lift_off(problem: &PatchProblem, interface: &Interface, fields: &mut Patc
     fields.memory.now.speed.fill(0.0);
     fields.memory.now.flow.fill(0.0);
     fields.penetration = 0.0;
-    given_displacement(problem, interface, fields, 0.0, solvers);
+    given_displacement(problem, interface, fields, solvers);
 }
 
 /// (37). Returns whether other cells are under pressure than before.
@@ -210,9 +210,7 @@ fn solve_friction(
     keep_within_bounds(grid, &solvers.contact, &solvers.bound, fields, &mut solvers.nothing);
     let peak = largest(&fields.pressure);
     let tolerance = peak * tolerance.max(problem.settings.patch.least_tolerance);
-    // Of so small a change of a displacement single precision leaves out much less than the tolerance.
-    let small = tolerance * operators.normal_influence.diagonal / problem.settings.patch.single_round_off;
-    free_slip(problem, interface, &weights, fields, small, solvers);
+    free_slip(problem, interface, &weights, fields, solvers);
     centroid::set_loads(grid, &fields.pressure, &mut solvers.loads);
     for run in solvers.contact.runs() {
         let centroid = centroid::centroid(&solvers.loads, run.strip);
@@ -297,19 +295,17 @@ fn keep_within_bounds(grid: &Grid, contact: &Contact, bound: &[f64], fields: &mu
     on_grid.fill(0.0);
 }
 
-/// Computes the slip ahead of the cells without the response to their shear. Displacements that have changed by no more than `small` are
-/// changed in single precision.
+/// Computes the slip ahead of the cells without the response to their shear.
 fn free_slip(
     problem: &PatchProblem,
     interface: &Interface,
     weights: &SlipWeights,
     fields: &PatchFields,
-    small: f64,
     solvers: &mut PatchSolvers,
 ) {
     let operators = problem.operators;
     let grid = &operators.grid;
-    given_displacement(problem, interface, fields, small, solvers);
+    given_displacement(problem, interface, fields, solvers);
     let ahead: isize = if problem.is_forward() { 1 } else { -1 };
     for component in 0..2 {
         let slip = &mut solvers.free_slip[component];
@@ -336,15 +332,8 @@ fn free_slip(
     }
 }
 
-/// Computes the displacement that does not come from shear: by pressure where the bodies differ, and by heat, in single precision where that has
-/// changed by no more than `small`.
-fn given_displacement(
-    problem: &PatchProblem,
-    interface: &Interface,
-    fields: &PatchFields,
-    small: f64,
-    solvers: &mut PatchSolvers,
-) {
+/// Computes the displacement that does not come from shear: by pressure where the bodies differ, and by heat.
+fn given_displacement(problem: &PatchProblem, interface: &Interface, fields: &PatchFields, solvers: &mut PatchSolvers) {
     let operators = problem.operators;
     let grid = &operators.grid;
     let window = Window::whole(grid);
@@ -364,7 +353,7 @@ fn given_displacement(
     let heat = &mut solvers.expansion;
     if operators
         .expansion
-        .displace(grid, &operators.transform, interface.displacement(), small, heat)
+        .displace(grid, &operators.transform, interface.displacement(), heat)
     {
         for (given, by_heat) in solvers.given.iter_mut().zip(&heat.displacement) {
             add_multiple(by_heat, 1.0, given);

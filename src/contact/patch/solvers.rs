@@ -123,6 +123,5 @@ impl PatchSolvers {
     pub fn start_step(&mut self) {
         self.normal.start_step();
         self.friction.start_step();
-        self.expansion.start_step();
     }
 }

@@ -271,10 +271,9 @@ impl PatchTangent {
                 .apply(tables, &window, load, [x, y], &mut self.products);
         }
         let heat = &mut self.expansion;
-        heat.start_step();
         if operators
             .expansion
-            .displace(grid, &operators.transform, iterate.displacement(), 0.0, heat)
+            .displace(grid, &operators.transform, iterate.displacement(), heat)
         {
             for (given, by_heat) in self.given.iter_mut().zip(&heat.displacement) {
                 add_multiple(by_heat, 1.0, given);
