@@ -132,7 +132,7 @@ impl<E: Engine> LinearSystem<E> {
         following.values_mut().fill(0.0);
         begin_direction(at, direction, &mut self.change);
         sweep_tangent(at, direction, following, &mut self.change, &mut self.image)?;
-        following.values_mut().copy_from_slice(self.image.values());
+        following.copy_from(&self.image);
         let residual = self.solve(at, following.values_mut(), settings.tolerance, refinements)?;
         if residual > settings.largest_residual {
             return Err(Error::SensitivityNotConverged {

@@ -43,7 +43,7 @@ impl Closest {
     fn keep(&mut self, iterate: &Interface, change: f64) {
         if change < self.change {
             self.change = change;
-            self.iterate.values_mut().copy_from_slice(iterate.values());
+            self.iterate.copy_from(iterate);
         }
     }
 }
@@ -74,7 +74,7 @@ impl<E: Engine> Newton<E> {
 
     /// Sets the iterate to the closest one so far.
     pub fn take_closest(&self, iterate: &mut Interface) {
-        iterate.values_mut().copy_from_slice(self.closest.iterate.values());
+        iterate.copy_from(&self.closest.iterate);
     }
 
     /// Forgets the step before.
@@ -192,7 +192,7 @@ fn solve_within<E: Engine>(
         closest,
         ..
     } = newton;
-    sweeps.iterate.values_mut().copy_from_slice(closest.iterate.values());
+    sweeps.iterate.copy_from(&closest.iterate);
     let mut residual = sweeps.counted_sweep(problem, work)??;
     let (mut count, mut jumps) = (1, 0);
     for _ in 0..settings.newton_steps {
@@ -202,7 +202,7 @@ fn solve_within<E: Engine>(
         if change <= settings.newton_margin * split.tolerance {
             return Ok((count, true));
         }
-        origin.values_mut().copy_from_slice(sweeps.iterate.values());
+        origin.copy_from(sweeps.iterate);
         let values = sweeps.iterate.values().iter().zip(sweeps.image.values());
         for (step, (iterate, image)) in step.values_mut().iter_mut().zip(values) {
             *step = image - iterate;
@@ -247,7 +247,7 @@ fn solve_within<E: Engine>(
         }
     }
     // It gets no further: the closest iterate may be as good as the mesh all the same.
-    sweeps.iterate.values_mut().copy_from_slice(closest.iterate.values());
+    sweeps.iterate.copy_from(&closest.iterate);
     Ok((count, closest.change <= split.stalled_tolerance))
 }
 

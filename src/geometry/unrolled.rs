@@ -106,6 +106,12 @@ impl Distance {
 const STEPS: usize = 12;
 /// Distance that two steps may differ by at the end, `m`: round-off of a radius.
 const TOLERANCE: f64 = 2e-16;
+/// Step after which the distance is known to round-off, `m`, and what has been found of the wheel before it is carried on to the first order: at
+/// most places one look at the profile in place of two.
+const SHORT_STEP: f64 = 1e-8;
+/// Way along the rail, `m`, over which the distance is known to the second order to much less than a nanometre, and its derivatives are the same to
+/// 1e-4: on the tread, the way to the closest place over the next point, which is not looked at again. Without yaw there is none.
+const SHORT_WAY: f64 = 1e-5;
 /// Longest step, `m`: less than the radii of a flange.
 const LONGEST_STEP: f64 = 3e-3;
 /// Value of f, `m`, above which Newton's method has not found the wheel.
@@ -164,9 +170,13 @@ impl<'a> PlacedWheel<'a> {
             let step = (found.outside / slope).clamp(-LONGEST_STEP, LONGEST_STEP);
             leapt |= step.abs() == LONGEST_STEP;
             distance -= step;
-            found = self.at(base, along, distance);
             // The error after a step is that before, squared, over a radius of at least some millimetres.
-            if step.abs() <= 1e-8 || found.outside.abs() <= TOLERANCE {
+            if step.abs() <= SHORT_STEP {
+                found.go_on(along, -step);
+                break;
+            }
+            found = self.at(base, along, distance);
+            if found.outside.abs() <= TOLERANCE {
                 break;
             }
         }
@@ -316,14 +326,12 @@ impl<'a> PlacedWheel<'a> {
             }
             let step = (slope / at.curvature_along).clamp(-LONGEST_STEP * 10.0, LONGEST_STEP * 10.0);
             x -= step;
-            // The guess was the closest place, as it is for a wheelset without yaw: the distance there is known.
-            if step.abs() < 1e-9 {
+            let distance = at.farther_along(-step);
+            if step.abs() < SHORT_WAY {
+                at.distance = distance;
                 break;
             }
-            at = self.distance(x, point, at.farther_along(-step));
-            if step.abs() < 1e-6 {
-                break;
-            }
+            at = self.distance(x, point, distance);
         }
         (x, at)
     }
@@ -361,6 +369,18 @@ struct Outside {
     radius: f64,
     /// Second derivative of the profile's height.
     second: f64,
+}
+
+impl Outside {
+    /// Goes on by a short way in a direction, `m`, to the first order.
+    fn go_on(&mut self, direction: [f64; 3], way: f64) {
+        self.outside += way * dot(self.gradient, direction);
+        self.place = add(self.place, direction, way);
+        let [qx, _, qz] = self.place;
+        self.radius = (qx * qx + qz * qz).sqrt();
+        let slope = self.gradient[1] + way * direction[1] * self.second;
+        self.gradient = [qx / self.radius, slope, qz / self.radius];
+    }
 }
 
 fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {

@@ -75,12 +75,15 @@ pub fn damage(problem: &PatchProblem, fields: &PatchFields, peak_rise: f64) -> P
     }
 }
 
+/// Cells that carry or that heat passes through: the others add nothing.
 fn nodes<'f>(problem: &'f PatchProblem, fields: &'f PatchFields) -> impl Iterator<Item = Node> + 'f {
     let grid = &problem.operators.grid;
     let regularisation = problem.parameters.slip_regularisation;
     let wear = problem.pointwise_wear();
     (0..grid.strips).flat_map(move |strip| {
-        (0..grid.cells).map(move |cell| {
+        let flux = &fields.heat.flux[strip * grid.cells..][..grid.cells];
+        let adds = move |cell: &usize| fields.pressure[grid.place(strip, *cell)] > 0.0 || flux[*cell] != 0.0;
+        (0..grid.cells).filter(adds).map(move |cell| {
             let place = grid.place(strip, cell);
             let pressure = fields.pressure[place];
             let shear = [fields.shear[0][place], fields.shear[1][place]];
@@ -99,7 +102,7 @@ fn nodes<'f>(problem: &'f PatchProblem, fields: &'f PatchFields) -> impl Iterato
                 slip: fields.slip[0][place],
                 lateral_slip: fields.slip[1][place],
                 friction: fields.friction[place],
-                heat_flux: fields.heat.flux[strip * grid.cells + cell],
+                heat_flux: flux[cell],
                 wear_rate: wear.map_or(0.0, |law| law.rate(&problem.rubbing(fields, place))),
                 sticks: pressure > 0.0 && coulomb::sticks(utilisation * (1.0 + SLIDES), regularisation),
             }

@@ -168,6 +168,21 @@ impl Apart {
         add_multiple(&other.displacement[window], factor, &mut self.displacement[window]);
     }
 
+    /// Begins with what the pressures of the fields do to each other's windows: of one window, nothing.
+    pub fn begin(&mut self, operators: &SurfaceOperators, fields: &SurfaceFields) {
+        if fields.used().count() > 1 {
+            self.set_resultants(operators, fields);
+            for (window, place) in fields.used() {
+                self.displace(operators, window, &place);
+            }
+        } else {
+            self.clear(operators, fields.are_close);
+            for (window, _) in fields.used() {
+                self.displacement[window].fill(0.0);
+            }
+        }
+    }
+
     /// Begins with the resultants of the pressure of the fields, or of its change.
     pub fn set_resultants(&mut self, operators: &SurfaceOperators, fields: &SurfaceFields) {
         self.clear(operators, fields.are_close);

@@ -111,7 +111,6 @@ pub fn find(
     found.clear();
     carrying(operators, fields, expected, search, found);
     found.retain(|own| search.is_near(own.region.across, approach + LIFTED));
-    apart.set_resultants(operators, fields);
     let carrying = found.len();
     let about: [Region; CONTACTS] = std::array::from_fn(|number| {
         found
@@ -119,12 +118,18 @@ pub fn find(
             .map_or(Region::default(), |own| own.region.grown(beside))
     });
     let least = LEAST_DEPTH * approach;
+    // Asked for in few steps: most find no overlap outside of the contacts.
+    let mut resultants_are_set = false;
     let mut last = f64::NAN;
     for overlap in search.deepest(approach) {
         let [along, across] = overlap.place;
         if about[..carrying].iter().any(|region| region.holds_across(across)) {
             last = f64::NAN;
             continue;
+        }
+        if !resultants_are_set {
+            apart.set_resultants(operators, fields);
+            resultants_are_set = true;
         }
         if overlap.depth - load_ratio * apart.sinking(operators, [along, across]) <= least {
             last = f64::NAN;

@@ -92,7 +92,7 @@ impl Engine for SurfaceOperators {
 
     fn interface(&self) -> Interface {
         let grid = &self.sizes.largest;
-        Interface::new(WINDOWS * grid.strips * grid.cells, 1)
+        Interface::of_windows(WINDOWS, grid.strips * grid.cells)
     }
 
     fn split_settings(settings: &Settings) -> SplitSettings {
@@ -210,8 +210,7 @@ impl Engine for SurfaceOperators {
     }
 
     fn read(problem: &SurfaceProblem, fields: &SurfaceFields, solvers: &mut SurfaceSolvers, interface: &mut Interface) {
-        interface.values_mut().fill(0.0);
-        interface.parts().set_temperatures(&[], fields.wheel_temperature);
+        interface.clear_windows(fields.wheel_temperature);
         for (window, place) in fields.used() {
             let own = &mut solvers.windows[window];
             heat_and_wear::read(
@@ -393,9 +392,8 @@ impl Engine for SurfaceOperators {
         let bodies = solvers.worn.of(operators);
         let wheel = PlacedWheel::new(&bodies.wheel, &pose.at_height(problem.height(fields)));
         let apart = &mut solvers.apart;
-        apart.set_resultants(operators, fields);
+        apart.begin(operators, fields);
         for (window, place) in fields.used() {
-            apart.displace(operators, window, &place);
             let own = &mut solvers.windows[window];
             own.prepare(place.length);
             let undeformed = &mut own.patch.undeformed;

@@ -16,6 +16,9 @@ use crate::parameters::{Parameters, ProfileContents, ProfileSource, ProfileWear}
 /// Distance of the points of the rail's profile at which contacts are sought, `m`: less than the breadth of the smallest that carries
 /// an appreciable load.
 const SCAN_STEP: f64 = 0.5e-3;
+/// Sine of the inclination to the field side, 60°, beyond which no contact is sought: no tread is as hollow. There the normals miss the wheel, and the search
+/// spent a third of its time on them.
+const STEEPEST_TO_THE_FIELD: f64 = 0.866;
 /// Length of the longest window over that of a patch's: contacts on the flange are several times as long as broad.
 const LONGEST: f64 = 4.0;
 /// Breadth of the broadest window over that of a patch's: contacts in the gauge corner are several times as broad as long.
@@ -122,6 +125,7 @@ impl SurfaceOperators {
                 let arc = last - point as f64 * SCAN_STEP;
                 (arc, rail.at(arc))
             })
+            .skip_while(|(_, point)| point.normal[0] > STEEPEST_TO_THE_FIELD)
             .collect();
         let cells = parameters.profile_wear_points;
         let worn_height = WornHeight::new(&profiles[WHEEL], cells).map_err(Error::Profile)?;

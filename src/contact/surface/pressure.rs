@@ -116,10 +116,7 @@ pub fn press(
         let guess = fields.approach[0].max(0.05 * solvers.reference);
         Approaches::of_load(problem.vertical_load(), guess, fields.stiffness, scale)
     };
-    solvers.apart.set_resultants(problem.operators, fields);
-    for (window, place) in fields.used() {
-        solvers.apart.displace(problem.operators, window, &place);
-    }
+    solvers.apart.begin(problem.operators, fields);
     let tolerance_of_load = tolerance
         .max(LOAD_TOLERANCE)
         .max(search.load.map_or(0.0, |load| least_load_error(problem, load)));

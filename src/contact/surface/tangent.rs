@@ -98,7 +98,7 @@ impl SurfaceTangent {
             worn: WornBodies::new(operators),
             search: Search::new(&operators.bodies),
             approach: 0.0,
-            nothing: Interface::new(WINDOWS * grid.strips * grid.cells, 1),
+            nothing: Interface::of_windows(WINDOWS, grid.strips * grid.cells),
         }
     }
 

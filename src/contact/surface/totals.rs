@@ -5,6 +5,7 @@ use super::operators::SurfaceOperators;
 use super::problem::SurfaceProblem;
 use super::profile_wear;
 use super::solvers::SurfaceSolvers;
+use super::windows::WINDOWS;
 use crate::body::grid::Grid;
 use crate::contact::engine::Engine;
 use crate::contact::integrals::{Integrals, NodeSums};
@@ -15,13 +16,19 @@ use crate::contact::patch::fields::PatchFields;
 use crate::contact::patch::operators::PatchOperators;
 use crate::contact::rim::ContactHeat;
 use crate::damage::PointDamage;
-use crate::friction::coulomb;
 use crate::geometry::unrolled::{PlacedWheel, RailPoint};
 
 /// Integrals of the given fields under the problem's conditions.
 pub fn integrals(problem: &SurfaceProblem, fields: &SurfaceFields, solvers: &SurfaceSolvers) -> Integrals {
     let operators = problem.operators;
     let area = operators.sizes.largest.cell_area();
+    let mut of_windows = [None; WINDOWS];
+    for (window, place) in fields.used() {
+        of_windows[window] = Some(patch::integrals::integrals(
+            &problem.of(&place),
+            &fields.windows[window],
+        ));
+    }
     let mut all = Integrals {
         sums: NodeSums::default(),
         node_area: area,
@@ -41,12 +48,13 @@ pub fn integrals(problem: &SurfaceProblem, fields: &SurfaceFields, solvers: &Sur
         ),
         wheel_temperature: fields.wheel_temperature,
         damage: PointDamage::default(),
-        on_wheelset: on_wheelset(problem, fields, solvers),
+        on_wheelset: on_wheelset(problem, fields, solvers, &of_windows),
     };
-    for (window, place) in fields.used() {
-        let patch = problem.of(&place);
-        let own = patch::integrals::integrals(&patch, &fields.windows[window]);
-        let middle = place.middle_along(&patch.operators.grid);
+    for (own, place) in of_windows.iter().zip(&fields.places) {
+        let (Some(own), Some(place)) = (own, place) else {
+            continue;
+        };
+        let middle = place.middle_along(&operators.of(place).grid);
         let sums = NodeSums {
             moment: own.sums.moment + middle * own.sums.pressure,
             ..own.sums
@@ -71,8 +79,13 @@ pub fn integrals(problem: &SurfaceProblem, fields: &SurfaceFields, solvers: &Sur
     all
 }
 
-/// Force and moment on the wheelset and the contacts.
-fn on_wheelset(problem: &SurfaceProblem, fields: &SurfaceFields, solvers: &SurfaceSolvers) -> OnWheelset {
+/// Force and moment on the wheelset and the contacts, of which the integrals are given.
+fn on_wheelset(
+    problem: &SurfaceProblem,
+    fields: &SurfaceFields,
+    solvers: &SurfaceSolvers,
+    of_windows: &[Option<Integrals>; WINDOWS],
+) -> OnWheelset {
     let operators = problem.operators;
     let bodies = solvers.worn.of(operators);
     let (pose, height) = (problem.pose(), problem.height(fields));
@@ -89,14 +102,15 @@ fn on_wheelset(problem: &SurfaceProblem, fields: &SurfaceFields, solvers: &Surfa
     for (window, place) in fields.used() {
         let patch = problem.of(&place);
         let own = &fields.windows[window];
-        if !own.pressure.iter().any(|&pressure| pressure > 0.0) {
+        let Some(integrals) = of_windows[window].filter(|integrals| integrals.sums.nodes > 0.0) else {
             continue;
-        }
+        };
         let (grid, unit) = (&patch.operators.grid, PatchOperators::unit_force(patch.operators));
         let middle = place.middle_along(grid);
         let mut contact = OneContact::default();
         let (mut moment_x, mut moment_s, mut friction_moment) = (0.0, 0.0, 0.0);
-        for strip in 0..grid.strips {
+        let carries = |strip: &usize| own.pressure[grid.row(*strip)].iter().any(|&pressure| pressure > 0.0);
+        for strip in (0..grid.strips).filter(carries) {
             let arc = place.arc(grid, strip);
             let point = bodies.rail.at(arc);
             let tangent = point.tangent();
@@ -137,20 +151,17 @@ fn on_wheelset(problem: &SurfaceProblem, fields: &SurfaceFields, solvers: &Surfa
             all.moment[0] += lateral * force[2] - vertical * force[1];
             all.moment[1] += vertical * along - vertical_moment;
             all.moment[2] += lateral_moment - lateral * along;
-            if normal > 0.0 {
-                // Friction acts on the wheel's undeformed surface, at a distance h along the normal n from the rail's: its moment
-                // is larger by h n × τ. Across, n × t = (−1, 0, 0).
-                let moved = friction_times_distance(&wheel, (&point, middle), own, grid, strip);
-                let [along, across] = moved.map(|sum| unit * sum);
-                all.moment[0] -= across;
-                all.moment[1] += point.normal[1] * along;
-                all.moment[2] -= point.normal[0] * along;
-            }
+            // Friction acts on the wheel's undeformed surface, at a distance h along the normal n from the rail's: its moment
+            // is larger by h n × τ. Across, n × t = (−1, 0, 0).
+            let moved = friction_times_distance(&wheel, (&point, middle), own, grid, strip);
+            let [along, across] = moved.map(|sum| unit * sum);
+            all.moment[0] -= across;
+            all.moment[1] += point.normal[1] * along;
+            all.moment[2] -= point.normal[0] * along;
         }
         let (x, arc) = (moment_x / contact.normal_force, moment_s / contact.normal_force);
         let point = bodies.rail.at(arc);
         let at = wheel.distance(x, &point, 0.0);
-        let extent = patch::extent::extent(patch.operators, &own.pressure);
         contact.arc = arc;
         contact.along = x;
         contact.positions = [point.place[0] - bodies.rail.top(), wheel.profile_position(&at)];
@@ -175,17 +186,12 @@ fn on_wheelset(problem: &SurfaceProblem, fields: &SurfaceFields, solvers: &Surfa
         contact.spin_moment = friction_moment - x * contact.friction[1] + arc * contact.friction[0];
         let power = -contact.friction[0] * ahead - contact.friction[1] * across - contact.spin_moment * spin;
         contact.wear_number = power / speed.abs();
-        contact.size = [extent.length, extent.breadth];
-        contact.area = extent.area;
-        contact.peak_pressure = crate::numerics::dense::largest(&own.pressure) * patch.operators.scales.pressure;
-        contact.peak_rise = own.heat.surface.iter().fold(f64::NEG_INFINITY, |m: f64, t| t.max(m));
-        contact.damage = patch::integrals::damage(&patch, own, contact.peak_rise);
-        contact.friction_power = unit
-            * (0..own.pressure.len())
-                .map(|at| {
-                    coulomb::vector_power([own.shear[0][at], own.shear[1][at]], [own.slip[0][at], own.slip[1][at]])
-                })
-                .sum::<f64>();
+        contact.size = [integrals.contact_length, integrals.contact_breadth];
+        contact.area = integrals.contact_area;
+        contact.peak_pressure = integrals.sums.peak_pressure * patch.operators.scales.pressure;
+        contact.peak_rise = integrals.peak_rise;
+        contact.damage = integrals.damage;
+        contact.friction_power = unit * integrals.sums.friction_power;
         all.contacts[all.count] = contact;
         all.count += 1;
     }
