@@ -4,7 +4,8 @@
 //! ∫ |τ·s| dA = −(F·v + M·ω),
 //! v that of the middle of the axle and ω the turning about the axle and by the yaw rate: friction acts on the same surface of the wheel that the slip
 //! is taken on, and does no work on the elastic bodies. This holds exactly for continuous fields, to the size of the cells for discrete ones. The
-//! wheelset keeps its height and its place across the track, so that vertical and lateral forces have no power.
+//! wheelset keeps its height and its place across the track, so that vertical and lateral forces have no power. It turns or is yawed, not both: the
+//! contact of a yawed wheel lies ahead of the axle or behind it, and a yaw rate moves it along its normal, where pressure has power as well.
 
 use super::row::{Row, larger};
 use super::set_up;
@@ -19,12 +20,13 @@ const SPEED: f64 = 20.0;
 const LOAD: f64 = 60e3;
 /// Lateral displacement, `m`: on the tread, beside it, there and in the gauge corner, in the gauge corner alone, on the flange.
 const PLACES: [f64; 5] = [0.0, 4e-3, 5.4e-3, 6.6e-3, 7.5e-3];
-/// Yaw, rad, yaw rate, rad/s, and excess of the circumference's speed: driving, braking, turning, all.
-const MOTIONS: [[f64; 3]; 4] = [
+/// Yaw, rad, yaw rate, rad/s, and excess of the circumference's speed: driving, braking, turning to either side, yawed.
+const MOTIONS: [[f64; 3]; 5] = [
     [0.0, 0.0, 2.5e-3],
     [0.0, 0.0, -0.01],
     [0.0, 0.1, 2.5e-3],
-    [3e-3, -0.1, 5e-3],
+    [0.0, -0.1, 5e-3],
+    [3e-3, 0.0, 5e-3],
 ];
 /// Tolerance of the same balance of the patch.
 const DEFECT: f64 = 0.008;

@@ -128,7 +128,7 @@ fn fields_add_up_to_the_contacts() {
     }
 }
 
-/// The cells under pressure lie within the contact's extents, with a cell to spare, about its resultant.
+/// The cells under pressure lie within the contact's extents, whose two ends are between their last cell and the next one, about its resultant.
 fn stands_where_the_contact_is(window: &SurfaceWindow, position: f64, extents: [f64; 2]) {
     let cells = window.x.len();
     let carrying = (0..window.nodes.len()).filter(|node| window.nodes[*node].pressure > 0.0);
@@ -143,10 +143,8 @@ fn stands_where_the_contact_is(window: &SurfaceWindow, position: f64, extents: [
     let sizes = [window.cell_length, window.strip_breadth];
     for way in 0..2 {
         let extent = high[way] - low[way];
-        assert!(
-            (extent - extents[way]).abs() <= 1.5 * sizes[way],
-            "{way}: {extent} {extents:?} {sizes:?}"
-        );
+        let beyond = (extents[way] - extent) / sizes[way];
+        assert!((0.0..=2.0).contains(&beyond), "{way}: {extent} {extents:?} {sizes:?}");
     }
     assert!(low[0] <= position && position <= high[0], "{low:?} {position} {high:?}");
 }
@@ -360,7 +358,7 @@ fn arcs(name: &str, hollow: f64, waves: impl Fn(f64) -> f64) -> Parameters {
 /// A contact that is broader than the largest window is held within it, and keeps the length of its cells: a wheel hollow to a circle on a rail of a little smaller one.
 #[test]
 fn a_contact_broader_than_the_largest_window_keeps_its_cells() {
-    let parameters = arcs("broad", 0.31, |_| 0.0);
+    let parameters = arcs("broad", 0.307, |_| 0.0);
     let run = |load: f64| {
         let inputs = Inputs {
             normal_load: load,
@@ -373,7 +371,7 @@ fn a_contact_broader_than_the_largest_window_keeps_its_cells() {
         let fills = run.state.convergence.fills_window;
         (fills, run.surface_windows().unwrap()[0].cell_length)
     };
-    let [narrow, broad] = [50e3, 95e3].map(run);
+    let [narrow, broad] = [30e3, 70e3].map(run);
     assert_eq!([narrow.0, broad.0], [false, true]);
     assert_eq!(narrow.1, broad.1);
 }

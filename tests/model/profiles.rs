@@ -347,7 +347,7 @@ fn a_step_has_the_derivatives_of_its_differences() {
         (1e-3, 0.0, 40e3, Control::Load, tread),
         (5e-3, 0.0, 40e3, Control::Load, tread),
         (2e-3, 0.0, 40e3, Control::Height, tread),
-        (8e-3, -8e-3, 10e3, Control::Load, FLANGE),
+        (8e-3, -8e-3, 12e3, Control::Load, FLANGE),
         (8e-3, -8e-3, 40e3, Control::Load, FLANGE),
     ] {
         let inputs = Inputs {
@@ -542,13 +542,10 @@ fn contacts_do_not_hang_on_the_way_there() {
 }
 
 /// A contact of the gauge corner has nearly the same pressure on few cells as on the default ones. It was cut off where the next window began, which had been placed too near, and had
-/// false peaks of 5 and 6 GPa in place of 2.2 and 2.3.
+/// false peaks of 4.6 and 4.9 GPa in place of 2.2 and 2.3.
 #[test]
 fn a_contact_is_not_cut_off_beside_another_window() {
-    for (strips, normal_load, displacement) in [
-        (11, 60e3, 5.258_305_486_115_546e-3),
-        (14, 30e3, 5.386_335_228_721_691e-3),
-    ] {
+    for (strips, normal_load, displacement) in [(11, 60e3, 5.225_9e-3), (14, 60e3, 5.251_0e-3)] {
         let peak_pressure = |patch_nodes: usize, patch_strips: usize| {
             let parameters = Parameters {
                 contact_model: ContactModel::Profiles,
@@ -570,13 +567,13 @@ fn a_contact_is_not_cut_off_beside_another_window() {
 }
 
 /// A wheel comes to a gauge corner from the side, on few cells, and outgrows windows on its way. Its pressure there is nearly that of a wheel on the default cells that has always been there.
-/// In the first row the window lacks breadth: with more length as well, its cells are too long, and it has 0.8 of 1.4 GPa. In the second row seams have gone in earlier tries of a step: with the
-/// room of all tries, and not only of those since, it has 0.8 of 2.1 GPa.
+/// In the first row the window lacks breadth: with more length as well, its cells are too long, and it has 0.57 of the pressure. In the second row seams have gone in earlier tries of a step: with the
+/// room of all tries, and not only of those since, it has 8 % less.
 #[test]
 fn a_contact_that_outgrows_its_window_keeps_cells_that_resolve_it() {
-    for (strips, rail, normal_load, from, to) in [
-        (11, "UIC60", 10e3, -1.739_326_994_367_957e-3, 6.084_845_547_459_722e-3),
-        (8, "54E1", 30e3, 0.569_219_381_653_052_6e-3, 4.698_484_809_834_998e-3),
+    for (rail, normal_load, from, to) in [
+        ("UIC60", 100e3, -1.023_612_471_078_370_5e-3, 4.706_982_745_101_625e-3),
+        ("60E1", 30e3, -1.937_299_453_106_272e-3, 6.055_406_565_167_726e-3),
     ] {
         let peak_pressure = |patch_nodes: usize, patch_strips: usize, from: f64| {
             let parameters = Parameters {
@@ -589,9 +586,9 @@ fn a_contact_that_outgrows_its_window_keeps_cells_that_resolve_it() {
             };
             after_a_way(&parameters, normal_load, [from, to], 40).peak_pressure
         };
-        let ratio = peak_pressure(8, strips, from) / peak_pressure(34, 21, to);
+        let ratio = peak_pressure(8, 11, from) / peak_pressure(34, 21, to);
         // As in `a_contact_is_not_cut_off_beside_another_window`: 3 % along and 3 % across.
-        assert!((ratio - 1.0).abs() < 0.06, "{strips} strips: {ratio}");
+        assert!((ratio - 1.0).abs() < 0.06, "{rail}: {ratio}");
     }
 }
 

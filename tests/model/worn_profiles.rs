@@ -281,7 +281,7 @@ fn steps_on_worn_profiles_have_derivatives() {
 #[test]
 fn a_saved_state_takes_the_worn_profiles_along() {
     let parameters = Parameters {
-        wear_acceleration: 1e3,
+        wear_acceleration: 500.0,
         ..bodies()
     };
     let inputs = |step: u32| sliding(4e-3 + 5e-4 * f64::from(step), 0.01);

@@ -8,7 +8,7 @@ use crate::mechanics::normal::normal_problem::Constraint;
 use crate::mechanics::patch::normal::PatchNormalProblem;
 
 /// Error of a response, relative: what is left of a change of the approach is solved for at the next one.
-const RESPONSE_ERROR: f64 = 3e-2;
+pub const RESPONSE_ERROR: f64 = 3e-2;
 /// Rounds over windows that displace each other.
 const RESPONSE_ROUNDS: usize = 2;
 

@@ -10,7 +10,7 @@ const NEAR: usize = 4;
 
 /// Interpolation along the strips of a window between evenly spaced nodes.
 ///
-/// Of a wheel of 460 mm, over half a window of 34 mm, it leaves 2e-14 m of the gap, and 1e-8 of the forward speed of the slip.
+/// Of a wheel of 460 mm, over half a window of 41 mm, it leaves 5e-14 m of the gap, and 2e-8 of the forward speed of the slip.
 #[derive(Debug, Clone)]
 pub struct Interpolation {
     /// Places of the nodes, in halves of the window's length from its middle.
@@ -75,12 +75,9 @@ impl Local {
 
     /// Value from those at the nodes.
     pub fn of(&self, values: &[f64; NODES]) -> f64 {
-        let near = &values[self.first..self.first + NEAR];
-        self.weights
-            .iter()
-            .zip(near)
-            .map(|(weight, value)| weight * value)
-            .sum()
+        let [a, b, c, d] = std::array::from_fn(|node| self.weights[node] * values[self.first + node]);
+        // In pairs, so that no sum waits for all the others.
+        (a + b) + (c + d)
     }
 }
 
@@ -107,8 +104,8 @@ impl Span {
     /// Value from value, slope and second derivative at the nodes. It is at most by `bulge` less than the smaller one at both.
     pub fn of(&self, jets: &[[f64; 3]; NODES], bulge: f64) -> f64 {
         let [near, far] = [&jets[self.first], &jets[self.first + 1]];
-        let terms = self.weights.iter().zip(near.iter().chain(far));
-        let value: f64 = terms.map(|(weight, value)| weight * value).sum();
+        let [a, b, c, d, e, f] = self.weights;
+        let value = (a * near[0] + b * near[1]) + (c * near[2] + d * far[0]) + (e * far[1] + f * far[2]);
         value.max(near[0].min(far[0]) - bulge)
     }
 }

@@ -20,7 +20,7 @@ const SCAN_STEP: f64 = 0.5e-3;
 /// spent a third of its time on them.
 const STEEPEST_TO_THE_FIELD: f64 = 0.866;
 /// Length of the longest window over that of a patch's: contacts on the flange are several times as long as broad.
-const LONGEST: f64 = 4.0;
+const LONGEST: f64 = 4.8;
 /// Breadth of the broadest window over that of a patch's: contacts in the gauge corner are several times as broad as long.
 const BROADEST: f64 = 4.0;
 
