@@ -29,6 +29,12 @@ fn reach(edge: f64, inside: f64) -> f64 {
     (ratio + 0.77 * ratio * ratio * ratio).min(1.0)
 }
 
+/// Distance of the contact's end from the centre of its last cell, in cells, from the pressure of that cell and the next one inside; no more than to the cell's
+/// edge, beyond which the pressure says nothing.
+pub fn beyond_centre(edge: f64, inside: f64) -> f64 {
+    (reach(edge, inside) - JOINS).min(0.5)
+}
+
 /// Length, breadth and area of the cells under pressure.
 pub fn extent(operators: &PatchOperators, pressure: &[f64]) -> Extent {
     let grid = &operators.grid;

@@ -7,7 +7,10 @@ use super::apart::Apart;
 use super::fields::SurfaceFields;
 use super::operators::SurfaceOperators;
 use super::search::Search;
-use super::windows::{Region, WINDOWS};
+use super::windows::{Place, Region, WINDOWS};
+use crate::body::grid::Grid;
+use crate::contact::patch::extent::beyond_centre;
+use crate::numerics::dense::largest;
 
 /// Contacts that are looked at.
 pub const CONTACTS: usize = 3 * WINDOWS;
@@ -16,7 +19,7 @@ const GROWTH: f64 = 1.08;
 /// Turn of the rail over a contact, rad, from which on it lies in a gauge corner: 5 mm of one of 13 mm.
 const CORNER_TURN: f64 = 0.4;
 /// The extent across of a contact of which a narrow part counts: its ends go slowly, and with fine strips a window has little room for it.
-const NARROW_GROWTH: f64 = 1.05;
+const NARROW_GROWTH: f64 = 1.02;
 /// Extent about such a region, over that of the region, in which no other contact is looked for: the window there finds it by itself, and so near a
 /// contact the sinking of the surface is not known well.
 pub const BESIDE: f64 = 1.8;
@@ -178,9 +181,11 @@ fn carrying(
                         across: run.across,
                         narrowest,
                         sharpest: search.sharpest(run.across, expected.approach),
+                        is_measured: false,
                     };
+                    let ends = || ends(&fields.windows[window].pressure, grid, &place, run.strips);
                     found.push(Wanted {
-                        region: grown(operators, &region, expected.growth),
+                        region: grown(operators, &region, ends, expected.growth),
                         reach: Some(Reach {
                             across: run.across,
                             strip: grid.breadth,
@@ -197,20 +202,35 @@ fn carrying(
             let run = run.get_or_insert(Run {
                 along,
                 across: [arc - 0.5 * grid.breadth; 2],
+                strips: [strip; 2],
                 force: 0.0,
                 squares: 0.0,
             });
             run.along = [run.along[0].min(along[0]), run.along[1].max(along[1])];
             run.across[1] = arc + 0.5 * grid.breadth;
+            run.strips[1] = strip;
             run.force += force;
             run.squares += force * force;
         }
     }
 }
 
+/// Ends in arc length of the contact on neighbouring strips, `m`: within the outermost of them, by the largest pressure there and on the next one.
+fn ends(pressure: &[f64], grid: &Grid, place: &Place, [first, last]: [usize; 2]) -> [f64; 2] {
+    let peak = |strip: usize| largest(&pressure[grid.row(strip)]);
+    let beyond = |end: usize, next: usize| {
+        let inside = if first == last { 0.0 } else { peak(next) };
+        grid.breadth * beyond_centre(peak(end), inside)
+    };
+    [
+        place.arc(grid, first) - beyond(first, first + 1),
+        place.arc(grid, last) + beyond(last, last.wrapping_sub(1)),
+    ]
+}
+
 /// Region for a contact, grown as is expected of it. In a gauge corner the load goes from one end of a broad contact to the other, and a narrow part carries
 /// most of it: there a contact counts as no broader than the part over which the rail turns by [`CORNER_TURN`].
-fn grown(operators: &SurfaceOperators, contact: &Region, growth: f64) -> Region {
+fn grown(operators: &SurfaceOperators, contact: &Region, ends: impl Fn() -> [f64; 2], growth: f64) -> Region {
     let [[y, z], [v, w]] = contact.across.map(|arc| operators.bodies.rail.at(arc).normal);
     let turn = (y * w - z * v).atan2(y * v + z * w).abs();
     let region = contact.grown(GROWTH * growth);
@@ -218,7 +238,11 @@ fn grown(operators: &SurfaceOperators, contact: &Region, growth: f64) -> Region 
     if !lies_in_corner && !contact.is_sharp() {
         return region;
     }
-    let [from, to] = contact.grown(NARROW_GROWTH * growth).across;
+    let within = Region {
+        across: ends(),
+        ..*contact
+    };
+    let [from, to] = within.grown(NARROW_GROWTH * growth).across;
     let narrowest = if lies_in_corner {
         region.narrowest.min((to - from) * CORNER_TURN / turn)
     } else {
@@ -227,6 +251,7 @@ fn grown(operators: &SurfaceOperators, contact: &Region, growth: f64) -> Region 
     Region {
         across: [from, to],
         narrowest,
+        is_measured: true,
         ..region
     }
 }
@@ -235,6 +260,8 @@ fn grown(operators: &SurfaceOperators, contact: &Region, growth: f64) -> Region 
 struct Run {
     along: [f64; 2],
     across: [f64; 2],
+    /// First and last strip.
+    strips: [usize; 2],
     /// Sum of the strips' forces, and of their squares, scaled.
     force: f64,
     squares: f64,

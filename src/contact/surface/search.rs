@@ -73,6 +73,7 @@ impl Deepest {
             across: [across - half_breadth, across + half_breadth],
             narrowest: 2.0 * half_breadth,
             sharpest: f64::INFINITY,
+            is_measured: false,
         }
     }
 }
@@ -442,6 +443,7 @@ fn about(points: &[Closest], deepest: usize, depth: &impl Fn(usize) -> f64) -> O
             across,
             narrowest: across[1] - across[0],
             sharpest: f64::INFINITY,
+            is_measured: false,
         },
         depth: most,
         rise: points[deepest].rise,

@@ -20,7 +20,7 @@ pub const EVERYWHERE: [f64; 2] = [f64::NEG_INFINITY, f64::INFINITY];
 
 /// Cells along the window, and strips across it, that stay free on either side of a region that a window is placed for.
 const MARGIN: [f64; 2] = [1.5, 1.0];
-/// Strips across the window that stay free on either side of a region in a window that stays.
+/// Strips across the window that stay free on either side of a region in a window that stays, and in one for a contact whose ends are known.
 const LEAST_MARGIN: f64 = 0.5;
 /// Least share of a window's length that the region in it takes up, before the window becomes shorter.
 const LEAST_SHARE: f64 = 0.36;
@@ -57,6 +57,8 @@ pub struct Region {
     pub narrowest: f64,
     /// Breadth of a contact under the same approach whose bodies are curved against each other all over as these are at their sharpest place, `m`.
     pub sharpest: f64,
+    /// Whether it is that of a contact whose ends are known to a part of a strip.
+    pub is_measured: bool,
 }
 
 /// Sizes of all windows.
@@ -90,6 +92,7 @@ impl Place {
             across: [strip, strip + grid.strips as f64].map(|count| count * grid.breadth),
             narrowest: grid.strips as f64 * grid.breadth,
             sharpest: f64::INFINITY,
+            is_measured: false,
         }
     }
 }
@@ -103,6 +106,7 @@ impl Region {
             across: hull(self.across, other.across),
             narrowest: self.narrowest.min(other.narrowest),
             sharpest: self.sharpest.min(other.sharpest),
+            is_measured: self.is_measured && other.is_measured,
         }
     }
 
@@ -117,6 +121,7 @@ impl Region {
             across: grown(self.across),
             narrowest: factor * self.narrowest,
             sharpest: self.sharpest,
+            is_measured: self.is_measured,
         }
     }
 
@@ -189,12 +194,13 @@ impl Sizes {
     }
 
     /// Number of the least breadth that holds a region: with a margin, and without one where the window has had it, so that a contact which just
-    /// fits does not go to and fro.
+    /// fits does not go to and fro. Ends that are known to a part of a strip are the same ones on other strips, and need no margin either.
     fn finest_for(&self, region: &Region, kept: Option<Place>) -> usize {
         let Grid { strips, breadth, .. } = self.largest;
         let finest = |margin: f64| finest_holding(region.across, strips, margin, breadth, BREADTHS);
         let [with_margin, without] = [MARGIN[1], LEAST_MARGIN].map(finest);
         match kept {
+            _ if region.is_measured => without,
             Some(kept) => kept.breadth.min(without).max(with_margin),
             None => with_margin,
         }
@@ -266,6 +272,7 @@ mod tests {
             across,
             narrowest: 5e-3,
             sharpest: f64::INFINITY,
+            is_measured: false,
         }
     }
 
@@ -280,5 +287,10 @@ mod tests {
         assert!(kept.strip > before.strip);
         assert!(kept.region(&sizes.grid(kept.length, kept.breadth)).meets(&moved));
         assert_eq!(sizes.place(&moved, None).breadth, 0);
+        let measured = Region {
+            is_measured: true,
+            ..moved
+        };
+        assert_eq!(sizes.place(&measured, None).breadth, 1);
     }
 }
