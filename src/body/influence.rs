@@ -45,19 +45,19 @@ pub struct ScalarTables<T> {
 
 /// The harmonics of the kernels A and B alone, as those of [`Tables`]: a product whose load has no y component, and which needs no C.
 #[derive(Debug, Clone)]
-pub struct SourceTables<T> {
-    even: Vec<T>,
-    odd: Vec<T>,
-    ends: Vec<EndTables<T>>,
+pub struct SourceTables {
+    even: Vec<f64>,
+    odd: Vec<f64>,
+    ends: Vec<EndTables>,
 }
 
 /// Further effects of the load of one cell of each strip, in proportion to it: the harmonics of the kernels A and B of that, row by row with the
 /// cells that it acts on.
 #[derive(Debug, Clone)]
-pub struct EndTables<T> {
+pub struct EndTables {
     cell: usize,
-    even: Vec<T>,
-    odd: Vec<T>,
+    even: Vec<f64>,
+    odd: Vec<f64>,
 }
 
 /// Everything that products on a grid share for one number of harmonics.
@@ -169,12 +169,7 @@ impl Transform {
     }
 
     /// The tables of kernels A and B alone, and of what else some cells do.
-    pub fn source_tables(
-        &self,
-        a: impl Fn(Lag) -> f64,
-        b: impl Fn(Lag) -> f64,
-        ends: Vec<EndTables<f64>>,
-    ) -> SourceTables<f64> {
+    pub fn source_tables(&self, a: impl Fn(Lag) -> f64, b: impl Fn(Lag) -> f64, ends: Vec<EndTables>) -> SourceTables {
         SourceTables {
             even: self.table(f64::cos, a),
             odd: self.table(f64::sin, b),
@@ -190,7 +185,7 @@ impl Transform {
         cells: usize,
         a: impl Fn(usize, isize) -> f64,
         b: impl Fn(usize, isize) -> f64,
-    ) -> EndTables<f64> {
+    ) -> EndTables {
         let table = |wave, kernel: &dyn Fn(usize, isize) -> f64| {
             self.table(wave, |(lag, across)| match lag.checked_add_unsigned(self.stride) {
                 Some(on) if (on as usize) < cells => kernel(on as usize, across),

@@ -141,10 +141,10 @@ impl<T: Precision> Kernels for ScalarTables<T> {
 
 /// The load travels as that of [`ScalarTables`], the result as that of [`Tables`]: out_x = A τ, out_y = B τ. What its ends do besides is added
 /// to the transform of the result: a sum over strips and cells for each strip would take longer than all the rest.
-impl<T: Precision> Kernels for SourceTables<T> {
-    type Real = T;
-    type Load<'a> = &'a [T];
-    type Out<'a> = [&'a mut [T]; 2];
+impl Kernels for SourceTables {
+    type Real = f64;
+    type Load<'a> = &'a [f64];
+    type Out<'a> = [&'a mut [f64]; 2];
 
     #[inline(always)]
     fn multiply<S: Simd>(simd: S, product: Product<'_, Self>) {
@@ -162,8 +162,8 @@ impl<T: Precision> Kernels for SourceTables<T> {
             parts: [re, im, ..],
             sums: [sum_xr, sum_xi, sum_yr, sum_yi],
         } = scratch;
-        let size = T::fourier(transform).size();
-        let read = window.read.len().next_multiple_of(T::lanes::<S>());
+        let size = f64::fourier(transform).size();
+        let read = window.read.len().next_multiple_of(f64::lanes::<S>());
         let loaded = transform_halves(simd, transform, window, load, rows, other);
         let ranges = Ranges::new(transform, window, read);
         for harmonic in 0..transform.harmonics() {

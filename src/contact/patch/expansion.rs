@@ -19,7 +19,7 @@ pub struct Expansion {
     pub bulge: f64,
     /// Displacement u along x and y by the heat content of the cells, scaled, per `K m`; with that of the first and the last cell of a strip, which the
     /// rail holds beyond it.
-    content: SourceTables<f64>,
+    content: SourceTables,
 }
 
 /// Buffers of [`Expansion::displace`].
