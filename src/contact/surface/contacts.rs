@@ -271,6 +271,31 @@ struct Run {
 mod tests {
     use super::*;
 
+    /// A contact ends near the centre of a strip that next to nothing acts on, and at the edge of one that carries as much as the next one.
+    #[test]
+    fn a_contact_ends_within_its_outermost_strips() {
+        let grid = Grid::new(3, 5, 1.5e-3, 2.5e-3);
+        let place = Place {
+            length: 0,
+            breadth: 0,
+            cell: 0,
+            strip: 20,
+        };
+        let mut pressure = vec![0.0; grid.len()];
+        for (strip, carried) in [(1, 1e-9), (2, 2.0), (3, 2.0)] {
+            pressure[grid.place(strip, 1)] = carried;
+        }
+        let [from, to] = ends(&pressure, &grid, &place, [1, 3]);
+        // The first cell of a contact is under pressure from 0.156 of a cell before its centre on.
+        assert!(
+            (from - 21.656e-3).abs() < 1e-9 && (to - 24e-3).abs() < 1e-9,
+            "{from} {to}"
+        );
+        // A strip by itself says nothing of where in it the contact ends.
+        let [from, to] = ends(&pressure, &grid, &place, [2, 2]);
+        assert!((from - 22e-3).abs() < 1e-9 && (to - 23e-3).abs() < 1e-9, "{from} {to}");
+    }
+
     /// Two contacts with a strip between them, to round-off, are one, and the broader strip counts; with more between them they are two. An overlap is no contact yet.
     #[test]
     fn contacts_with_a_strip_between_them_go_on_in_each_other() {
