@@ -332,13 +332,13 @@ fn free_slip(
     }
 }
 
-/// Computes the displacement that does not come from shear: by pressure where the bodies differ, and by heat.
+/// Computes the displacement that does not come from the contact's own shear: by that of contacts beside it, by pressure where the bodies differ, and by heat.
 fn given_displacement(problem: &PatchProblem, interface: &Interface, fields: &PatchFields, solvers: &mut PatchSolvers) {
     let operators = problem.operators;
     let grid = &operators.grid;
     let window = Window::whole(grid);
-    for component in &mut solvers.given {
-        component.fill(0.0);
+    for (given, beside) in solvers.given.iter_mut().zip(&solvers.beside) {
+        given.copy_from_slice(beside);
     }
     if let Some(tables) = &operators.coupling {
         let [x, y] = &mut solvers.given;

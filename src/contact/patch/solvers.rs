@@ -39,7 +39,9 @@ pub struct PatchSolvers {
     pub(in crate::contact) wear_compliance: Vec<f64>,
     /// Displacement by shear, on the grid, scaled: upward in the first component, or along x and y.
     pub(in crate::contact) shear_displacement: [Vec<f64>; 2],
-    /// Displacement u that does not come from shear, on the grid, scaled.
+    /// Displacement u by the shear of contacts beside this one, on the grid, scaled.
+    pub(in crate::contact) beside: [Vec<f64>; 2],
+    /// Displacement u that does not come from the shear of this contact, on the grid, scaled.
     pub(in crate::contact) given: [Vec<f64>; 2],
     /// Displacement u before the step, on the grid, scaled.
     pub(in crate::contact) before: [Vec<f64>; 2],
@@ -105,6 +107,7 @@ impl PatchSolvers {
             gap: on_grid(),
             wear_compliance: on_grid(),
             shear_displacement: vectors(),
+            beside: vectors(),
             given: vectors(),
             before: vectors(),
             free_slip: vectors(),

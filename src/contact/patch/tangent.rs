@@ -35,7 +35,9 @@ pub struct PatchTangent {
     pub(in crate::contact) undeformed: Undeformed,
     /// Change of the gap with heat and wear, on the grid, scaled.
     gap: Vec<f64>,
-    /// Change of the displacement u that does not come from shear, on the grid, scaled.
+    /// Change of the displacement u by the shear of contacts beside this one, on the grid, scaled.
+    pub(in crate::contact) beside: [Vec<f64>; 2],
+    /// Change of the displacement u that does not come from the shear of this contact, on the grid, scaled.
     given: [Vec<f64>; 2],
     /// Change of the slip ahead of the cells at an unchanged shear, without what the leading edge adds, on the grid, `m/s`.
     free_slip: [Vec<f64>; 2],
@@ -71,6 +73,7 @@ impl PatchTangent {
             products: transform.scratch(),
             undeformed: Undeformed::none(grid),
             gap: on_grid(),
+            beside: vectors(),
             given: vectors(),
             free_slip: vectors(),
             bound_change: on_grid(),
@@ -261,7 +264,9 @@ impl PatchTangent {
         let (direction, iterate) = (along.direction, along.interface);
         let Solution { fields, solvers, .. } = solution;
         let (operators, grid) = (problem.operators, &problem.operators.grid);
-        self.given.iter_mut().for_each(|component| component.fill(0.0));
+        for (given, beside) in self.given.iter_mut().zip(&self.beside) {
+            given.copy_from_slice(beside);
+        }
         if let Some(tables) = &operators.coupling {
             let [x, y] = &mut self.given;
             let load = [pressure, &self.nothing[..]];

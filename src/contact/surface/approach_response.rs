@@ -37,14 +37,14 @@ fn respond(problem: &SurfaceProblem, fields: &SurfaceFields, solvers: &mut Surfa
     for (window, place) in fields.used() {
         let own = &mut solvers.windows[window];
         own.response.clear(&operators.of(&place).grid);
-        solvers.apart_response.displacement[window].fill(0.0);
+        solvers.apart_response.displacement[window][0].fill(0.0);
     }
     let coupled = solvers.apart.is_coupled();
     for _ in 0..if coupled { RESPONSE_ROUNDS } else { 1 } {
         for (window, place) in fields.used() {
             let patch = problem.of(&place);
             let own = &mut solvers.windows[window];
-            let displaced = &solvers.apart_response.displacement[window];
+            let displaced = &solvers.apart_response.displacement[window][0];
             for ((gap, rise), displaced) in own.patch.gap.iter_mut().zip(&own.geometry.rise).zip(displaced) {
                 *gap = displaced - rise;
             }
@@ -61,7 +61,7 @@ fn respond(problem: &SurfaceProblem, fields: &SurfaceFields, solvers: &mut Surfa
             let pressure = &own.response.pressure;
             solvers
                 .apart_response
-                .take_pressure(operators, pressure, window, &place);
+                .take_traction(operators, [pressure], window, &place);
             for (other, place) in fields.used().filter(|(other, _)| *other != window) {
                 solvers.apart_response.displace(operators, other, &place);
             }

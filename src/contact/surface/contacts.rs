@@ -3,7 +3,7 @@
 //! The undeformed bodies overlap in more places than they touch: the surface sinks about a contact. So windows are placed for the contacts of
 //! the step before, and for places at which the bodies overlap by more than what the pressure of that step lets the surface sink.
 
-use super::apart::Apart;
+use super::apart::ByPressure;
 use super::fields::SurfaceFields;
 use super::operators::SurfaceOperators;
 use super::search::Search;
@@ -102,7 +102,7 @@ pub fn find(
     fields: &SurfaceFields,
     expected: Expected,
     search: &Search,
-    apart: &mut Apart,
+    apart: &mut ByPressure,
     found: &mut Vec<Wanted>,
 ) {
     let Expected {

@@ -68,6 +68,12 @@ fn begin_windows(
         let (patch, own) = (problem.of(&place), &mut now.windows[window]);
         own.relaxation_length = begin::relaxation_length_of(&patch, &problem.operators.pair, &own.pressure);
         let before = before.map(|before| &before.windows[window]);
+        // Of one window that stays so.
+        windows[window]
+            .patch
+            .beside
+            .iter_mut()
+            .for_each(|component| component.fill(0.0));
         begin::begin(&patch, before, own, &mut windows[window].patch)?;
     }
     Ok(())
@@ -405,7 +411,7 @@ impl Engine for SurfaceOperators {
                 EVERYWHERE,
                 undeformed,
             );
-            add_multiple(&apart.displacement[window], 1.0, &mut undeformed.gap);
+            add_multiple(&apart.displacement[window][0], 1.0, &mut undeformed.gap);
             begin::begin_linearisation(&problem.of(&place), &fields.windows[window], &mut own.patch);
         }
     }

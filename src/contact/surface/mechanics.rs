@@ -6,7 +6,8 @@
 //! Σ ∫ (p cos δ − τ_s sin δ) dA = Q, with the inclination δ to the track's plane, the roll of the rail included.
 //!
 //! The friction is that of the iteration before, in proportion to the pressure: where all slides, that is exact at once. The approach
-//! is found in [`super::pressure`]. The friction that follows is a slightly different one, and with it the load is no longer met. A window that is alone
+//! is found in [`super::pressure`]. The friction that follows, in each window for what the shear of the others does to it by then, is a
+//! slightly different one, and with it the load is no longer met. A window that is alone
 //! has its pressure and friction corrected for that at once, before heat and wear see them.
 
 use super::approach_response::{advance, stiffness};
@@ -75,8 +76,19 @@ pub fn solve(
     let motion = problem.pose().motion;
     let lowered = fields.approach[0] - solvers.reference;
     let mut change = TractionChange::NONE;
+    let are_several = fields.used().count() > 1;
+    if are_several {
+        solvers.apart_shear.set_resultants(problem.operators, fields);
+    }
     for (window, place) in fields.used() {
         let own = &mut solvers.windows[window];
+        if are_several {
+            let apart = &mut solvers.apart_shear;
+            apart.displace(problem.operators, window, &place);
+            for (beside, by_others) in own.patch.beside.iter_mut().zip(&apart.displacement[window]) {
+                beside.copy_from_slice(by_others);
+            }
+        }
         if !problem.is_height_given() {
             let undeformed = &mut own.patch.undeformed;
             own.geometry
@@ -98,6 +110,9 @@ pub fn solve(
             .max(if touches { own_change.shear_change } else { 0.0 });
         change.set_changed |= own_change.set_changed;
         change.law_residual = change.law_residual.max(own_change.law_residual);
+        solvers
+            .apart_shear
+            .take_for_others(problem.operators, fields, window, &place);
     }
     if !problem.is_height_given() {
         // The load that the friction has made of it is another one than asked for: so far have the tractions changed.

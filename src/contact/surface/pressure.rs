@@ -351,7 +351,7 @@ fn press_window(
     };
     let is_height_given = problem.is_height_given();
     let (elsewhere, lowered) = (ELSEWHERE / scale, lowered / scale);
-    let displaced = &solvers.apart.displacement[window];
+    let displaced = &solvers.apart.displacement[window][0];
     dense::vectorised(
         #[inline(always)]
         |_| {

@@ -1,6 +1,6 @@
 //! Solvers and buffers of a step of a contact of profiles, made once, so that a step allocates nothing.
 
-use super::apart::Apart;
+use super::apart::{ByPressure, ByShear};
 use super::contacts::{CONTACTS, Wanted};
 use super::fields::SurfaceFields;
 use super::geometry::WindowGeometry;
@@ -36,10 +36,12 @@ pub struct SurfaceSolvers {
     pub before: SurfaceFields,
     /// Whether places have changed with this step.
     pub moved: bool,
-    /// Influence of the windows on one another.
-    pub apart: Apart,
+    /// Influence of the windows' pressures on one another.
+    pub apart: ByPressure,
     /// Influence of the windows' responses on one another.
-    pub apart_response: Apart,
+    pub apart_response: ByPressure,
+    /// Influence of the windows' shear on one another.
+    pub apart_shear: ByShear,
     /// Whether the responses of the windows' pressures to the approach have been found in this step.
     pub responded: bool,
     /// Regions to place windows for.
@@ -112,8 +114,9 @@ impl SurfaceSolvers {
             transfer: Transfer::new(operators),
             before: SurfaceFields::new(operators),
             moved: false,
-            apart: Apart::new(operators),
-            apart_response: Apart::new(operators),
+            apart: ByPressure::new(operators),
+            apart_response: ByPressure::new(operators),
+            apart_shear: ByShear::new(operators),
             responded: false,
             wanted: Vec::with_capacity(CONTACTS),
             own: [EVERYWHERE; WINDOWS],

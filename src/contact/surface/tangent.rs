@@ -4,7 +4,7 @@
 //! follows by itself, but for the displacement by the others; the change of the approach is then the one by which, with the response
 //! of all windows to a unit of it, the vertical force changes as the load does.
 
-use super::apart::Apart;
+use super::apart::{ByPressure, ByShear};
 use super::fields::SurfaceFields;
 use super::geometry::{Pose, WindowGeometry};
 use super::operators::SurfaceOperators;
@@ -34,7 +34,8 @@ const ROUNDS: usize = 30;
 /// Solvers and buffers of the linearised mechanics, heat and wear.
 pub struct SurfaceTangent {
     windows: Vec<WindowTangent>,
-    apart: Apart,
+    apart: ByPressure,
+    apart_shear: ByShear,
     /// Change of the tractions with the approach, per displacement scale.
     unit: SurfaceFields,
     /// Change of the vertical force in it, `N`; 0 where the height is given.
@@ -92,7 +93,8 @@ impl SurfaceTangent {
         };
         SurfaceTangent {
             windows: (0..WINDOWS).map(window).collect(),
-            apart: Apart::new(operators),
+            apart: ByPressure::new(operators),
+            apart_shear: ByShear::new(operators),
             unit: SurfaceFields::new(operators),
             stiffness: 0.0,
             worn: WornBodies::new(operators),
@@ -154,6 +156,7 @@ impl SurfaceTangent {
             solvers,
             windows: &mut self.windows,
             apart: &mut self.apart,
+            apart_shear: &mut self.apart_shear,
             tolerance,
         };
         let along = Along {
@@ -279,6 +282,7 @@ pub fn tractions(at: &mut Linearised<SurfaceOperators>, along: &Along, change: &
     let SurfaceTangent {
         windows,
         apart,
+        apart_shear,
         unit,
         stiffness,
         approach,
@@ -297,6 +301,7 @@ pub fn tractions(at: &mut Linearised<SurfaceOperators>, along: &Along, change: &
         solvers: at.solvers,
         windows,
         apart,
+        apart_shear,
         tolerance: at.tolerance,
     };
     parts.at_height(along, change)?;
@@ -345,7 +350,8 @@ struct Parts<'a> {
     fields: &'a SurfaceFields,
     solvers: &'a SurfaceSolvers,
     windows: &'a mut [WindowTangent],
-    apart: &'a mut Apart,
+    apart: &'a mut ByPressure,
+    apart_shear: &'a mut ByShear,
     tolerance: f64,
 }
 
@@ -354,15 +360,23 @@ impl Parts<'_> {
     fn at_height(&mut self, along: &Along, change: &mut SurfaceFields) -> Result<()> {
         let operators = self.problem.operators;
         self.apart.set_resultants(operators, change);
+        self.apart_shear.set_resultants(operators, change);
         for round in 0..ROUNDS {
-            let (mut left, mut size) = (0.0, f64::MIN_POSITIVE);
+            let (mut left, mut size) = (0.0_f64, f64::MIN_POSITIVE);
             for (window, place) in self.fields.used() {
-                left = f64::max(left, self.apart.displace(operators, window, &place));
+                left = left
+                    .max(self.apart.displace(operators, window, &place))
+                    .max(self.apart_shear.displace(operators, window, &place));
                 self.follow(window, along, change)?;
                 self.apart.take_for_others(operators, change, window, &place);
-                size = size
-                    .max(largest(&self.windows[window].gap))
-                    .max(largest(&self.apart.displacement[window]));
+                self.apart_shear.take_for_others(operators, change, window, &place);
+                size = size.max(largest(&self.windows[window].gap));
+                for displaced in self.apart.displacement[window]
+                    .iter()
+                    .chain(&self.apart_shear.displacement[window])
+                {
+                    size = size.max(largest(displaced));
+                }
             }
             // Of one contact nothing comes back.
             if left <= self.tolerance * size && (round > 0 || !self.apart.is_coupled()) {
@@ -388,9 +402,13 @@ impl Parts<'_> {
             .gap
             .iter_mut()
             .zip(&own.gap)
-            .zip(&self.apart.displacement[window]);
+            .zip(&self.apart.displacement[window][0]);
         for ((gap, own), displaced) in gaps {
             *gap = own + displaced;
+        }
+        let by_shear = &self.apart_shear.displacement[window];
+        for (beside, by_shear) in own.patch.beside.iter_mut().zip(by_shear) {
+            beside.copy_from_slice(by_shear);
         }
         own.interface.take_window(along.interface, window);
         let along = Along {

@@ -1,4 +1,4 @@
-use super::apart::{self, Apart};
+use super::apart::{self, ByPressure, ByShear};
 use super::approach_response::RESPONSE_ERROR;
 use super::bodies::{RAIL, WHEEL};
 use super::geometry::{Pose, WindowGeometry};
@@ -553,7 +553,7 @@ fn windows_displace_each_other_as_their_cells_do() {
     let own = fields(&state);
     let loaded = |window: &usize| own.windows[*window].pressure.iter().any(|&pressure| pressure > 0.0);
     assert_eq!(own.used().filter(|(window, _)| loaded(window)).count(), 2);
-    let mut apart = Apart::new(&operators);
+    let mut apart = ByPressure::new(&operators);
     for are_close in [false, true] {
         let [strips, cells] = apart::grain(&operators.sizes.largest, are_close).map(|count| count as f64);
         let own = SurfaceFields {
@@ -590,7 +590,7 @@ fn windows_displace_each_other_as_their_cells_do() {
                         }
                     }
                 }
-                let found = apart.displacement[window][patch.grid.place(strip, cell)];
+                let found = apart.displacement[window][0][patch.grid.place(strip, cell)];
                 let block = f64::max(cells * patch.grid.length, strips * patch.grid.breadth);
                 let allowed = (0.5 * (block / nearest).powi(2)).min(0.1);
                 assert!(
@@ -683,9 +683,9 @@ fn a_cell_displaces_another_window_as_a_point_force() {
         let (strip, cell) = (block[0] + strip, block[1] + cell);
         let mut pressure = vec![0.0; source.len()];
         pressure[source.place(strip, cell)] = 1.0;
-        let mut apart = Apart::new(&operators);
+        let mut apart = ByPressure::new(&operators);
         apart.clear(&operators, false);
-        apart.take_pressure(&operators, &pressure, other, &from);
+        apart.take_traction(&operators, [&pressure], other, &from);
         apart.displace(&operators, window, &place);
         let at = |strip: usize, cell: usize| [from.middle_along(source) + source.x(cell), from.arc(source, strip)];
         let [u, v] = at(strip, cell);
@@ -701,7 +701,7 @@ fn a_cell_displaces_another_window_as_a_point_force() {
                 continue;
             }
             compared += 1;
-            let found = apart.displacement[window][grid.place(row, column)];
+            let found = apart.displacement[window][0][grid.place(row, column)];
             let exact = unit / distance;
             // A series of powers of δ over the distance from the block's middle.
             let from_middle = (x - middle[0]).hypot(y - middle[1]);

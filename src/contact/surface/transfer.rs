@@ -6,8 +6,9 @@
 //!
 //! Windows may lie over each other. Each of them has the rail that it carries on as it is, and the rest as if nothing touched it: a place takes
 //! what there is from the window that carries there, or carried last, which has left heat. Rail that no window has been over is as the
-//! rail beside the contact, and its friction that of rested rail.
+//! rail beside the contact, displaced as the shear in the windows does it, and its friction that of rested rail.
 
+use super::apart::ByShear;
 use super::fields::SurfaceFields;
 use super::operators::SurfaceOperators;
 use super::windows::{Place, WINDOWS};
@@ -70,6 +71,8 @@ pub struct Transfer {
     cells: [Sources; WINDOWS],
     /// Columns of heat and wear, which go on beyond the window as at its end.
     columns: [Sources; WINDOWS],
+    /// Displacement by the shear of all windows before: that of rail that no window has been over.
+    by_shear: ByShear,
 }
 
 impl Transfer {
@@ -87,6 +90,7 @@ impl Transfer {
             traces: std::array::from_fn(|_| Vec::with_capacity(grid.strips)),
             cells: std::array::from_fn(|_| room(grid.cells)),
             columns: std::array::from_fn(|_| room(grid.cells + 2)),
+            by_shear: ByShear::new(operators),
         }
     }
 
@@ -107,6 +111,7 @@ impl Transfer {
             self.traces[window].clear();
             self.traces[window].extend(traces);
         }
+        self.by_shear.set_resultants(rail.operators, before);
     }
 
     /// Sets the fields of a window at a place from the fields before, with which the transfers have begun.
@@ -116,37 +121,29 @@ impl Transfer {
         let grid = &window.grid;
         let sources = &before.windows;
         let stride = grid.stride();
-        // Tractions, slip and displacement on the grid.
-        let on_grid: [fn(&PatchFields) -> &Vec<f64>; 10] = [
+        // Tractions and slip on the grid.
+        let on_grid: [fn(&PatchFields) -> &Vec<f64>; 6] = [
             |fields| &fields.pressure,
             |fields| &fields.shear[0],
             |fields| &fields.shear[1],
             |fields| &fields.slip[0],
             |fields| &fields.slip[1],
             |fields| &fields.friction,
-            |fields| &fields.displacement[0],
-            |fields| &fields.displacement[1],
-            |fields| &fields.displacement_change[0],
-            |fields| &fields.displacement_change[1],
         ];
         let [x, y] = &mut into.shear;
         let [slip_x, slip_y] = &mut into.slip;
-        let [u_x, u_y] = &mut into.displacement;
-        let [change_x, change_y] = &mut into.displacement_change;
-        let targets = [
-            &mut into.pressure,
-            x,
-            y,
-            slip_x,
-            slip_y,
-            &mut into.friction,
-            u_x,
-            u_y,
-            change_x,
-            change_y,
-        ];
+        let targets = [&mut into.pressure, x, y, slip_x, slip_y, &mut into.friction];
         for (target, of) in targets.into_iter().zip(on_grid) {
             self.mean(grid, stride, |share| of(&sources[share.window]), |_, _| 0.0, target);
+        }
+        self.by_shear.displace_but_for(None, rail.operators, own, place);
+        let by_shear = &self.by_shear.displacement[own];
+        for component in 0..2 {
+            let of = |share: &Share| &sources[share.window].displacement[component];
+            let elsewhere = |strip: usize, cell: usize| by_shear[component][grid.place(strip, cell)];
+            self.mean(grid, stride, of, elsewhere, &mut into.displacement[component]);
+            let of = |share: &Share| &sources[share.window].displacement_change[component];
+            self.mean(grid, stride, of, |_, _| 0.0, &mut into.displacement_change[component]);
         }
         self.carry_heat_and_wear(rail, before, place, into, own);
         self.carry_memory(rail, before, place, into);
