@@ -1,4 +1,4 @@
-use super::apart::{self, ByPressure, ByShear};
+use super::apart::{self, Apart, ByPressure, ByShear, Influence, Resultants};
 use super::approach_response::RESPONSE_ERROR;
 use super::bodies::{RAIL, WHEEL};
 use super::geometry::{Pose, WindowGeometry};
@@ -12,6 +12,7 @@ use super::worn_bodies::WornBodies;
 use crate::body::grid::Grid;
 use crate::contact::engine::Engine;
 use crate::contact::fields::Fields;
+use crate::contact::patch::fields::PatchFields;
 use crate::contact::patch::operators::PatchOperators;
 use crate::contact::patch::undeformed::Undeformed;
 use crate::contact::problem::{Coupling, Problem, StepConditions, Task};
@@ -537,8 +538,34 @@ fn a_window_alone_carries_what_friction_changes_of_the_load() {
     }
 }
 
-/// The displacement of one window by the pressure of another is the sum over its cells as point forces, to the second order in the size of a block over
-/// the distance: of a/r, the interpolation between places that are d from each other leaves d²/4r² or less, the block as much. Close contacts have
+/// What a unit force does along the surface, or down, beside it: over (1 − ν)/(πG), by the way from it (Boussinesq, Cerruti).
+trait PointForce<const N: usize> {
+    /// Displacement by a force.
+    fn displacement(poisson: f64, force: [f64; N], way: [f64; 2]) -> [f64; N];
+}
+
+impl PointForce<1> for ByPressure {
+    fn displacement(_poisson: f64, [force]: [f64; 1], [x, y]: [f64; 2]) -> [f64; 1] {
+        [force / x.hypot(y)]
+    }
+}
+
+impl PointForce<2> for ByShear {
+    fn displacement(poisson: f64, [along, across]: [f64; 2], [x, y]: [f64; 2]) -> [f64; 2] {
+        let distance = x.hypot(y);
+        let radial = poisson * (along * x + across * y) / distance.powi(3);
+        [along / distance + radial * x, across / distance + radial * y]
+    }
+}
+
+/// Bound of the second derivatives of Cerruti's displacement over those of 1/r: those of xx/r³ and xy/r³ are up to twice as large.
+fn roughness(operators: &SurfaceOperators, components: usize) -> f64 {
+    let poisson = operators.pair.lateral / operators.pair.normal();
+    if components == 2 { 1.0 + 2.0 * poisson } else { 1.0 }
+}
+
+/// The displacement of one window by the pressure, or the shear, of another is the sum over its cells as point forces, to the second order in the size of a
+/// block over the distance: of a/r, the interpolation between places that are d from each other leaves d²/4r² or less, the block as much. Close contacts have
 /// smaller blocks.
 #[test]
 fn windows_displace_each_other_as_their_cells_do() {
@@ -553,49 +580,71 @@ fn windows_displace_each_other_as_their_cells_do() {
     let own = fields(&state);
     let loaded = |window: &usize| own.windows[*window].pressure.iter().any(|&pressure| pressure > 0.0);
     assert_eq!(own.used().filter(|(window, _)| loaded(window)).count(), 2);
-    let mut apart = ByPressure::new(&operators);
     for are_close in [false, true] {
-        let [strips, cells] = apart::grain(&operators.sizes.largest, are_close).map(|count| count as f64);
         let own = SurfaceFields {
             are_close,
             ..own.clone()
         };
-        apart.set_resultants(&operators, &own);
-        for (window, place) in own.used() {
-            apart.displace(&operators, window, &place);
-            let patch = operators.of(&place);
-            let unit = operators.pair.normal() * patch.scales.pressure / patch.scales.displacement;
-            let at = |place: &super::windows::Place, strip: usize, cell: usize| {
-                let grid = &operators.of(place).grid;
-                [place.middle_along(grid) + grid.x(cell), place.arc(grid, strip)]
-            };
-            let touching =
-                (0..patch.grid.strips).flat_map(|strip| (0..patch.grid.cells).map(move |cell| (strip, cell)));
-            for (strip, cell) in
-                touching.filter(|(strip, cell)| own.windows[window].pressure[patch.grid.place(*strip, *cell)] > 0.0)
-            {
-                let [x, y] = at(&place, strip, cell);
-                let (mut sum, mut nearest) = (0.0, f64::INFINITY);
-                for (other, from) in own.used().filter(|(other, _)| *other != window) {
-                    let grid = &operators.of(&from).grid;
-                    for (row, column) in
-                        (0..grid.strips).flat_map(|row| (0..grid.cells).map(move |column| (row, column)))
-                    {
-                        let [u, v] = at(&from, row, column);
-                        let force = own.windows[other].pressure[grid.place(row, column)] * grid.cell_area();
-                        let distance = (x - u).hypot(y - v);
-                        sum += force / distance;
-                        if force > 0.0 {
-                            nearest = f64::min(nearest, distance);
-                        }
+        displaces_as_its_cells_do::<1>(&operators, &own, |fields, at| [fields.pressure[at]]);
+        displaces_as_its_cells_do::<2>(&operators, &own, |fields, at| {
+            [fields.shear[0][at], fields.shear[1][at]]
+        });
+    }
+}
+
+fn displaces_as_its_cells_do<const N: usize>(
+    operators: &SurfaceOperators,
+    own: &SurfaceFields,
+    traction: fn(&PatchFields, usize) -> [f64; N],
+) where
+    Resultants<N>: Influence<N>,
+    Apart<N>: PointForce<N>,
+{
+    let [strips, cells] = apart::grain(&operators.sizes.largest, own.are_close).map(|count| count as f64);
+    let poisson = operators.pair.lateral / operators.pair.normal();
+    let mut apart = Apart::<N>::new(operators);
+    apart.set_resultants(operators, own);
+    for (window, place) in own.used() {
+        apart.displace(operators, window, &place);
+        let patch = operators.of(&place);
+        let unit = operators.pair.normal() * patch.scales.pressure / patch.scales.displacement;
+        let at = |place: &Place, strip: usize, cell: usize| {
+            let grid = &operators.of(place).grid;
+            [place.middle_along(grid) + grid.x(cell), place.arc(grid, strip)]
+        };
+        let touching = (0..patch.grid.strips).flat_map(|strip| (0..patch.grid.cells).map(move |cell| (strip, cell)));
+        for (strip, cell) in
+            touching.filter(|(strip, cell)| own.windows[window].pressure[patch.grid.place(*strip, *cell)] > 0.0)
+        {
+            let [x, y] = at(&place, strip, cell);
+            let (mut sum, mut magnitude, mut nearest) = ([0.0; N], 0.0, f64::INFINITY);
+            for (other, from) in own.used().filter(|(other, _)| *other != window) {
+                let grid = &operators.of(&from).grid;
+                for (row, column) in (0..grid.strips).flat_map(|row| (0..grid.cells).map(move |column| (row, column))) {
+                    let [u, v] = at(&from, row, column);
+                    let force = traction(&own.windows[other], grid.place(row, column));
+                    let force = force.map(|traction| traction * grid.cell_area());
+                    if force == [0.0; N] {
+                        continue;
                     }
+                    let way = [x - u, y - v];
+                    let displacement = Apart::<N>::displacement(poisson, force, way);
+                    for (sum, displacement) in sum.iter_mut().zip(displacement) {
+                        *sum += displacement;
+                    }
+                    let distance = way[0].hypot(way[1]);
+                    magnitude += force.iter().map(|force| force * force).sum::<f64>().sqrt() / distance;
+                    nearest = f64::min(nearest, distance);
                 }
-                let found = apart.displacement[window][0][patch.grid.place(strip, cell)];
-                let block = f64::max(cells * patch.grid.length, strips * patch.grid.breadth);
-                let allowed = (0.5 * (block / nearest).powi(2)).min(0.1);
+            }
+            let block = f64::max(cells * patch.grid.length, strips * patch.grid.breadth);
+            let allowed = (0.5 * (block / nearest).powi(2)).min(0.1) * roughness(operators, N) * unit * magnitude;
+            for (component, sum) in sum.into_iter().enumerate() {
+                let found = apart.displacement[window][component][patch.grid.place(strip, cell)];
                 assert!(
-                    (found / (unit * sum) - 1.0).abs() < allowed,
-                    "{are_close} {strip} {cell}: {found} {} {allowed}",
+                    (found - unit * sum).abs() < allowed,
+                    "{component} of {N}, {} {strip} {cell}: {found} {} {allowed}",
+                    own.are_close,
                     unit * sum
                 );
             }
@@ -659,7 +708,7 @@ fn contacts_nearer_than_a_block_are_close() {
     }
 }
 
-/// A loaded cell displaces another window as a point force does, wherever it lies in its block: to the second order in its distance δ from the
+/// A loaded cell displaces another window as a point force does, down or along the surface, wherever it lies in its block: to the second order in its distance δ from the
 /// block's middle and in the distances d of the places of the target, over the distance r.
 #[test]
 fn a_cell_displaces_another_window_as_a_point_force() {
@@ -676,17 +725,26 @@ fn a_cell_displaces_another_window_as_a_point_force() {
     let (grid, source) = (&operators.of(&place).grid, &operators.of(&from).grid);
     let scales = &operators.of(&place).scales;
     let unit = operators.pair.normal() * scales.pressure / scales.displacement * source.cell_area();
+    let poisson = operators.pair.lateral / operators.pair.normal();
     // The four corners of a block of 4 strips and 6 cells.
     let block = [8, 12];
     let mut compared = 0;
     for (strip, cell) in [(0, 0), (0, 5), (3, 0), (3, 5)] {
         let (strip, cell) = (block[0] + strip, block[1] + cell);
-        let mut pressure = vec![0.0; source.len()];
-        pressure[source.place(strip, cell)] = 1.0;
-        let mut apart = ByPressure::new(&operators);
-        apart.clear(&operators, false);
-        apart.take_traction(&operators, [&pressure], other, &from);
-        apart.displace(&operators, window, &place);
+        let nothing = vec![0.0; source.len()];
+        let mut force = nothing.clone();
+        force[source.place(strip, cell)] = 1.0;
+        let mut by_pressure = ByPressure::new(&operators);
+        by_pressure.clear(&operators, false);
+        by_pressure.take_traction(&operators, [&force], other, &from);
+        by_pressure.displace(&operators, window, &place);
+        let by_shear = [[&force, &nothing], [&nothing, &force]].map(|shear| {
+            let mut by_shear = ByShear::new(&operators);
+            by_shear.clear(&operators, false);
+            by_shear.take_traction(&operators, shear.map(|component| &component[..]), other, &from);
+            by_shear.displace(&operators, window, &place);
+            by_shear
+        });
         let at = |strip: usize, cell: usize| [from.middle_along(source) + source.x(cell), from.arc(source, strip)];
         let [u, v] = at(strip, cell);
         let (first, last) = (at(block[0], block[1]), at(block[0] + 3, block[1] + 5));
@@ -701,8 +759,6 @@ fn a_cell_displaces_another_window_as_a_point_force() {
                 continue;
             }
             compared += 1;
-            let found = apart.displacement[window][0][grid.place(row, column)];
-            let exact = unit / distance;
             // A series of powers of δ over the distance from the block's middle.
             let from_middle = (x - middle[0]).hypot(y - middle[1]);
             let of_series = (of_block / from_middle).powi(2) / (1.0 - of_block / from_middle) * distance / from_middle;
@@ -715,11 +771,30 @@ fn a_cell_displaces_another_window_as_a_point_force() {
             let along = right * (1.0 - right) * (6.0 * grid.length).powi(2);
             let across = up * (1.0 - up) * (4.0 * grid.breadth).powi(2);
             let of_places = (along + across) * distance / nearest.powi(3);
-            let allowed = of_series + of_places;
-            assert!(
-                (found / exact - 1.0).abs() < allowed,
-                "{strip} {cell} on {row} {column}: {found} {exact} {allowed}"
+            let allowed = unit / distance * (of_series + of_places);
+            let at = grid.place(row, column);
+            let down = by_pressure.displacement[window][0][at];
+            let found = [[down, 0.0]].into_iter().chain(
+                by_shear
+                    .each_ref()
+                    .map(|by_shear| by_shear.displacement[window].each_ref().map(|component| component[at])),
             );
+            let way = [x - u, y - v];
+            let exact = [
+                [1.0 / distance, 0.0],
+                ByShear::displacement(poisson, [1.0, 0.0], way),
+                ByShear::displacement(poisson, [0.0, 1.0], way),
+            ];
+            for (load, (found, exact)) in found.zip(exact).enumerate() {
+                let allowed = allowed * roughness(&operators, if load == 0 { 1 } else { 2 });
+                for (found, exact) in found.into_iter().zip(exact) {
+                    assert!(
+                        (found - unit * exact).abs() <= allowed,
+                        "{load}, {strip} {cell} on {row} {column}: {found} {} {allowed}",
+                        unit * exact
+                    );
+                }
+            }
         }
     }
     assert!(compared > 0);

@@ -102,6 +102,44 @@ fn a_strip_is_that_of_the_window_that_carries_there() {
     assert!(carrying > 4);
 }
 
+/// Rail that no window has been over is displaced by the shear in the windows as the rail beside it is: between its cells and those of the window before there is no step.
+#[test]
+fn rail_that_nothing_has_touched_is_displaced_by_the_shear_beside_it() {
+    let parameters = Parameters {
+        thermal_expansion: 0.0,
+        ..parameters(Control::Load)
+    };
+    let settings = Settings::default();
+    let operators = SurfaceOperators::build(&parameters, &ProfileContents::default()).unwrap();
+    let state = run(&parameters, &displaced(3e-3), 5);
+    let before = fields(&state);
+    let (window, place) = before.used().next().unwrap();
+    let grid = &operators.of(&place).grid;
+    let problem = problem(&operators, (&parameters, &settings), displaced(3e-3));
+    let covered = grid.strips / 2;
+    let mut after = SurfaceFields::new(&operators);
+    let target = Place {
+        strip: place.strip + (grid.strips - covered) as i32,
+        ..place
+    };
+    fill(&problem, before, &target, &mut after.windows[window], window);
+    for component in 0..2 {
+        let own = &after.windows[window].displacement[component];
+        let [last, beside, next] = [covered - 1, covered, covered + 1].map(|strip| &own[grid.row(strip)]);
+        let size = dense::largest(last);
+        assert!(size > 0.0);
+        for ((last, beside), next) in last.iter().zip(beside).zip(next) {
+            // It changes from strip to strip as little as over the next one, and what the blocks leave of 1/r.
+            println!("{component} {last:e} {beside:e} {next:e}");
+            let step = (beside - last).abs();
+            assert!(
+                step < 2.0 * (next - beside).abs() + 0.02 * size,
+                "{component}: {last:e} {beside:e} {next:e}"
+            );
+        }
+    }
+}
+
 /// Rail that no window has been over is as warm and as worn as it came in, and its friction that of rested rail.
 #[test]
 fn rail_that_nothing_has_touched_is_as_it_came_in() {
