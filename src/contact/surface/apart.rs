@@ -78,7 +78,7 @@ impl<const N: usize> Resultants<N> {
     };
 }
 
-/// What a traction of N components does to the surface beside it.
+/// Influence of a traction of N components on the surface beside it.
 pub trait Influence<const N: usize> {
     /// The traction in the fields of a window, on the grid, scaled.
     fn traction(fields: &PatchFields) -> [&[f64]; N];
@@ -114,7 +114,7 @@ impl Influence<2> for Resultants<2> {
         [&fields.shear[0], &fields.shear[1]]
     }
 
-    /// With M_ij the moment of component i along j, the part of the moments is
+    /// The part of the moments, M_ij that of component i along j, is
     /// (M e + ν/(1 − ν) (3 e (e·M e) − Mᵀe − e tr M))/r².
     #[inline(always)]
     fn add_at(&self, poisson: f64, [along, across]: [f64; 2], least: f64, [along_sums, across_sums]: &mut [Lanes; 2]) {

@@ -538,7 +538,7 @@ fn a_window_alone_carries_what_friction_changes_of_the_load() {
     }
 }
 
-/// What a unit force does along the surface, or down, beside it: over (1 − ν)/(πG), by the way from it (Boussinesq, Cerruti).
+/// Displacement by a unit force beside it, along the surface or down: over (1 − ν)/(πG), by the way from it (Boussinesq, Cerruti).
 trait PointForce<const N: usize> {
     /// Displacement by a force.
     fn displacement(poisson: f64, force: [f64; N], way: [f64; 2]) -> [f64; N];
