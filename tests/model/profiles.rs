@@ -861,7 +861,7 @@ fn contacts_of_two_windows_feel_each_others_shear() {
             ..inputs([0.0; 4])
         };
         let mut run = Simulation::new(&parameters, &at(0.0)).unwrap();
-        run.hold(&at(load), 0.1, 2).unwrap().clone()
+        *run.hold(&at(load), 0.1, 2).unwrap()
     };
     let [found, fine] = [21, 84].map(solved);
     assert_eq!([found.contacts, fine.contacts], [2.0, 1.0]);

@@ -137,10 +137,9 @@ impl Transfer {
             self.mean(grid, stride, |share| of(&sources[share.window]), |_, _| 0.0, target);
         }
         self.by_shear.displace_but_for(None, rail.operators, own, place);
-        let by_shear = &self.by_shear.displacement[own];
-        for component in 0..2 {
+        for (component, by_shear) in self.by_shear.displacement[own].iter().enumerate() {
             let of = |share: &Share| &sources[share.window].displacement[component];
-            let elsewhere = |strip: usize, cell: usize| by_shear[component][grid.place(strip, cell)];
+            let elsewhere = |strip: usize, cell: usize| by_shear[grid.place(strip, cell)];
             self.mean(grid, stride, of, elsewhere, &mut into.displacement[component]);
             let of = |share: &Share| &sources[share.window].displacement_change[component];
             self.mean(grid, stride, of, |_, _| 0.0, &mut into.displacement_change[component]);
