@@ -76,7 +76,7 @@ mod tests {
     /// A window with strips of 1 mm from 10 mm on, of which those from 14 to 20 mm, to round-off, belong to it.
     const OWN: [f64; 2] = [14e-3, 20e-3];
 
-    fn cuts(loaded: std::ops::Range<usize>, own: [f64; 2]) -> [bool; 2] {
+    fn cuts(loaded: std::ops::Range<usize>, own: [f64; 2]) -> [Option<CutOff>; 2] {
         let grid = Grid::new(8, 12, 4e-3, 6e-3);
         let place = Place {
             length: 0,
@@ -88,15 +88,16 @@ mod tests {
         for strip in loaded {
             pressure[grid.row(strip).start + 3] = 1.0;
         }
-        cut_off(&grid, &place, own, &pressure).map(|cut| cut.is_some())
+        cut_off(&grid, &place, own, &pressure)
     }
 
     #[test]
     fn a_contact_is_cut_off_where_the_last_strip_of_its_own_carries() {
-        assert_eq!(cuts(5..9, OWN), [false, false]);
-        assert_eq!(cuts(4..9, OWN), [true, false]);
-        assert_eq!(cuts(5..10, OWN), [false, true]);
-        assert_eq!(cuts(0..12, EVERYWHERE), [false, false]);
+        let cut = |seam: f64, is_on_gauge_side: bool| Some(CutOff { seam, is_on_gauge_side });
+        assert_eq!(cuts(5..9, OWN), [None; 2]);
+        assert_eq!(cuts(4..9, OWN), [cut(14e-3, false), None]);
+        assert_eq!(cuts(5..10, OWN), [None, cut(20e-3, true)]);
+        assert_eq!(cuts(0..12, EVERYWHERE), [None; 2]);
     }
 
     /// Regions of 2 mm with 4 mm between them: the seam goes to the end of the region whose contact has not reached it, and there is none where that was not enough or both have.
