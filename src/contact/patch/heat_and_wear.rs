@@ -132,15 +132,20 @@ pub fn read(problem: &PatchProblem, fields: &PatchFields, solvers: &mut PatchSol
     }
 }
 
-/// Sets friction coefficient and shear to those at the temperature of the fields.
-pub fn finalise_friction(problem: &PatchProblem, fields: &mut PatchFields, contact: &Contact) {
+/// Sets friction coefficient and shear to those at temperature rises of the cells, `K`.
+pub fn set_friction(
+    problem: &PatchProblem,
+    fields: &mut PatchFields,
+    contact: &Contact,
+    rise: impl Fn(&PatchFields, usize) -> f64,
+) {
     let grid = &problem.operators.grid;
     let of_slip = problem.path_law().is_some();
     for run in contact.runs() {
         let law = problem.friction_at(run.strip);
         for (k, place) in run.places(grid).enumerate() {
             let index = run.strip * grid.cells + run.first + k;
-            let static_friction = law.coefficient(fields.heat.surface[index]).0;
+            let static_friction = law.coefficient(rise(fields, index)).0;
             let mut mu = static_friction;
             if of_slip {
                 mu = fields.memory.at_final_temperature(index, static_friction);
@@ -156,4 +161,9 @@ pub fn finalise_friction(problem: &PatchProblem, fields: &mut PatchFields, conta
             }
         }
     }
+}
+
+/// Sets friction coefficient and shear to those at the temperature of the fields.
+pub fn finalise_friction(problem: &PatchProblem, fields: &mut PatchFields, contact: &Contact) {
+    set_friction(problem, fields, contact, |fields, index| fields.heat.surface[index]);
 }

@@ -56,10 +56,11 @@ fn begin_windows(
         before: carried,
         moved,
         responded,
+        followed,
         ..
     } = solvers;
     let before = before.map(|before| at_places(*moved, carried, before));
-    *responded = false;
+    (*responded, *followed) = (false, false);
     // The work of a window that is used no longer is not of this step.
     for own in windows.iter_mut() {
         own.patch.start_step();

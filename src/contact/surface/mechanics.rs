@@ -5,10 +5,9 @@
 //!
 //! Σ ∫ (p cos δ − τ_s sin δ) dA = Q, with the inclination δ to the track's plane, the roll of the rail included.
 //!
-//! The friction is that of the iteration before, in proportion to the pressure: where all slides, that is exact at once. The approach
+//! The friction is that of the iteration before at the temperature that there is by now, in proportion to the pressure: where all slides, that is exact at once. The approach
 //! is found in [`super::pressure`]. The friction that follows, in each window for what the shear of the others does to it by then, is a
-//! slightly different one, and with it the load is no longer met. A window that is alone
-//! has its pressure and friction corrected for that at once, before heat and wear see them.
+//! slightly different one, and with it the load is no longer met. Pressure and friction are corrected for that at once, before heat and wear see them.
 
 use super::approach_response::{advance, stiffness};
 use super::fields::SurfaceFields;
@@ -17,6 +16,8 @@ use super::problem::SurfaceProblem;
 use super::solvers::SurfaceSolvers;
 use super::windows::Place;
 use crate::contact::interface::Interface;
+use crate::contact::patch::fields::PatchFields;
+use crate::contact::patch::heat_and_wear::set_friction;
 use crate::contact::patch::mechanics;
 use crate::contact::problem::Coupling;
 use crate::error::Result;
@@ -40,10 +41,17 @@ pub fn solve(
         tolerance
     };
     for (window, place) in fields.used() {
-        let friction_share = friction_share(problem, fields, solvers, window, &place);
         let own = &mut solvers.windows[window];
         own.interface.take_window(interface, window);
+        if solvers.followed {
+            let (patch, contact) = (problem.of(&place), &own.patch.contact);
+            let rise = |_: &PatchFields, index: usize| own.interface.temperature(index);
+            set_friction(&patch, &mut fields.windows[window], contact, rise);
+        }
+        let friction_share = friction_share(problem, fields, solvers, window, &place);
+        let own = &mut solvers.windows[window];
         own.contact_before.copy_from(&own.patch.contact);
+        own.pressure_before.copy_from_slice(&fields.windows[window].pressure);
         own.friction_share = friction_share;
     }
     let unloaded = if problem.is_height_given() {
@@ -73,6 +81,7 @@ pub fn solve(
         }
     }
     pressed?;
+    solvers.followed = true;
     let motion = problem.pose().motion;
     let lowered = fields.approach[0] - solvers.reference;
     let mut change = TractionChange::NONE;
@@ -94,6 +103,7 @@ pub fn solve(
             own.geometry
                 .raise_slip(problem.operators, &place, &motion, -lowered, undeformed);
         }
+        follow_pressure(&own.pressure_before, &mut fields.windows[window]);
         let set_changed = own.patch.contact != own.contact_before;
         let patch = problem.of(&place);
         let own_change = mechanics::follow(
@@ -130,35 +140,45 @@ pub fn solve(
     Ok(change)
 }
 
+/// Changes the shear of each cell in proportion to its pressure: where all slides, that is the shear that follows.
+fn follow_pressure(before: &[f64], fields: &mut PatchFields) {
+    let [along, across] = &mut fields.shear;
+    let pressures = fields.pressure.iter().zip(before);
+    for ((along, across), (now, before)) in along.iter_mut().zip(across).zip(pressures) {
+        let ratio = if *before > 0.0 { now / before } else { 1.0 };
+        (*along, *across) = (ratio * *along, ratio * *across);
+    }
+}
+
 /// Whether there is one window, no more.
 fn is_alone(fields: &SurfaceFields) -> bool {
     fields.used().count() == 1
 }
 
-/// Corrects the pressure of a window that is alone, by its response to the approach, so that it carries the load with the friction there is. The shear of each cell
-/// changes in proportion to the pressure on it. Most steps on the tread then need two iterations in place of three. Several windows are left as they are: heat
-/// changes their friction by more, and the correction saved none.
+/// Corrects the pressure, by its response to the approach, so that it carries the load with the friction there is. The shear of each cell
+/// changes in proportion to the pressure on it. Most steps on the tread then need two iterations in place of three.
 fn carry_load(problem: &SurfaceProblem, fields: &mut SurfaceFields, solvers: &mut SurfaceSolvers) {
-    let Some((window, place)) = fields.used().next().filter(|_| is_alone(fields)) else {
-        return;
-    };
     let missing = problem.vertical_load() - fields.load;
     if missing.abs() >= RESPONDS * problem.vertical_load() {
         return;
     }
-    solvers.windows[window].friction_share = friction_share(problem, fields, solvers, window, &place);
+    for (window, place) in fields.used() {
+        solvers.windows[window].friction_share = friction_share(problem, fields, solvers, window, &place);
+    }
     let Some(stiffness) = stiffness(problem, fields, solvers) else {
         return;
     };
     let lower = missing / stiffness;
-    let per_approach = lower / problem.operators.of(&place).scales.displacement;
-    let (own, response) = (&mut fields.windows[window], &solvers.windows[window].response);
-    let [along, across] = &mut own.shear;
-    let pressures = own.pressure.iter().zip(&response.pressure);
-    for ((along, across), (pressure, response)) in along.iter_mut().zip(across).zip(pressures) {
-        if *pressure > 0.0 {
-            let ratio = (1.0 + per_approach * response / pressure).max(0.0);
-            (*along, *across) = (ratio * *along, ratio * *across);
+    for (window, place) in fields.used() {
+        let per_approach = lower / problem.operators.of(&place).scales.displacement;
+        let (own, response) = (&mut fields.windows[window], &solvers.windows[window].response);
+        let [along, across] = &mut own.shear;
+        let pressures = own.pressure.iter().zip(&response.pressure);
+        for ((along, across), (pressure, response)) in along.iter_mut().zip(across).zip(pressures) {
+            if *pressure > 0.0 {
+                let ratio = (1.0 + per_approach * response / pressure).max(0.0);
+                (*along, *across) = (ratio * *along, ratio * *across);
+            }
         }
     }
     advance(problem, lower, fields, solvers);

@@ -44,6 +44,8 @@ pub struct SurfaceSolvers {
     pub apart_shear: ByShear,
     /// Whether the responses of the windows' pressures to the approach have been found in this step.
     pub responded: bool,
+    /// Whether friction has been solved for in this step: shear and coefficient are of one temperature then, that of the iteration before.
+    pub followed: bool,
     /// Regions to place windows for.
     pub wanted: Vec<Wanted>,
     /// Arc lengths between which each window has the surface to itself, `m`; infinite where there is no other one.
@@ -88,6 +90,8 @@ pub struct WindowSolvers {
     pub image: Interface,
     /// Cells under pressure before a sweep.
     pub contact_before: Contact,
+    /// Pressure before a sweep, on the grid, scaled.
+    pub pressure_before: Vec<f64>,
     /// Vertical force of the friction on the wheel over that of the pressure.
     pub friction_share: f64,
     /// Response of the pressure to the approach, scaled.
@@ -118,6 +122,7 @@ impl SurfaceSolvers {
             apart_response: ByPressure::new(operators),
             apart_shear: ByShear::new(operators),
             responded: false,
+            followed: false,
             wanted: Vec::with_capacity(CONTACTS),
             own: [EVERYWHERE; WINDOWS],
             reference: 0.0,
@@ -148,6 +153,7 @@ impl WindowSolvers {
             interface: Interface::new(first.grid.strips * first.grid.cells, 1),
             image: Interface::new(first.grid.strips * first.grid.cells, 1),
             contact_before: Contact::new(&first.grid),
+            pressure_before: vec![0.0; first.grid.len()],
             friction_share: 0.0,
             response: PressureResponse::new(&first.grid),
             gap: vec![0.0; first.grid.len()],
