@@ -265,12 +265,17 @@ fn replay(out: &mut impl Write, torture: &Torture, number: u64) -> Result<(), Er
     };
     writeln!(
         out,
-        "step       µs iterations  outermost/a(largest_load)  load/largest_load  largest K"
+        "step       µs iterations  outermost/a(largest_load)  load/largest_load  largest K  staggered, residual"
     )?;
     for (step, reach) in run.steps.iter().zip(&run.reach) {
+        let residual = if step.staggered {
+            format!("{:21.2e}", step.residual)
+        } else {
+            String::new()
+        };
         writeln!(
             out,
-            "{:4} {:8.1} {:10} {:26.4} {:18.4} {:10.1}",
+            "{:4} {:8.1} {:10} {:26.4} {:18.4} {:10.1}{residual}",
             step.step,
             1e6 * step.time,
             step.iterations,
