@@ -67,6 +67,32 @@ fn the_table_has_contacts_and_conicities() {
     }
 }
 
+/// The picture has both sides, a line for each body, and panels for radii, conicity and contacts.
+#[test]
+fn the_picture_shows_contacts_and_conicity() {
+    let picture = file("picture.svg");
+    let path = picture.to_str().unwrap();
+    said(&["geometry", "--step", "5e-4", "--picture", path, "--outlines-at", "5e-3"]);
+    let drawn = fs::read_to_string(&picture).unwrap();
+    assert!(drawn.starts_with("<svg") && drawn.trim_end().ends_with("</svg>"));
+    for text in [
+        "left, 5.00 mm to the left",
+        "right, 5.00 mm to the left",
+        "equivalent conicity [1]",
+        "difference of rolling radii [mm]",
+        "right wheel",
+    ] {
+        assert!(drawn.contains(text), "{text}");
+    }
+    // Two bodies a side, radii, conicity, and four places in pieces between three jumps a side.
+    assert!(drawn.matches("<polyline").count() >= 2 * 2 + 2 + 4 * 4);
+    let refused = wheelrail(&["geometry", "--picture", path, "--output", path]);
+    assert!(!refused.status.success());
+    let refused = wheelrail(&["geometry", "--outlines-at", "5e-3"]);
+    assert!(!refused.status.success());
+    assert_eq!(fs::read_to_string(&picture).unwrap(), drawn);
+}
+
 /// A profile that is written and read again gives the same contacts.
 #[test]
 fn profiles_go_through_files() {

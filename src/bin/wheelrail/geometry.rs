@@ -1,15 +1,17 @@
 //! `wheelrail geometry`: where a wheelset's wheels touch the rails, over its lateral displacement, without forces.
 
 use crate::files::{self, Files};
+use crate::geometry_picture;
 use crate::profile;
 use crate::table::{self, Table, heading};
-use clap::Args;
+use clap::{ArgGroup, Args};
 use std::path::{Path, PathBuf};
 use wheelrail::contact_geometry::{Conicity, Dimensions, Jump, Pose, Sweep, Touch, Wheelset};
 use wheelrail::{Body, Profile, ProfileError};
 
 /// Options of `geometry`.
 #[derive(Args)]
+#[command(group = ArgGroup::new("drawn").args(["outlines", "picture"]).multiple(true))]
 pub struct Geometry {
     /// Profile of the rails: a name of `wheelrail profile`, or a file.
     #[arg(long, value_name = "NAME|FILE", default_value = "60E1")]
@@ -71,13 +73,16 @@ pub struct Geometry {
     /// CSV file for the outlines of rails and wheels where they touch, for pictures.
     #[arg(long, value_name = "OUTLINES.csv")]
     outlines: Option<PathBuf>,
-    /// Lateral displacement at which the outlines are, `m`.
+    /// SVG file for a picture: rails and wheels where they touch, difference of the rolling radii, equivalent conicity and places of the contacts.
+    #[arg(long, value_name = "PICTURE.svg")]
+    picture: Option<PathBuf>,
+    /// Lateral displacement at which rails and wheels are drawn, `m`.
     #[arg(
         long,
         value_name = "METRES",
         default_value_t = 0.0,
         allow_hyphen_values = true,
-        requires = "outlines"
+        requires = "drawn"
     )]
     outlines_at: f64,
 }
@@ -97,10 +102,18 @@ pub enum Error {
     /// A table that cannot be written.
     #[error(transparent)]
     Table(#[from] table::Error),
+    /// A picture that cannot be written.
+    #[error("{}: the picture cannot be written: {reason}", path.display())]
+    Picture {
+        /// File of the picture.
+        path: PathBuf,
+        /// Reason for it.
+        reason: String,
+    },
 }
 
 /// Sides in the order of the library, as columns are called by them.
-const SIDES: [&str; 2] = ["left", "right"];
+pub const SIDES: [&str; 2] = ["left", "right"];
 /// Amplitude at which EN 15302 has the conicity, `m`.
 const AMPLITUDE: f64 = 3e-3;
 
@@ -112,9 +125,8 @@ impl Geometry {
         let sweep = Sweep::new(&wheelset, [self.from, self.to], self.step, self.yaw)?;
         let motion = sweep.motion();
         let conicity = |amplitude: f64| motion.as_ref().and_then(|motion| motion.conicity(amplitude));
-        let outlines = self.outlines.as_deref();
-        let outlines = outlines.map(|path| Ok::<_, Error>((path, wheelset.at(self.outlines_at, self.yaw)?)));
-        let outlines = outlines.transpose()?;
+        let is_drawn = self.outlines.is_some() || self.picture.is_some();
+        let drawn = is_drawn.then(|| wheelset.at(self.outlines_at, self.yaw)).transpose()?;
         // Only now that nothing can be refused any more, so that a refusal leaves no file behind.
         let mut out = Table::open(self.output.as_deref(), headings())?;
         for pose in &sweep.poses {
@@ -137,8 +149,14 @@ impl Geometry {
         if let Some(path) = &self.jumps {
             jumps(path, &sweep.jumps)?;
         }
-        if let Some((path, pose)) = &outlines {
-            write_outlines(path, &wheelset, pose)?;
+        if let Some(pose) = &drawn {
+            if let Some(path) = &self.outlines {
+                write_outlines(path, &wheelset, pose)?;
+            }
+            if let Some(path) = &self.picture {
+                let conicity = |amplitude: f64| conicity(amplitude).map(|found| found.conicity);
+                geometry_picture::write(path, &wheelset, pose, &sweep.poses, conicity)?;
+            }
         }
         summary(conicity(AMPLITUDE), &sweep.jumps);
         Ok(())
@@ -158,6 +176,7 @@ impl Geometry {
         files.writes("--output", self.output.as_deref());
         files.writes("--jumps", self.jumps.as_deref());
         files.writes("--outlines", self.outlines.as_deref());
+        files.writes("--picture", self.picture.as_deref());
         Ok(files.check()?)
     }
 

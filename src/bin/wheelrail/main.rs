@@ -5,6 +5,7 @@ mod describe;
 mod fields;
 mod files;
 mod geometry;
+mod geometry_picture;
 mod names;
 mod pack;
 mod preset;
