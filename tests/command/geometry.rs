@@ -90,6 +90,11 @@ fn the_picture_shows_contacts_and_conicity() {
     assert!(!refused.status.success());
     let refused = wheelrail(&["geometry", "--outlines-at", "5e-3"]);
     assert!(!refused.status.success());
+    let other = file("picture.png");
+    let refused = wheelrail(&["geometry", "--picture", other.to_str().unwrap()]);
+    let said = String::from_utf8(refused.stderr).unwrap();
+    assert!(said.contains("picture.png: the picture is SVG"), "{said}");
+    assert!(!refused.status.success() && !other.exists());
     assert_eq!(fs::read_to_string(&picture).unwrap(), drawn);
 }
 

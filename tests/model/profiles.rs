@@ -810,6 +810,16 @@ fn a_peak_where_the_radius_of_the_rail_jumps_is_resolved() {
     }
 }
 
+/// Outputs of a wheel that is lowered onto the rail from above it and rolls on steadily.
+fn lowered(parameters: &Parameters, inputs: &Inputs) -> Outputs {
+    let lifted = Inputs {
+        normal_load: 0.0,
+        ..*inputs
+    };
+    let mut run = Simulation::new(parameters, &lifted).unwrap();
+    *run.hold(inputs, 0.1, 2).unwrap()
+}
+
 /// A contact over the whole gauge corner, 12 mm, has a peak of the pressure at its end on the flange's side, 1 mm broad. A window of strips of 0.4 mm just holds it, and finds the
 /// peak to 4 % of what four times as many strips have; on strips of 0.8 mm it is off by more than a third under 60 kN, and by a fifth under 100 kN.
 #[test]
@@ -819,7 +829,7 @@ fn a_peak_at_the_end_of_a_broad_contact_is_resolved() {
             patch_strips,
             ..bodies(Side::Right)
         };
-        let at = |normal_load| Inputs {
+        let inputs = Inputs {
             normal_load,
             lateral_displacement: -0.005_973_419_165_038_203,
             roll_angle: -0.001_403_845_665_865_777,
@@ -829,8 +839,7 @@ fn a_peak_at_the_end_of_a_broad_contact_is_resolved() {
             yaw_rate: -0.005_145_589_923_962_378,
             ..inputs([0.0; 4])
         };
-        let mut run = Simulation::new(&parameters, &at(0.0)).unwrap();
-        run.hold(&at(normal_load), 0.1, 2).unwrap().peak_pressure
+        lowered(&parameters, &inputs).peak_pressure
     };
     for load in [60e3, 100e3] {
         let [found, fine] = [21, 84].map(|patch_strips| peak(patch_strips, load));
@@ -850,8 +859,8 @@ fn contacts_of_two_windows_feel_each_others_shear() {
             wear_coefficient: 0.0,
             ..bodies(Side::Right)
         };
-        let at = |normal_load| Inputs {
-            normal_load,
+        let inputs = Inputs {
+            normal_load: load,
             lateral_displacement: -0.006_253_252_158_840_252,
             roll_angle: 0.001_445_050_129_001_101,
             yaw_angle: -0.011_599_755_881_506_297,
@@ -860,21 +869,13 @@ fn contacts_of_two_windows_feel_each_others_shear() {
             yaw_rate: 0.018_962_260_018_906_593,
             ..inputs([0.0; 4])
         };
-        let mut run = Simulation::new(&parameters, &at(0.0)).unwrap();
-        *run.hold(&at(load), 0.1, 2).unwrap()
+        lowered(&parameters, &inputs)
     };
     let [found, fine] = [21, 84].map(solved);
     assert_eq!([found.contacts, fine.contacts], [2.0, 1.0]);
     let difference = (found.force_x - fine.force_x).hypot(found.force_y - fine.force_y);
     let friction = 0.3 * load;
-    assert!(
-        difference < 0.01 * friction,
-        "{} {} {} {}",
-        found.force_x,
-        fine.force_x,
-        found.force_y,
-        fine.force_y
-    );
+    assert!(difference < 0.01 * friction, "{difference}");
 }
 
 /// The budget of a step grows with what the friction law takes on many cells: from a lifted wheel to partial slip under a heavy load, steps are solved.

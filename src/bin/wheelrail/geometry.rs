@@ -102,6 +102,12 @@ pub enum Error {
     /// A table that cannot be written.
     #[error(transparent)]
     Table(#[from] table::Error),
+    /// A picture of another kind than SVG.
+    #[error("--picture {}: the picture is SVG; its name must end in .svg", path.display())]
+    PictureName {
+        /// File of the picture.
+        path: PathBuf,
+    },
     /// A picture that cannot be written.
     #[error("{}: the picture cannot be written: {reason}", path.display())]
     Picture {
@@ -125,12 +131,15 @@ impl Geometry {
         let sweep = Sweep::new(&wheelset, [self.from, self.to], self.step, self.yaw)?;
         let motion = sweep.motion();
         let conicity = |amplitude: f64| motion.as_ref().and_then(|motion| motion.conicity(amplitude));
+        let amplitudes = sweep.poses.iter().map(|pose| pose.lateral.abs());
+        let conicities: Vec<_> = amplitudes
+            .map(|amplitude| conicity(amplitude).map(|found| found.conicity))
+            .collect();
         let is_drawn = self.outlines.is_some() || self.picture.is_some();
         let drawn = is_drawn.then(|| wheelset.at(self.outlines_at, self.yaw)).transpose()?;
         // Only now that nothing can be refused any more, so that a refusal leaves no file behind.
         let mut out = Table::open(self.output.as_deref(), headings())?;
-        for pose in &sweep.poses {
-            let conicity = conicity(pose.lateral.abs());
+        for (pose, conicity) in sweep.poses.iter().zip(&conicities) {
             let touches = pose.touches.iter().flat_map(|touch| {
                 let Touch {
                     on_rail,
@@ -143,7 +152,7 @@ impl Geometry {
             });
             let place = [pose.lateral, pose.yaw, pose.roll, pose.vertical];
             let row = place.into_iter().chain(touches).chain([pose.radius_difference()]);
-            out.write_some(row.map(Some).chain([conicity.map(|found| found.conicity)]))?;
+            out.write_some(row.map(Some).chain([*conicity]))?;
         }
         out.finish()?;
         if let Some(path) = &self.jumps {
@@ -154,8 +163,7 @@ impl Geometry {
                 write_outlines(path, &wheelset, pose)?;
             }
             if let Some(path) = &self.picture {
-                let conicity = |amplitude: f64| conicity(amplitude).map(|found| found.conicity);
-                geometry_picture::write(path, &wheelset, pose, &sweep.poses, conicity)?;
+                geometry_picture::write(path, &wheelset, pose, (&sweep.poses, &conicities))?;
             }
         }
         summary(conicity(AMPLITUDE), &sweep.jumps);
@@ -177,6 +185,9 @@ impl Geometry {
         files.writes("--jumps", self.jumps.as_deref());
         files.writes("--outlines", self.outlines.as_deref());
         files.writes("--picture", self.picture.as_deref());
+        if let Some(path) = &self.picture {
+            geometry_picture::check_name(path)?;
+        }
         Ok(files.check()?)
     }
 

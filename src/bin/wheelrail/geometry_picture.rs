@@ -16,6 +16,8 @@ const HEIGHTS: Range<f64> = -55.0..30.0;
 const ASPECT: f64 = 464.0 / 277.0;
 /// Margin about the values of an axis, over their range.
 const MARGIN: f64 = 0.05;
+/// Least margin, `mm` or 1: values may all be the same.
+const LEAST_MARGIN: f64 = 1e-3;
 /// Change of a contact's place from one displacement to the next that is a jump, `mm`: a line over it would be drawn where no contact is.
 const JUMP: f64 = 1.0;
 
@@ -32,34 +34,41 @@ const COLOURS: [RGBColor; 4] = [
 /// Lines of a panel, each with its colour and its name in the legend.
 type Lines = Vec<(Vec<(f64, f64)>, RGBColor, &'static str)>;
 
+/// Poses of a sweep and their equivalent conicities.
+type Swept<'a> = (&'a [Pose], &'a [Option<f64>]);
+
+/// Refuses the name of a file that would say another kind of picture.
+///
+/// # Errors
+/// [`Error::PictureName`].
+pub fn check_name(path: &Path) -> Result<(), Error> {
+    let is_svg = path
+        .extension()
+        .is_some_and(|ending| ending.eq_ignore_ascii_case("svg"));
+    is_svg
+        .then_some(())
+        .ok_or_else(|| Error::PictureName { path: path.to_owned() })
+}
+
 /// Writes the picture of a sweep as SVG, with the profiles at one pose.
 ///
 /// # Errors
 /// A file that cannot be written.
-pub fn write(
-    path: &Path,
-    wheelset: &Wheelset,
-    at: &Pose,
-    poses: &[Pose],
-    conicity: impl Fn(f64) -> Option<f64>,
-) -> Result<(), Error> {
+pub fn write(path: &Path, wheelset: &Wheelset, at: &Pose, swept: Swept) -> Result<(), Error> {
     let mut text = String::new();
-    draw(&mut text, wheelset, at, poses, conicity).map_err(|error| Error::Picture {
-        path: path.to_owned(),
-        reason: error.to_string(),
-    })?;
-    std::fs::write(path, text).map_err(|error| Error::Picture {
-        path: path.to_owned(),
-        reason: error.to_string(),
-    })
+    draw(&mut text, wheelset, at, swept)
+        .and_then(|()| Ok(std::fs::write(path, text)?))
+        .map_err(|error| Error::Picture {
+            path: path.to_owned(),
+            reason: error.to_string(),
+        })
 }
 
 fn draw(
     text: &mut String,
     wheelset: &Wheelset,
     at: &Pose,
-    poses: &[Pose],
-    conicity: impl Fn(f64) -> Option<f64>,
+    (poses, conicities): Swept,
 ) -> Result<(), Box<dyn std::error::Error>> {
     let root = SVGBackend::with_string(text, SIZE).into_drawing_area();
     root.fill(&WHITE)?;
@@ -84,9 +93,9 @@ fn draw(
         .iter()
         .map(|pose| (lateral(pose), 1e3 * pose.radius_difference()))
         .collect();
-    let amplitudes = poses.iter().filter(|pose| pose.lateral > 0.0);
+    let amplitudes = poses.iter().zip(conicities).filter(|(pose, _)| pose.lateral > 0.0);
     let conicities = amplitudes
-        .filter_map(|pose| Some((lateral(pose), conicity(pose.lateral)?)))
+        .filter_map(|(pose, conicity)| Some((lateral(pose), (*conicity)?)))
         .collect();
     let names = ["left wheel", "left rail", "right wheel", "right rail"];
     let mut places: Lines = Vec::new();
@@ -132,7 +141,7 @@ fn range(lines: &Lines, value: impl Fn(&(f64, f64)) -> f64) -> Range<f64> {
     if low > high {
         return 0.0..1.0;
     }
-    let margin = (MARGIN * (high - low)).max(f64::MIN_POSITIVE.max(1e-6 * high.abs()));
+    let margin = (MARGIN * (high - low)).max(LEAST_MARGIN);
     low - margin..high + margin
 }
 

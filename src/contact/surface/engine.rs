@@ -69,7 +69,7 @@ fn begin_windows(
         let (patch, own) = (problem.of(&place), &mut now.windows[window]);
         own.relaxation_length = begin::relaxation_length_of(&patch, &problem.operators.pair, &own.pressure);
         let before = before.map(|before| &before.windows[window]);
-        // Of one window that stays so.
+        // A window that is alone keeps these zeros; several windows are displaced by each other before their friction is solved.
         windows[window]
             .patch
             .beside

@@ -6,7 +6,7 @@
 //!
 //! Windows may lie over each other. Each of them has the rail that it carries on as it is, and the rest as if nothing touched it: a place takes
 //! what there is from the window that carries there, or carried last, which has left heat. Rail that no window has been over is as the
-//! rail beside the contact, displaced as the shear in the windows does it, and its friction that of rested rail.
+//! rail beside the contact, displaced by the shear in the windows, and its friction that of rested rail.
 
 use super::apart::ByShear;
 use super::fields::SurfaceFields;

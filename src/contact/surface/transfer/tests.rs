@@ -129,7 +129,7 @@ fn rail_that_nothing_has_touched_is_displaced_by_the_shear_beside_it() {
         let size = dense::largest(last);
         assert!(size > 0.0);
         for ((last, beside), next) in last.iter().zip(beside).zip(next) {
-            // It changes from strip to strip as little as over the next one, and what the blocks leave of 1/r.
+            // It changes from the last strip that was covered to the first that was not as little as from there to the next, but for the error of the blocks.
             println!("{component} {last:e} {beside:e} {next:e}");
             let step = (beside - last).abs();
             assert!(
