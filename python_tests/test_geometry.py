@@ -48,6 +48,26 @@ def test_points_and_files(tmp_path):
         package.Profile.from_points(exact["y"], exact["z"], body="rail")
 
 
+def test_a_profile_is_smoothed_after_it_was_read():
+    """A wave of 1 µm and 2 mm on the tread, smoothed with 4 mm: 1/17 of it is left; a rail's is left as it was by 0."""
+    wheel = package.Profile("S1002")
+    waved = wheel.points["z"] + 1e-6 * np.sin(2 * np.pi * wheel.points["y"] / 2e-3)
+    smooth = package.Profile.from_points(wheel.points["y"], waved, body="wheel").smoothed(4e-3)
+    assert (smooth.name, smooth.body, smooth.source) == ("points", "wheel", "given points")
+    at = np.linspace(0.0, 0.02, 401)
+    over = [np.interp(at, profile.points["y"], profile.points["z"]) for profile in (smooth, wheel)]
+    # A tenth for the spline and for the straight lines between the points of the data frames, 0.25 mm apart.
+    assert np.ptp(over[0] - over[1]) / 2e-6 == pytest.approx(1 / 17, rel=0.1)
+    rail = package.Profile("60E1")
+    # Its curvature jumps where radii meet, at one place of the points; smoothed, it passes on over some millimetres.
+    jumps = [profile.points["curvature"].diff().abs().max() for profile in (rail, rail.smoothed(1e-2))]
+    assert jumps[0] > 40.0
+    assert jumps[1] < jumps[0] / 4
+    np.testing.assert_allclose(rail.smoothed(0.0).points["z"], rail.points["z"], atol=1e-9)
+    with pytest.raises(ValueError, match=r"smoothing = -0\.001"):
+        rail.smoothed(-1e-3)
+
+
 def test_what_is_refused_names_what_was_given(tmp_path, monkeypatch):
     """Words of the package, of no library below it; what the user gave, and no file that was made for the command."""
     monkeypatch.chdir(tmp_path)

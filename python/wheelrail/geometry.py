@@ -352,6 +352,22 @@ class Profile:
             # Here, so that an error of the system is one of Python.
             path.write_bytes(written.read_bytes())
 
+    def smoothed(self, wavelength: float) -> "Profile":
+        """Profile whose waves of this length [m] are halved, after it has worn for example; 0 changes nothing.
+
+        Raises
+        ------
+        ValueError
+            The wavelength is not from 0 to 0.1 m.
+        """
+        smooth = Profile.__new__(Profile)
+        with tempfile.TemporaryDirectory() as name:
+            own = self._file(Path(name), "profile")
+            smooth._read(["profile", own, *options({"smoothing": wavelength})], {Path(own): self.name})
+        smooth.name, smooth.source = self.name, self.source
+        smooth._built_in = None if wavelength else self._built_in
+        return smooth
+
     def worn_by(self, arc_length: Any, depth: Any) -> "Profile":
         """Profile that has worn by depths along its normal.
 
@@ -452,6 +468,10 @@ class Profile:
         """What the command is given for this profile: its name, or a file for the given purpose in a folder."""
         if self._built_in is not None:
             return self._built_in
+        return self._file(folder, name)
+
+    def _file(self, folder: Path, name: str) -> str:
+        """File of this profile, for the given purpose, in a folder."""
         # No file of the user's is likely to be called so: errors are told with the profile's name in its place.
         path = folder / f"wheelrail-given-{name}{ENDINGS[self.body]}"
         path.write_text(self._text, encoding="utf-8")

@@ -146,6 +146,18 @@ impl Profile {
         Profile::of_curve(body, name, source, curve)
     }
 
+    /// Profile whose waves of a length `smoothing`, `m`, are damped to a half, as [`Profile::from_points`] does through the
+    /// [points](Profile::points) of this one: after it has worn, for example. 0 changes nothing.
+    ///
+    /// # Errors
+    /// `smoothing` is not from 0 to 0.1 m; or a wheel that is smoothed does not reach its running circle.
+    pub fn smoothed(&self, smoothing: f64) -> Result<Profile, ProfileError> {
+        if smoothing == 0.0 {
+            return Ok(self.clone());
+        }
+        Profile::from_points(self.body, &self.name, &self.source, &self.points(), smoothing)
+    }
+
     /// Body that the profile belongs to.
     pub fn body(&self) -> Body {
         self.body

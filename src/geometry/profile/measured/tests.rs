@@ -48,7 +48,7 @@ fn points_of_a_formula_give_its_curve() {
     }
 }
 
-/// A wave of 1 µm and 2 mm length on the tread, smoothed with 4 mm: 1/17 of it is left.
+/// A wave of 1 µm and 2 mm length on the tread, smoothed with 4 mm as it is read or later: 1/17 of it is left.
 #[test]
 fn waves_are_smoothed_by_their_length() {
     let mut points = wheel_points();
@@ -56,13 +56,19 @@ fn waves_are_smoothed_by_their_length() {
     for point in &mut points {
         point[1] += wave(point[0]);
     }
-    let (smooth, exact) = (through(&points, 4e-3).unwrap(), built_in("S1002"));
-    let [smooth, exact] = [smooth, exact].map(|profile| profile.height_function().unwrap());
-    let largest = (0..=200)
-        .map(|place| 1e-4 * f64::from(place))
-        .map(|y| (smooth.value_slope_curvature(y)[0] - exact.value_slope_curvature(y)[0]).abs())
-        .fold(0.0, f64::max);
-    assert!((largest / (1e-6 / 17.0) - 1.0).abs() < 0.1, "{largest}");
+    let exact = built_in("S1002").height_function().unwrap();
+    let read = through(&points, 0.0).unwrap();
+    assert_eq!(read.smoothed(0.0).unwrap(), read);
+    for smooth in [through(&points, 4e-3), read.smoothed(4e-3)] {
+        let smooth = smooth.unwrap().height_function().unwrap();
+        let largest = (0..=200)
+            .map(|place| 1e-4 * f64::from(place))
+            .map(|y| (smooth.value_slope_curvature(y)[0] - exact.value_slope_curvature(y)[0]).abs())
+            .fold(0.0, f64::max);
+        assert!((largest / (1e-6 / 17.0) - 1.0).abs() < 0.1, "{largest}");
+    }
+    let refused = read.smoothed(-1e-3).unwrap_err().to_string();
+    assert!(refused.contains("smoothing = -0.001"), "{refused}");
 }
 
 /// A roof of 40° keeps its ridge, whatever is smoothed; one of 20° is rounded.
