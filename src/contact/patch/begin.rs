@@ -3,7 +3,6 @@
 use super::extent::extent;
 use super::fields::PatchFields;
 use super::heat_and_wear;
-use super::mechanics;
 use super::operators::relaxation_length;
 use super::problem::PatchProblem;
 use super::solvers::PatchSolvers;
@@ -36,7 +35,7 @@ pub fn begin(
     solvers.contact.list(grid, |place| now.pressure[place] > 0.0);
     let strips = solvers.contact.window(grid, 0).strips.len();
     let weights = problem.slip_weights(problem.transient(now.relaxation_length));
-    mechanics::respond(problem, weights, strips, solvers);
+    solvers.respond(problem, weights, strips);
     if let Some(before) = before {
         let rise = problem.incoming_rise();
         let march = problem.heat_march();

@@ -2,6 +2,7 @@
 
 use super::expansion;
 use super::operators::PatchOperators;
+use super::problem::PatchProblem;
 use super::response;
 use super::undeformed::Undeformed;
 use crate::body::influence;
@@ -120,6 +121,17 @@ impl PatchSolvers {
             off_middle: vec![[0.0; 2]; grid.len()],
             path: PathScratch::new(cells),
         }
+    }
+
+    /// Adapts the response of the slip to speed and step, for a contact on so many strips.
+    pub fn respond(&mut self, problem: &PatchProblem, weights: SlipWeights, strips: usize) {
+        self.strips = problem.operators.transform_for(strips).0.strips();
+        let conditions = (weights, problem.is_forward(), self.strips);
+        if self.weights == Some(conditions) {
+            return;
+        }
+        self.weights = Some(conditions);
+        response::adapt(problem, &weights, strips, &mut self.response);
     }
 
     /// Forgets what was computed in another step, and its work: a step follows from its state alone.

@@ -37,33 +37,14 @@ pub fn solve(
 ) -> Result<TractionChange> {
     let is_alone = fields.used().count() == 1;
     let tolerance = if is_alone { tolerance.min(ALONE) } else { tolerance };
-    for (window, place) in fields.used() {
-        let own = &mut solvers.windows[window];
-        own.interface.take_window(interface, window);
-        if solvers.followed {
-            let (patch, contact) = (problem.of(&place), &own.patch.contact);
-            let rise = |_: &PatchFields, index: usize| own.interface.temperature(index);
-            set_friction(&patch, &mut fields.windows[window], contact, rise);
-        }
-        let friction_share = friction_share(problem, fields, solvers, window, &place);
-        let own = &mut solvers.windows[window];
-        own.contact_before.copy_from(&own.patch.contact);
-        own.pressure_before.copy_from_slice(&fields.windows[window].pressure);
-        own.friction_share = friction_share;
-    }
+    begin(problem, interface, fields, solvers);
     let unloaded = if problem.is_height_given() {
         solvers.reference <= 0.0
     } else {
         problem.vertical_load() == 0.0
     };
     if unloaded {
-        fields.load = 0.0;
-        for (window, place) in fields.used() {
-            let own = &mut solvers.windows[window];
-            let patch = problem.of(&place);
-            own.patch.contact.list(&patch.operators.grid, |_| false);
-            mechanics::lift_off(&patch, &own.interface, &mut fields.windows[window], &mut own.patch);
-        }
+        lift_off(problem, fields, solvers);
         return Ok(TractionChange::NONE);
     }
     let pressed = if problem.conditions.coupling == Coupling::Held {
@@ -79,6 +60,59 @@ pub fn solve(
     }
     pressed?;
     solvers.followed = true;
+    let mut change = rub(problem, fields, solvers, tolerance)?;
+    fields.load = carried(problem, fields, solvers);
+    if !problem.is_height_given() {
+        // The load that the friction has made of it is another one than asked for: so far have the tractions changed.
+        let load = problem.vertical_load();
+        // The pressure does not carry it better than it is solved.
+        let missing = (fields.load / load - 1.0).abs() - 2.0 * least_load_error(problem, load);
+        change.shear_change = change.shear_change.max(missing);
+        if missing > tolerance && problem.conditions.coupling == Coupling::Implicit {
+            carry_load(problem, fields, solvers);
+        }
+    }
+    Ok(change)
+}
+
+/// Takes what heat and wear have made of the interface into each window: after the first iteration the friction of the new temperatures too. What the
+/// tractions are compared with is kept.
+fn begin(problem: &SurfaceProblem, interface: &Interface, fields: &mut SurfaceFields, solvers: &mut SurfaceSolvers) {
+    for (window, place) in fields.used() {
+        let own = &mut solvers.windows[window];
+        own.interface.take_window(interface, window);
+        if solvers.followed {
+            let (patch, contact) = (problem.of(&place), &own.patch.contact);
+            let rise = |_: &PatchFields, index: usize| own.interface.temperature(index);
+            set_friction(&patch, &mut fields.windows[window], contact, rise);
+        }
+        let friction_share = friction_share(problem, fields, solvers, window, &place);
+        let own = &mut solvers.windows[window];
+        own.contact_before.copy_from(&own.patch.contact);
+        own.pressure_before.copy_from_slice(&fields.windows[window].pressure);
+        own.friction_share = friction_share;
+    }
+}
+
+/// Takes the tractions off all windows: the wheel stands above the rail, or carries nothing.
+fn lift_off(problem: &SurfaceProblem, fields: &mut SurfaceFields, solvers: &mut SurfaceSolvers) {
+    fields.load = 0.0;
+    for (window, place) in fields.used() {
+        let own = &mut solvers.windows[window];
+        let patch = problem.of(&place);
+        own.patch.contact.list(&patch.operators.grid, |_| false);
+        mechanics::lift_off(&patch, &own.interface, &mut fields.windows[window], &mut own.patch);
+    }
+}
+
+/// Friction of each window for its pressure, and for what the shear of the others by then does to it. Returns how far that changes the tractions.
+fn rub(
+    problem: &SurfaceProblem,
+    fields: &mut SurfaceFields,
+    solvers: &mut SurfaceSolvers,
+    tolerance: f64,
+) -> Result<TractionChange> {
+    let is_alone = fields.used().count() == 1;
     let motion = problem.pose().motion;
     let lowered = fields.approach[0] - solvers.reference;
     let mut change = TractionChange::NONE;
@@ -119,19 +153,6 @@ pub fn solve(
         solvers
             .apart_shear
             .take_for_others(problem.operators, fields, window, &place);
-    }
-    if !problem.is_height_given() {
-        // The load that the friction has made of it is another one than asked for: so far have the tractions changed.
-        let load = problem.vertical_load();
-        fields.load = carried(problem, fields, solvers);
-        // The pressure does not carry it better than it is solved.
-        let missing = (fields.load / load - 1.0).abs() - 2.0 * least_load_error(problem, load);
-        change.shear_change = change.shear_change.max(missing);
-        if missing > tolerance && problem.conditions.coupling == Coupling::Implicit {
-            carry_load(problem, fields, solvers);
-        }
-    } else {
-        fields.load = carried(problem, fields, solvers);
     }
     Ok(change)
 }

@@ -1,11 +1,13 @@
 //! Sums over the fields of a contact of profiles: integrals over all windows, forces on the wheelset, the contacts one by one.
 
+use super::bodies::Bodies;
 use super::fields::SurfaceFields;
+use super::geometry::Pose;
 use super::operators::SurfaceOperators;
 use super::problem::SurfaceProblem;
 use super::profile_wear;
 use super::solvers::SurfaceSolvers;
-use super::windows::WINDOWS;
+use super::windows::{Place, WINDOWS};
 use crate::body::grid::Grid;
 use crate::contact::engine::Engine;
 use crate::contact::integrals::{Integrals, NodeSums};
@@ -14,6 +16,7 @@ use crate::contact::outputs::{creepage_speed, damping};
 use crate::contact::patch;
 use crate::contact::patch::fields::PatchFields;
 use crate::contact::patch::operators::PatchOperators;
+use crate::contact::patch::problem::PatchProblem;
 use crate::contact::rim::ContactHeat;
 use crate::damage::PointDamage;
 use crate::geometry::unrolled::{PlacedWheel, RailPoint};
@@ -100,23 +103,78 @@ fn on_wheelset(
         ..OnWheelset::default()
     };
     for (window, place) in fields.used() {
-        let patch = problem.of(&place);
         let own = &fields.windows[window];
         let Some(integrals) = of_windows[window].filter(|integrals| integrals.sums.nodes > 0.0) else {
             continue;
         };
-        let (grid, unit) = (&patch.operators.grid, PatchOperators::unit_force(patch.operators));
-        let middle = place.middle_along(grid);
+        let placed = PlacedContact {
+            bodies,
+            wheel: &wheel,
+            pose: &pose,
+            height,
+            place: &place,
+            patch: &problem.of(&place),
+            fields: own,
+        };
+        let mut contact = placed.add_tractions(&mut all);
+        placed.describe(&integrals, &mut contact);
+        placed.add_damping(&mut contact, &mut all);
+        all.contacts[all.count] = contact;
+        all.count += 1;
+    }
+    let count = all.count;
+    all.contacts[..count].sort_by(|a, b| a.arc.total_cmp(&b.arc));
+    all.torque = wheel.about_axle(all.moment);
+    to_track(operators.side, pose.position.rail_roll, &mut all);
+    all
+}
+
+/// Turns forces and moments from the rail's axes to those of the track, and back from the mirror image that a right wheel is solved in.
+fn to_track(side: f64, rail_roll: f64, all: &mut OnWheelset) {
+    let (sine, cosine) = rail_roll.sin_cos();
+    for vector in [&mut all.force, &mut all.moment] {
+        let [_, y, z] = *vector;
+        (vector[1], vector[2]) = (cosine * y - sine * z, sine * y + cosine * z);
+    }
+    all.force[1] *= side;
+    all.moment[0] *= side;
+    all.moment[2] *= side;
+    for contact in &mut all.contacts {
+        contact.friction[1] *= side;
+        contact.spin_moment *= side;
+        contact.creepages[1] *= side;
+        contact.creepages[2] *= side;
+    }
+}
+
+/// A contact in its window, between wheel and rail in their places.
+#[derive(Clone, Copy)]
+struct PlacedContact<'a> {
+    bodies: &'a Bodies,
+    wheel: &'a PlacedWheel<'a>,
+    pose: &'a Pose,
+    /// Height of the wheelset's centre, `m`.
+    height: f64,
+    place: &'a Place,
+    patch: &'a PatchProblem<'a>,
+    fields: &'a PatchFields,
+}
+
+impl PlacedContact<'_> {
+    /// Adds what the tractions do to the wheelset, strip by strip as each has its own normal. Returns the contact's forces, the moment of
+    /// its friction and the place of its resultant.
+    fn add_tractions(&self, all: &mut OnWheelset) -> OneContact {
+        let (own, grid) = (self.fields, &self.patch.operators.grid);
+        let unit = PatchOperators::unit_force(self.patch.operators);
+        let middle = self.place.middle_along(grid);
         let mut contact = OneContact::default();
         let (mut moment_x, mut moment_s, mut friction_moment) = (0.0, 0.0, 0.0);
         let carries = |strip: &usize| own.pressure[grid.row(*strip)].iter().any(|&pressure| pressure > 0.0);
         for strip in (0..grid.strips).filter(carries) {
-            let arc = place.arc(grid, strip);
-            let point = bodies.rail.at(arc);
-            let tangent = point.tangent();
-            let row = grid.row(strip);
-            let [mut normal, mut ahead, mut x_moment, mut along, mut across, mut twist] = [0.0; 6];
-            for (cell, at) in row.enumerate() {
+            let arc = self.place.arc(grid, strip);
+            let point = self.bodies.rail.at(arc);
+            let [mut normal, mut ahead, mut along, mut across, mut twist] = [0.0; 5];
+            for (cell, at) in grid.row(strip).enumerate() {
                 let x = middle + grid.x(cell);
                 let (pressure, shear) = (
                     unit * own.pressure[at],
@@ -126,94 +184,101 @@ fn on_wheelset(
                 ahead += x * pressure;
                 along -= shear[0];
                 across -= shear[1];
-                x_moment += pressure * x;
                 twist -= x * shear[1];
             }
             contact.normal_force += normal;
             contact.friction[0] += along;
             contact.friction[1] += across;
-            moment_x += x_moment;
+            moment_x += ahead;
             moment_s += arc * normal;
             friction_moment += twist - arc * along;
-            let lateral = point.place[0] - pose.position.lateral;
-            let vertical = point.place[1] - height;
-            let force = [
-                along,
-                normal * point.normal[0] + across * tangent[0],
-                normal * point.normal[1] + across * tangent[1],
-            ];
-            for (sum, part) in all.force.iter_mut().zip(force) {
-                *sum += part;
-            }
-            // Σ x f of the strip, whose lateral and vertical forces stand at different places along it.
-            let lateral_moment = ahead * point.normal[0] + twist * tangent[0];
-            let vertical_moment = ahead * point.normal[1] + twist * tangent[1];
-            all.moment[0] += lateral * force[2] - vertical * force[1];
-            all.moment[1] += vertical * along - vertical_moment;
-            all.moment[2] += lateral_moment - lateral * along;
+            self.add_strip(&point, [normal, ahead, along, across, twist], all);
             // Friction acts on the wheel's undeformed surface, at a distance h along the normal n from the rail's: its moment
             // is larger by h n × τ. Across, n × t = (−1, 0, 0).
-            let moved = friction_times_distance(&wheel, (&point, middle), own, grid, strip);
+            let moved = friction_times_distance(self.wheel, (&point, middle), own, grid, strip);
             let [along, across] = moved.map(|sum| unit * sum);
             all.moment[0] -= across;
             all.moment[1] += point.normal[1] * along;
             all.moment[2] -= point.normal[0] * along;
         }
-        let (x, arc) = (moment_x / contact.normal_force, moment_s / contact.normal_force);
-        let point = bodies.rail.at(arc);
-        let at = wheel.distance(x, &point, 0.0);
-        contact.arc = arc;
-        contact.along = x;
-        contact.positions = [point.place[0] - bodies.rail.top(), wheel.profile_position(&at)];
-        contact.inclination = (-point.normal[0]).atan2(point.normal[1]) + pose.position.rail_roll;
-        let [ahead, y, z] = wheel.velocity(&at, &pose.motion);
-        let approach_speed = wheel.approach_speed(&at, &point, &pose.motion);
-        let added = contact.normal_force * (damping(problem.parameters, approach_speed) - 1.0);
-        if added != 0.0 {
-            contact.normal_force += added;
-            let force = [added * point.normal[0], added * point.normal[1]];
-            let arm = [point.place[0] - pose.position.lateral, point.place[1] - height];
-            all.force[1] += force[0];
-            all.force[2] += force[1];
-            all.moment[0] += arm[0] * force[1] - arm[1] * force[0];
-            all.moment[1] -= x * force[1];
-            all.moment[2] += x * force[0];
-        }
+        contact.along = moment_x / contact.normal_force;
+        contact.arc = moment_s / contact.normal_force;
+        contact.spin_moment = friction_moment - contact.along * contact.friction[1] + contact.arc * contact.friction[0];
+        contact
+    }
+
+    /// Adds force and moment of a strip at a point of the rail: of the forces along the normal, along the rail and across it in the strip's plane,
+    /// and of the moments of the first and the last by the distance ahead of the axle.
+    fn add_strip(&self, point: &RailPoint, [normal, ahead, along, across, twist]: [f64; 5], all: &mut OnWheelset) {
         let tangent = point.tangent();
-        let speed = creepage_speed(pose.motion.velocity[0]);
-        let [across, spin] = [y * tangent[0] + z * tangent[1], wheel.spin(&point, &pose.motion)];
+        let [lateral, vertical] = self.arm(point);
+        let force = [
+            along,
+            normal * point.normal[0] + across * tangent[0],
+            normal * point.normal[1] + across * tangent[1],
+        ];
+        for (sum, part) in all.force.iter_mut().zip(force) {
+            *sum += part;
+        }
+        // Σ x f of the strip, whose lateral and vertical forces stand at different places along it.
+        let lateral_moment = ahead * point.normal[0] + twist * tangent[0];
+        let vertical_moment = ahead * point.normal[1] + twist * tangent[1];
+        all.moment[0] += lateral * force[2] - vertical * force[1];
+        all.moment[1] += vertical * along - vertical_moment;
+        all.moment[2] += lateral_moment - lateral * along;
+    }
+
+    /// Lateral and vertical distance of a point of the rail from the wheelset's centre, `m`.
+    fn arm(&self, point: &RailPoint) -> [f64; 2] {
+        [
+            point.place[0] - self.pose.position.lateral,
+            point.place[1] - self.height,
+        ]
+    }
+
+    /// Says where a contact is and how it moves, at the resultant of its pressure, and what its integrals are.
+    fn describe(&self, integrals: &Integrals, contact: &mut OneContact) {
+        let motion = &self.pose.motion;
+        let point = self.bodies.rail.at(contact.arc);
+        let at = self.wheel.distance(contact.along, &point, 0.0);
+        contact.positions = [
+            point.place[0] - self.bodies.rail.top(),
+            self.wheel.profile_position(&at),
+        ];
+        contact.inclination = (-point.normal[0]).atan2(point.normal[1]) + self.pose.position.rail_roll;
+        let [ahead, y, z] = self.wheel.velocity(&at, motion);
+        let tangent = point.tangent();
+        let speed = creepage_speed(motion.velocity[0]);
+        let [across, spin] = [y * tangent[0] + z * tangent[1], self.wheel.spin(&point, motion)];
         contact.creepages = [-ahead / speed, across / speed, spin / speed];
-        contact.spin_moment = friction_moment - x * contact.friction[1] + arc * contact.friction[0];
         let power = -contact.friction[0] * ahead - contact.friction[1] * across - contact.spin_moment * spin;
         contact.wear_number = power / speed.abs();
         contact.size = [integrals.contact_length, integrals.contact_breadth];
         contact.area = integrals.contact_area;
-        contact.peak_pressure = integrals.sums.peak_pressure * patch.operators.scales.pressure;
+        contact.peak_pressure = integrals.sums.peak_pressure * self.patch.operators.scales.pressure;
         contact.peak_rise = integrals.peak_rise;
         contact.damage = integrals.damage;
-        contact.friction_power = unit * integrals.sums.friction_power;
-        all.contacts[all.count] = contact;
-        all.count += 1;
+        contact.friction_power = PatchOperators::unit_force(self.patch.operators) * integrals.sums.friction_power;
     }
-    let count = all.count;
-    all.contacts[..count].sort_by(|a, b| a.arc.total_cmp(&b.arc));
-    all.torque = wheel.about_axle(all.moment);
-    // Back from the rail's axes to those of the track, and from the mirror image.
-    let (sine, cosine) = pose.position.rail_roll.sin_cos();
-    for vector in [&mut all.force, &mut all.moment] {
-        let [_, y, z] = *vector;
-        (vector[1], vector[2]) = (cosine * y - sine * z, sine * y + cosine * z);
+
+    /// Adds what damps the approach to the normal force, at the resultant of the pressure.
+    fn add_damping(&self, contact: &mut OneContact, all: &mut OnWheelset) {
+        let point = self.bodies.rail.at(contact.arc);
+        let at = self.wheel.distance(contact.along, &point, 0.0);
+        let approach_speed = self.wheel.approach_speed(&at, &point, &self.pose.motion);
+        let added = contact.normal_force * (damping(self.patch.parameters, approach_speed) - 1.0);
+        if added == 0.0 {
+            return;
+        }
+        contact.normal_force += added;
+        let force = [added * point.normal[0], added * point.normal[1]];
+        let arm = self.arm(&point);
+        all.force[1] += force[0];
+        all.force[2] += force[1];
+        all.moment[0] += arm[0] * force[1] - arm[1] * force[0];
+        all.moment[1] -= contact.along * force[1];
+        all.moment[2] += contact.along * force[0];
     }
-    all.force[1] *= operators.side;
-    all.moment[0] *= operators.side;
-    all.moment[2] *= operators.side;
-    for contact in &mut all.contacts {
-        contact.friction[1] *= operators.side;
-        contact.spin_moment *= operators.side;
-        contact.creepages[1] *= operators.side;
-        contact.creepages[2] *= operators.side;
-    }
-    all
 }
 
 /// Sums over the cells of a strip of friction on the wheel, along and across, times how far the wheel's surface lies from the rail's along the normal.
