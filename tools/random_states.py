@@ -1,16 +1,19 @@
-"""How far default cells are from fine ones: a wheel in random states, peak pressure and forces.
+"""How far default cells are from fine ones, or from a second program: peak pressure and forces in random states.
 
     .venv/bin/python tools/random_states.py                    (after `make fmu3`)
     .venv/bin/python tools/random_states.py --load 60 --states 20 --to-the-right 5.7 6.1
+    .venv/bin/python tools/random_states.py --dense --states 20
 
 The right wheel S1002 on UIC60 without heat and wear, steady: displacement, roll, yaw, lateral speed, yaw rate and
-creepage at random, with a fixed seed. The fine grid has twice the cells along and four times the strips.
+creepage at random, with a fixed seed. The fine grid has twice the cells along and four times the strips; the second
+program is `dense_contact.py`, half a minute a state.
 """
 
 import argparse
 import sys
 from pathlib import Path
 
+import dense_contact
 import numpy as np
 
 REPOSITORY = Path(__file__).resolve().parent.parent
@@ -20,8 +23,13 @@ from wheelrail import Instance  # noqa: E402  the package's folder is on the pat
 
 FMU = REPOSITORY / "target" / "WheelRailContact-fmi3.fmu"
 SPEED, RADIUS, FRICTION = 20.0, 0.46, 0.3  # m/s, m, 1
-DEFAULT, FINE = (34, 21), (68, 84)
+DEFAULT, FINE, DENSE = (34, 21), (68, 84), (24, 32)
 ROLLING = {"vehicle_speed": SPEED, "wheel_speed": SPEED / RADIUS}
+BODIES = {
+    **{"contact_model": "profiles", "side": "right", "rail_profile": "UIC60", "wheel_profile": "S1002"},
+    **{"friction_law": "constant", "friction_cold": FRICTION, "slip_source": "vehicle_speed"},
+    **{"thermal_expansion": 0.0, "wear_coefficient": 0.0},
+}
 
 
 def states(chosen):
@@ -41,11 +49,10 @@ def states(chosen):
 
 
 def computed(cells, chosen):
-    """Peak pressure and forces of all states, each from a lifted wheel."""
-    bodies = {"contact_model": "profiles", "side": "right", "rail_profile": "UIC60", "wheel_profile": "S1002"}
-    bodies |= {"friction_law": "constant", "friction_cold": FRICTION}
-    bodies |= {"thermal_expansion": 0.0, "wear_coefficient": 0.0, "slip_source": "vehicle_speed"}
-    bodies |= {"patch_nodes": cells[0], "patch_strips": cells[1]}
+    """Peak pressure, forces and sum of the normal forces of all states, each from a lifted wheel."""
+    bodies = BODIES | {"patch_nodes": cells[0], "patch_strips": cells[1]}
+    if chosen.dense:
+        bodies |= dense_contact.material()
     found = []
     with Instance(FMU, **bodies, normal_load=0.0, **ROLLING) as wheel:
         wheel.start()
@@ -55,8 +62,23 @@ def computed(cells, chosen):
             wheel.set(normal_load=1e3 * chosen.load, **inputs)
             wheel.step(0.1)
             wheel.step(0.1)
-            found.append(np.ravel(wheel.get("peak_pressure", "force_x", "force_y")))
+            normal_force = np.sum(wheel.get("contact.normal_force"))
+            found.append([*np.ravel(wheel.get("peak_pressure", "force_x", "force_y")), normal_force])
     return np.array(found)
+
+
+def by_the_second_program(normal_forces, chosen):
+    """Peak pressure and forces under these normal forces, by dense_contact.py; of a state that it cannot solve, nan."""
+    found = np.full((chosen.states, 3), np.nan)
+    for number, (inputs, force) in enumerate(zip(states(chosen), normal_forces, strict=True)):
+        try:
+            solution = dense_contact.of_right_wheel(ROLLING | inputs, force, DENSE)
+        except dense_contact.DenseError as error:
+            print(f"state {number}: {error}", flush=True)
+            continue
+        found[number] = 1e6 * solution.peak, *solution.force[:2]
+        print(f"state {number}: {solution.contacts} contacts", flush=True)
+    return found
 
 
 def main():
@@ -66,17 +88,21 @@ def main():
     parser.add_argument("--states", type=int, default=120, help="how many (120)")
     place = {"metavar": ("FROM", "TO"), "default": (-6.0, 8.0), "help": "displacement [mm] (-6 to 8)"}
     parser.add_argument("--to-the-right", type=float, nargs=2, **place)
+    parser.add_argument("--dense", action="store_true", help="against dense_contact.py, not against finer cells")
     chosen = parser.parse_args()
     if chosen.states < 1 or not chosen.load > 0.0:
         parser.error("at least one state and a load above 0 are needed")
-    default, fine = (computed(cells, chosen) for cells in (DEFAULT, FINE))
+    default = computed(DEFAULT, chosen)
+    fine = by_the_second_program(default[:, 3], chosen) if chosen.dense else computed(FINE, chosen)
+    solved = ~np.isnan(fine[:, 0])
+    default, fine = default[solved, :3], fine[solved]
     peak = np.abs(default[:, 0] / fine[:, 0] - 1.0)
     force = np.hypot(*(default - fine)[:, 1:].T) / (1e3 * FRICTION * chosen.load)
     for name, error, limits in (("peak pressure", peak, (0.02, 0.04)), ("forces over μQ", force, (0.01, 0.02))):
         beyond = ", ".join(f"{(error > limit).sum()} beyond {limit:g}" for limit in limits)
         quantiles = f"median {np.median(error):.4f}, 95 % {np.quantile(error, 0.95):.4f}, worst {error.max():.4f}"
-        print(f"{name}: {quantiles}; of {chosen.states} {beyond}")
-    places = [-1e3 * inputs["lateral_displacement"] for inputs in states(chosen)]
+        print(f"{name}: {quantiles}; of {solved.sum()} {beyond}")
+    places = np.array([-1e3 * inputs["lateral_displacement"] for inputs in states(chosen)])[solved]
     for number in np.argsort(-peak)[:5]:
         share = 100.0 * peak[number]
         print(f"  {places[number]:.2f} mm to the right: peak off by {share:.1f} %, forces {force[number]:.4f}")
