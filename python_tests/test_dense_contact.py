@@ -10,28 +10,29 @@ TOOLS = Path(__file__).resolve().parent.parent / "tools"
 sys.path.insert(0, str(TOOLS))
 
 import dense_contact  # noqa: E402
-from random_states import BODIES, FRICTION, RADIUS, ROLLING, SPEED  # noqa: E402
+from random_states import BENCHMARK_LOAD, BODIES, FRICTION, RADIUS, ROLLING, SPEED, benchmark  # noqa: E402
 from wheelrail import Instance  # noqa: E402
 
 # Load, the most that forces may differ over μQ, contacts, inputs. On the tread other cells of the second program change
 # its forces by 0.004, in the other states by 0.0006.
+TWO_CONTACTS, _, ON_FLANGE, _ = benchmark()
 STATES = {
     "tread": (
         (30e3, 6e-3, 1),
-        {"lateral_displacement": -2e-3, "roll_angle": 1e-3, "yaw_angle": 6e-3},
-        {"lateral_speed": 0.15, "yaw_rate": 0.04, "wheel_speed": 1.001 * SPEED / RADIUS},
-    ),
-    # The Manchester benchmark's, 5 mm to the right.
-    "two contacts": (
-        (10e3, 1e-3, 2),
-        {"lateral_displacement": -5e-3, "roll_angle": -3.554e-4, "yaw_angle": -12e-3},
-        {"lateral_speed": 0.0, "yaw_rate": 0.0, "wheel_speed": 43.353637},
+        {
+            **{"lateral_displacement": -2e-3, "roll_angle": 1e-3, "yaw_angle": 6e-3},
+            **{"lateral_speed": 0.15, "yaw_rate": 0.04, "wheel_speed": 1.001 * SPEED / RADIUS},
+        },
     ),
     "flange": (
         (30e3, 1e-3, 1),
-        {"lateral_displacement": -6.8e-3, "roll_angle": 0.0, "yaw_angle": -12e-3},
-        {"lateral_speed": -0.2, "yaw_rate": 0.02, "wheel_speed": 1.002 * SPEED / RADIUS},
+        {
+            **{"lateral_displacement": -6.8e-3, "roll_angle": 0.0, "yaw_angle": -12e-3},
+            **{"lateral_speed": -0.2, "yaw_rate": 0.02, "wheel_speed": 1.002 * SPEED / RADIUS},
+        },
     ),
+    "two contacts of the benchmark": ((1e3 * BENCHMARK_LOAD, 1e-3, 2), TWO_CONTACTS),
+    "flange of the benchmark": ((1e3 * BENCHMARK_LOAD, 1e-3, 1), ON_FLANGE),
 }
 # Along and across.
 CELLS = (20, 16)
@@ -41,15 +42,15 @@ NAMES = ("force_x", "force_y", "force_z", "peak_pressure", "contacts")
 @pytest.mark.parametrize("name", STATES)
 def test_a_second_program_agrees(fmu3, name):
     """Forces in the track frame, with yaw, lateral speed and turning; the largest pressure to 1 %."""
-    (load, allowed, contacts), place, motion = STATES[name]
+    (load, allowed, contacts), inputs = STATES[name]
     with Instance(fmu3, **BODIES, **dense_contact.material(), normal_load=0.0, **ROLLING) as wheel:
         wheel.start()
-        wheel.set(normal_load=load, **place, **motion)
+        wheel.set(normal_load=load, **inputs)
         for _ in range(2):
             wheel.step(0.1)
         *force, peak, count = np.ravel(wheel.get(*NAMES))
         normal_force = np.sum(wheel.get("contact.normal_force"))
-    second = dense_contact.of_right_wheel(ROLLING | place | motion, normal_force, CELLS)
+    second = dense_contact.of_right_wheel(ROLLING | inputs, normal_force, CELLS)
     assert (count, second.contacts) == (contacts, contacts)
     np.testing.assert_allclose(force, second.force, rtol=0.0, atol=allowed * FRICTION * load)
     assert peak == pytest.approx(1e6 * second.peak, rel=1e-2)

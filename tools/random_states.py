@@ -3,10 +3,12 @@
     .venv/bin/python tools/random_states.py                    (after `make fmu3`)
     .venv/bin/python tools/random_states.py --load 60 --states 20 --to-the-right 5.7 6.1
     .venv/bin/python tools/random_states.py --dense --states 20
+    .venv/bin/python tools/random_states.py --dense --benchmark
 
 The right wheel S1002 on UIC60 without heat and wear, steady: displacement, roll, yaw, lateral speed, yaw rate and
 creepage at random, with a fixed seed. The fine grid has twice the cells along and four times the strips; the second
-program is `dense_contact.py`, half a minute a state.
+program is `dense_contact.py`, half a minute a state. The benchmark is Manchester's, the right wheel between tread and
+flange and on the flange.
 """
 
 import argparse
@@ -32,8 +34,29 @@ BODIES = {
 }
 
 
+# Of the Manchester benchmark, case A-2.2: displacement to the right [mm], roll, yaw [rad], wheel speed [rad/s]; the
+# load [kN].
+BENCHMARK = [
+    (5.0, -0.0003554, 0.012, 43.353637),
+    (6.5, -0.004376, 0.0156, 42.748834),
+    (8.0, -0.008606, 0.0192, 42.534857),
+    (10.0, -0.01126431, 0.024, 42.436375),
+]
+BENCHMARK_LOAD = 10.0
+
+
+def benchmark():
+    """Inputs of the benchmark's states, y to the left and z upward."""
+    for lateral, roll, yaw, wheel_speed in BENCHMARK:
+        place = {"lateral_displacement": -1e-3 * lateral, "roll_angle": roll, "yaw_angle": -yaw}
+        yield place | {"lateral_speed": 0.0, "yaw_rate": 0.0, "wheel_speed": wheel_speed}
+
+
 def states(chosen):
     """Inputs of each state."""
+    if chosen.benchmark:
+        yield from benchmark()
+        return
     random = np.random.default_rng(5)
     least, most = chosen.to_the_right
     for _ in range(chosen.states):
@@ -72,7 +95,7 @@ def by_the_second_program(normal_forces, chosen):
     found = np.full((chosen.states, 3), np.nan)
     for number, (inputs, force) in enumerate(zip(states(chosen), normal_forces, strict=True)):
         try:
-            solution = dense_contact.of_right_wheel(ROLLING | inputs, force, DENSE)
+            solution = dense_contact.of_right_wheel(ROLLING | inputs, force, chosen.cells)
         except dense_contact.DenseError as error:
             print(f"state {number}: {error}", flush=True)
             continue
@@ -89,7 +112,12 @@ def main():
     place = {"metavar": ("FROM", "TO"), "default": (-6.0, 8.0), "help": "displacement [mm] (-6 to 8)"}
     parser.add_argument("--to-the-right", type=float, nargs=2, **place)
     parser.add_argument("--dense", action="store_true", help="against dense_contact.py, not against finer cells")
+    cells = {"metavar": ("ALONG", "ACROSS"), "default": DENSE, "help": "cells that it begins with (24 32)"}
+    parser.add_argument("--cells", type=int, nargs=2, **cells)
+    parser.add_argument("--benchmark", action="store_true", help="states of the Manchester benchmark under its load")
     chosen = parser.parse_args()
+    if chosen.benchmark:
+        chosen.states, chosen.load = len(BENCHMARK), BENCHMARK_LOAD
     if chosen.states < 1 or not chosen.load > 0.0:
         parser.error("at least one state and a load above 0 are needed")
     default = computed(DEFAULT, chosen)
@@ -103,6 +131,11 @@ def main():
         quantiles = f"median {np.median(error):.4f}, 95 % {np.quantile(error, 0.95):.4f}, worst {error.max():.4f}"
         print(f"{name}: {quantiles}; of {solved.sum()} {beyond}")
     places = np.array([-1e3 * inputs["lateral_displacement"] for inputs in states(chosen)])[solved]
+    if chosen.benchmark:
+        for place, here, there in zip(places, default, fine, strict=True):
+            numbers = "; ".join(f"{1e-6 * peak:.0f} MPa, {x:.0f} and {y:.0f} N" for peak, x, y in (here, there))
+            print(f"  {place:.1f} mm to the right: peak pressure, F_x and F_y: {numbers}")
+        return
     for number in np.argsort(-peak)[:5]:
         share = 100.0 * peak[number]
         print(f"  {places[number]:.2f} mm to the right: peak off by {share:.1f} %, forces {force[number]:.4f}")
