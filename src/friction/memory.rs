@@ -159,6 +159,13 @@ impl Memory {
         law.of((static_friction, 0.0)).0
     }
 
+    /// Makes it that of rail that nothing has happened to yet, without allocating.
+    pub fn forget(&mut self) {
+        self.remembers = false;
+        self.vectors_mut().into_iter().for_each(|values| values.fill(0.0));
+        self.share.fill(1.0);
+    }
+
     /// Begins a step from the memory at its beginning. Rail that has remembered nothing yet has rested, at μ(θ) of the nodes then.
     pub fn start_from(&mut self, last: &Memory, static_friction: impl Fn(usize) -> f64) {
         if last.remembers {

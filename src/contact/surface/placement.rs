@@ -87,13 +87,13 @@ pub fn place(
     }
     let places = now.places;
     let mut wanted = merged(&operators.sizes, &solvers.wanted, &solvers.cut_off);
-    let mut own = assign(problem, wanted.regions(), now);
+    let mut own = assign(problem, wanted.regions(), before, now);
     if approach > 0.0 && !holds_first(problem, solvers, now, &own) {
         // Of contacts far apart that were taken for one, a window may have left out the one that carries.
         want_overlaps(problem, approach, solvers);
         wanted = merged(&operators.sizes, &solvers.wanted, &solvers.cut_off);
         now.places = places;
-        own = assign(problem, wanted.regions(), now);
+        own = assign(problem, wanted.regions(), before, now);
     }
     solvers.crowded = wanted.crowded;
     solvers.moved = before.is_some_and(|before| before.places != now.places);
@@ -398,7 +398,12 @@ fn share_window(a: &Region, b: &Region, sizes: &Sizes) -> bool {
 
 /// Gives each region a window: the one that it had, or one that is free. Returns the arc lengths between which each window has the
 /// surface to itself.
-fn assign(problem: &SurfaceProblem, wanted: &[Wanted], now: &mut SurfaceFields) -> [[f64; 2]; WINDOWS] {
+fn assign(
+    problem: &SurfaceProblem,
+    wanted: &[Wanted],
+    before: Option<&SurfaceFields>,
+    now: &mut SurfaceFields,
+) -> [[f64; 2]; WINDOWS] {
     let sizes = &problem.operators.sizes;
     let mut window_of = [usize::MAX; WINDOWS];
     let mut taken = [false; WINDOWS];
@@ -452,9 +457,10 @@ fn assign(problem: &SurfaceProblem, wanted: &[Wanted], now: &mut SurfaceFields) 
             .map(|place| sizes.grid(place.length, place.breadth))
             .any(|grid| distance < apart::block_size(&grid))
     });
-    // A window without a region stays while nothing else needs its place: rail that it has heated rolls out of it.
+    // A window without a region stays while nothing else needs its place: rail that it has heated rolls out of it. Of the fields now, the heat is not known yet.
+    let is_warm = |window, place| before.is_some_and(|before| is_warm(problem.operators, before, window, &place));
     for (window, taken) in taken.into_iter().enumerate() {
-        if !taken && now.places[window].is_some_and(|place| !is_warm(problem.operators, now, window, &place)) {
+        if !taken && now.places[window].is_some_and(|place| !is_warm(window, place)) {
             now.places[window] = None;
         }
     }

@@ -157,10 +157,11 @@ impl Transfer {
         const SHARE: usize = 8;
         let sources = &before.windows;
         let remembers = before.used().any(|(window, _)| sources[window].memory.remembers);
-        into.memory.remembers = remembers;
         if !remembers {
+            into.memory.forget();
             return;
         }
+        into.memory.remembers = true;
         let grid = &rail.operators.of(place).grid;
         let rises = &into.heat.surface;
         for (part, values) in into.memory.vectors_mut().into_iter().enumerate() {

@@ -76,6 +76,8 @@ impl WornBodies {
         let mut bodies = operators.bodies.clone();
         if !depths[WHEEL].is_empty() {
             bodies.wheel.profile = operators.worn_height.function();
+            // As after wear that has gone again, to the last bit.
+            bodies.measures = measures(&bodies.wheel);
         }
         if !depths[RAIL].is_empty() {
             bodies.rail.collect_wear(operators.grids[RAIL]);
