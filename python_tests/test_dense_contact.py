@@ -1,5 +1,6 @@
 """Profiles against tools/dense_contact.py, a second program for the same equations: tread, two contacts, flange."""
 
+import subprocess
 import sys
 from pathlib import Path
 
@@ -54,3 +55,38 @@ def test_a_second_program_agrees(fmu3, name):
     assert (count, second.contacts) == (contacts, contacts)
     np.testing.assert_allclose(force, second.force, rtol=0.0, atol=allowed * FRICTION * load)
     assert peak == pytest.approx(1e6 * second.peak, rel=1e-2)
+
+
+def random_states(*arguments):
+    """What the command says to these arguments, and its exit status."""
+    command = [sys.executable, TOOLS / "random_states.py", *arguments]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=120, check=False)
+    return done.stdout + done.stderr, done.returncode
+
+
+@pytest.mark.usefixtures("fmu3")
+def test_random_states_are_compared():
+    """One state against finer cells and against the second program, which has as many cells as it is told."""
+    for arguments in ([], ["--dense", "--cells", "12", "10"]):
+        said, status = random_states("--states", "1", *arguments)
+        assert status == 0, said
+        assert "forces over μQ: median 0.0" in said
+        assert "peak pressure: median 0.0" in said
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["--cells", "12", "10"], "--cells goes with --dense"),
+        (["--dense", "--cells", "0", "10"], "8 each way are the least"),
+        (["--benchmark", "--load", "60"], "--benchmark has its own load"),
+        (["--to-the-right", "3", "1"], "from the smaller displacement to the larger one"),
+        (["--states", "0"], "at least one state"),
+        (["--load", "nan"], "a load above 0"),
+    ],
+)
+def test_what_is_not_compared_is_refused(arguments, words):
+    """An option that its mode does not use, and numbers that make no sense."""
+    said, status = random_states(*arguments)
+    assert status == 2
+    assert words in said

@@ -63,9 +63,13 @@ def test_a_profile_is_smoothed_after_it_was_read():
     jumps = [profile.points["curvature"].diff().abs().max() for profile in (rail, rail.smoothed(1e-2))]
     assert jumps[0] > 40.0
     assert jumps[1] < jumps[0] / 4
-    np.testing.assert_allclose(rail.smoothed(0.0).points["z"], rail.points["z"], atol=1e-9)
+    same = rail.smoothed(0.0)
+    assert same.points is not rail.points
+    pd.testing.assert_frame_equal(same.points, rail.points)
     with pytest.raises(ValueError, match=r"smoothing = -0\.001"):
         rail.smoothed(-1e-3)
+    with pytest.raises(TypeError, match="smoothing = None: a number is needed"):
+        rail.smoothed(None)
 
 
 def test_what_is_refused_names_what_was_given(tmp_path, monkeypatch):

@@ -1,5 +1,6 @@
 """Profiles of wheels and rails, and where a wheelset touches its track, by the command line `wheelrail`."""
 
+import copy
 import errno
 import numbers
 import os
@@ -352,20 +353,30 @@ class Profile:
             # Here, so that an error of the system is one of Python.
             path.write_bytes(written.read_bytes())
 
-    def smoothed(self, wavelength: float) -> "Profile":
-        """Profile whose waves of this length [m] are halved, after it has worn for example; 0 changes nothing.
+    def smoothed(self, smoothing: float) -> "Profile":
+        """Profile whose short waves are damped, after it has worn for example.
+
+        Parameters
+        ----------
+        smoothing
+            Wavelength of the smoothing: waves of this length are halved, 0 leaves all of them [m].
 
         Raises
         ------
         ValueError
             The wavelength is not from 0 to 0.1 m.
+        TypeError
+            It is no number.
         """
+        # Asked for by name: None is no wavelength.
+        given = f"--smoothing={option('smoothing', smoothing)}"
+        if smoothing == 0.0:
+            return copy.deepcopy(self)
         smooth = Profile.__new__(Profile)
         with tempfile.TemporaryDirectory() as name:
             own = self._file(Path(name), "profile")
-            smooth._read(["profile", own, *options({"smoothing": wavelength})], {Path(own): self.name})
-        smooth.name, smooth.source = self.name, self.source
-        smooth._built_in = None if wavelength else self._built_in
+            smooth._read(["profile", own, given], {Path(own): self.name})
+        smooth.name, smooth.source, smooth._built_in = self.name, self.source, None
         return smooth
 
     def worn_by(self, arc_length: Any, depth: Any) -> "Profile":

@@ -126,13 +126,16 @@ fn a_step_finds_nothing_of_another_wheel_in_its_workspace() {
         };
         let mut states: [State; 3] =
             std::array::from_fn(|wheel| model.initial_state(&mut model.workspace(), &at(0, wheel)).unwrap());
+        // Twenty rounds of displacements and loads, in which the rail warms and wears.
         for step in 1..400 {
             for (wheel, state) in states.iter_mut().enumerate() {
                 let inputs = at(step, wheel);
                 let mut alone = state.clone();
-                let together = model.step(&mut shared, state, &inputs, &Inputs::ZERO, STEP);
-                let by_itself = model.step(&mut model.workspace(), &mut alone, &inputs, &Inputs::ZERO, STEP);
-                assert_eq!(together.is_ok(), by_itself.is_ok(), "step {step} of wheel {wheel}");
+                model.step(&mut shared, state, &inputs, &Inputs::ZERO, STEP).unwrap();
+                let mut workspace = model.workspace();
+                model
+                    .step(&mut workspace, &mut alone, &inputs, &Inputs::ZERO, STEP)
+                    .unwrap();
                 assert_eq!(*state, alone, "step {step} of wheel {wheel}");
             }
         }

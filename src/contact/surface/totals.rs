@@ -19,7 +19,7 @@ use crate::contact::patch::operators::PatchOperators;
 use crate::contact::patch::problem::PatchProblem;
 use crate::contact::rim::ContactHeat;
 use crate::damage::PointDamage;
-use crate::geometry::unrolled::{PlacedWheel, RailPoint};
+use crate::geometry::unrolled::{Distance, PlacedWheel, RailPoint};
 
 /// Integrals of the given fields under the problem's conditions.
 pub fn integrals(problem: &SurfaceProblem, fields: &SurfaceFields, solvers: &SurfaceSolvers) -> Integrals {
@@ -117,8 +117,10 @@ fn on_wheelset(
             fields: own,
         };
         let mut contact = placed.add_tractions(&mut all);
-        placed.describe(&integrals, &mut contact);
-        placed.add_damping(&mut contact, &mut all);
+        let point = bodies.rail.at(contact.arc);
+        let at = wheel.distance(contact.along, &point, 0.0);
+        placed.describe(&integrals, (&point, &at), &mut contact);
+        placed.add_damping((&point, &at), &mut contact, &mut all);
         all.contacts[all.count] = contact;
         all.count += 1;
     }
@@ -207,8 +209,8 @@ impl PlacedContact<'_> {
         contact
     }
 
-    /// Adds force and moment of a strip at a point of the rail: of the forces along the normal, along the rail and across it in the strip's plane,
-    /// and of the moments of the first and the last by the distance ahead of the axle.
+    /// Adds force and moment of a strip at a point of the rail. Of the strip are given: the normal force and its moment by the distance ahead of the axle, the
+    /// friction along the rail and across it in the strip's plane, and the moment of the last by that distance.
     fn add_strip(&self, point: &RailPoint, [normal, ahead, along, across, twist]: [f64; 5], all: &mut OnWheelset) {
         let tangent = point.tangent();
         let [lateral, vertical] = self.arm(point);
@@ -237,19 +239,14 @@ impl PlacedContact<'_> {
     }
 
     /// Says where a contact is and how it moves, at the resultant of its pressure, and what its integrals are.
-    fn describe(&self, integrals: &Integrals, contact: &mut OneContact) {
+    fn describe(&self, integrals: &Integrals, (point, at): (&RailPoint, &Distance), contact: &mut OneContact) {
         let motion = &self.pose.motion;
-        let point = self.bodies.rail.at(contact.arc);
-        let at = self.wheel.distance(contact.along, &point, 0.0);
-        contact.positions = [
-            point.place[0] - self.bodies.rail.top(),
-            self.wheel.profile_position(&at),
-        ];
+        contact.positions = [point.place[0] - self.bodies.rail.top(), self.wheel.profile_position(at)];
         contact.inclination = (-point.normal[0]).atan2(point.normal[1]) + self.pose.position.rail_roll;
-        let [ahead, y, z] = self.wheel.velocity(&at, motion);
+        let [ahead, y, z] = self.wheel.velocity(at, motion);
         let tangent = point.tangent();
         let speed = creepage_speed(motion.velocity[0]);
-        let [across, spin] = [y * tangent[0] + z * tangent[1], self.wheel.spin(&point, motion)];
+        let [across, spin] = [y * tangent[0] + z * tangent[1], self.wheel.spin(point, motion)];
         contact.creepages = [-ahead / speed, across / speed, spin / speed];
         let power = -contact.friction[0] * ahead - contact.friction[1] * across - contact.spin_moment * spin;
         contact.wear_number = power / speed.abs();
@@ -262,17 +259,15 @@ impl PlacedContact<'_> {
     }
 
     /// Adds what damps the approach to the normal force, at the resultant of the pressure.
-    fn add_damping(&self, contact: &mut OneContact, all: &mut OnWheelset) {
-        let point = self.bodies.rail.at(contact.arc);
-        let at = self.wheel.distance(contact.along, &point, 0.0);
-        let approach_speed = self.wheel.approach_speed(&at, &point, &self.pose.motion);
+    fn add_damping(&self, (point, at): (&RailPoint, &Distance), contact: &mut OneContact, all: &mut OnWheelset) {
+        let approach_speed = self.wheel.approach_speed(at, point, &self.pose.motion);
         let added = contact.normal_force * (damping(self.patch.parameters, approach_speed) - 1.0);
         if added == 0.0 {
             return;
         }
         contact.normal_force += added;
         let force = [added * point.normal[0], added * point.normal[1]];
-        let arm = self.arm(&point);
+        let arm = self.arm(point);
         all.force[1] += force[0];
         all.force[2] += force[1];
         all.moment[0] += arm[0] * force[1] - arm[1] * force[0];
