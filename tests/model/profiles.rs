@@ -241,6 +241,51 @@ fn a_given_height_carries_the_load_that_belongs_to_it() {
     );
 }
 
+/// Damping multiplies the pressure of a contact: where nothing rubs, forces and moments by one factor. It acts at the resultant of the pressure along the normal there, so the
+/// factors differ by how the normal turns over the contact. A yawed wheel touches ahead of the axle, so no moment is zero.
+#[test]
+fn damping_acts_along_the_normal_at_the_contact() {
+    const SPEED: f64 = 0.5;
+    let [free, damped] = [0.0, 0.4].map(|normal_damping| {
+        Model::new(Parameters {
+            control: Control::Height,
+            friction_cold: 0.0,
+            normal_damping,
+            ..bodies(Side::Right)
+        })
+        .unwrap()
+    });
+    for pose in [[0.0, 0.0, 0.012, -43.4], [7.5, -0.004_376, 0.0156, -42.75]] {
+        let at_height = |vertical_displacement| Inputs {
+            vertical_displacement,
+            vertical_speed: -SPEED,
+            ..inputs(pose)
+        };
+        // Lowered until it carries something.
+        let mut heights = (-100..100).rev().map(|step| at_height(5e-5 * f64::from(step)));
+        let inputs = heights
+            .find(|inputs| start(&free, inputs).outputs.normal_force > 20e3)
+            .unwrap();
+        let [free, damped] = [&free, &damped].map(|model| start(model, &inputs).outputs);
+        let pressed = |outputs: &Outputs| {
+            [
+                outputs.force_y,
+                outputs.force_z,
+                outputs.moment_x,
+                outputs.moment_y,
+                outputs.moment_z,
+            ]
+        };
+        assert_eq!([free.contacts, damped.contacts], [1.0; 2]);
+        let factor = damped.normal_force / free.normal_force;
+        assert!(factor > 1.05);
+        for (free, damped) in pressed(&free).into_iter().zip(pressed(&damped)) {
+            let error = damped / (factor * free) - 1.0;
+            assert!(error.abs() < 0.01, "{pose:?}: {free} {damped}");
+        }
+    }
+}
+
 /// A wheelset that is moved over its flange and off the rail: each place is solved or refused as off the rail. Where the flange stands beside the head, the height
 /// at which they touch was not found, and the wheel pressed into the rail by millimetres.
 #[test]
