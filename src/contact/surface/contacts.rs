@@ -23,6 +23,8 @@ const NARROW_GROWTH: f64 = 1.02;
 /// Extent about such a region, over that of the region, in which no other contact is looked for: the window there finds it by itself, and so near a
 /// contact the sinking of the surface is not known well.
 pub const BESIDE: f64 = 1.8;
+/// Approach that windows are placed for, over the expected one.
+pub const AHEAD: f64 = 1.03;
 /// Breadth of a contact over (∫f ds)²/∫f² ds of its force per breadth f: of an ellipse.
 const ELLIPSE: f64 = 1.2;
 /// Least depth, over the approach, by which the bodies overlap more than the surface sinks where a contact begins: the sinking is known to a few per cent of
@@ -93,6 +95,18 @@ pub struct Expected {
     pub load_ratio: f64,
     /// Approach, `m`.
     pub approach: f64,
+}
+
+impl Expected {
+    /// The contacts that there are at an approach, `m`.
+    pub fn unchanged(approach: f64) -> Expected {
+        Expected {
+            growth: 1.0,
+            beside: BESIDE,
+            load_ratio: 1.0,
+            approach: approach * AHEAD,
+        }
+    }
 }
 
 /// Finds the contacts of the fields, grown as is expected of them, and the overlaps outside of them at the expected approach. They are listed from

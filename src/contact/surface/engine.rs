@@ -57,10 +57,11 @@ fn begin_windows(
         moved,
         responded,
         followed,
+        serves,
         ..
     } = solvers;
     let before = before.map(|before| at_places(*moved, carried, before));
-    (*responded, *followed) = (false, false);
+    (*responded, *followed, *serves) = (false, false, false);
     // The work of a window that is used no longer is not of this step.
     for own in windows.iter_mut() {
         own.patch.start_step();
@@ -187,6 +188,7 @@ impl Engine for SurfaceOperators {
         placement::place(problem, before, None, now, solvers)?;
         begin_windows(problem, before, now, solvers)?;
         if before.is_none()
+            && solvers.found.is_empty()
             && let Some(approach) = pressure::approach_of_pressure(problem, now, solvers)
             // A negligible load may be carried at the height of the first touch already, which is known to a few nanometres: the first windows are as good.
             && approach > 0.0

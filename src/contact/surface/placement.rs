@@ -1,7 +1,7 @@
 //! Placement of the windows at the beginning of a step: about the contacts of the step before, and those that begin.
 
 use super::apart;
-use super::contacts::{self, BESIDE, CONTACTS, Expected, Wanted};
+use super::contacts::{self, AHEAD, BESIDE, CONTACTS, Expected, Wanted};
 use super::fields::SurfaceFields;
 use super::operators::SurfaceOperators;
 use super::problem::SurfaceProblem;
@@ -18,12 +18,12 @@ use crate::geometry::profile::Profile;
 use crate::geometry::unrolled::{PlacedWheel, WheelsetPosition};
 use crate::mechanics::patch::normal::is_free;
 
-/// Approach that windows are placed for, over the expected one.
-const AHEAD: f64 = 1.03;
 /// Approach after a contact has outgrown its window, over the one of the step before, above which windows are placed for the overlap of the bodies.
 const FAR_DEEPER: f64 = 3.0;
 /// Approach over that of the step before above which the approach of ellipses under the load limits it.
 const MUCH_DEEPER: f64 = 2.0;
+/// Largest factor on the extents of the contacts of the step before, and on the approach that windows are placed for by the overlap of the bodies.
+const LARGEST_ROOM: f64 = 4.0;
 /// Least approach under a load for which windows are placed by the overlap of the bodies, over that of Hertz's ellipses.
 const LEAST_OVERLAP: f64 = 0.5;
 /// Distance of two regions, over their mean breadth, below which they share a window that resolves both.
@@ -59,6 +59,8 @@ pub fn place(
     if problem.conditions.room <= 1.0 {
         solvers.outgrown = 0.0;
         solvers.too_small = [None; WINDOWS];
+        solvers.found.clear();
+        solvers.replaced = 0;
         solvers.is_unsettled = false;
         solvers.cut_off.clear();
         solvers.room_before = 1.0;
@@ -66,8 +68,12 @@ pub fn place(
     let mut approach =
         known.unwrap_or_else(|| expected_approach(problem, before, now.touch - pose.position.height, solvers));
     if approach > 0.0 && !problem.is_height_given() {
-        // The windows that were too small were placed for an approach that was, too.
-        approach = approach.max(solvers.outgrown);
+        approach = if solvers.found.is_empty() {
+            // The windows that were too small were placed for an approach that was, too.
+            approach.max(solvers.outgrown)
+        } else {
+            solvers.outgrown
+        };
     }
     solvers.reference = approach;
     now.approach[0] = approach;
@@ -217,13 +223,18 @@ fn want(problem: &SurfaceProblem, source: Option<&SurfaceFields>, approach: f64,
         is_unsettled,
         too_small,
         room_before,
+        found,
         ..
     } = solvers;
     wanted.clear();
     if approach <= 0.0 {
         return;
     }
-    let room = problem.conditions.room;
+    if !found.is_empty() {
+        wanted.extend_from_slice(found);
+        return;
+    }
+    let room = problem.conditions.room.min(LARGEST_ROOM);
     // Of a wheelset that has come to lie far deeper than in the step before, the contacts then say nothing of what carries now.
     let tells = |source: &&SurfaceFields| {
         let before = source.approach[0];
@@ -279,7 +290,7 @@ fn want_overlaps(problem: &SurfaceProblem, approach: f64, solvers: &mut SurfaceS
         let of_ellipses = search.approach(problem.vertical_load(), problem.parameters.contact_modulus());
         approach.max(LEAST_OVERLAP * of_ellipses)
     };
-    let approach = approach * AHEAD * problem.conditions.room;
+    let approach = approach * AHEAD * problem.conditions.room.min(LARGEST_ROOM);
     // The overlaps come from the field side to the gauge side.
     let overlaps = search.overlaps(approach).iter().rev();
     wanted.extend(overlaps.map(|overlap| Wanted::overlap(overlap.region)));

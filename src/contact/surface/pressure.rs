@@ -5,6 +5,7 @@
 
 use super::approach_response::{advance, stiffness};
 use super::approaches::{Approaches, LEAST_SIZE, SHOWS_STIFFNESS};
+use super::contacts::{self, Expected, Wanted};
 use super::fields::SurfaceFields;
 use super::geometry::ELSEWHERE;
 use super::operators::SurfaceOperators;
@@ -12,7 +13,7 @@ use super::problem::SurfaceProblem;
 use super::seams::{self, CUTS};
 use super::search::LEAST_RISE;
 use super::solvers::{Outgrown, SurfaceSolvers};
-use super::windows::{Place, WINDOWS};
+use super::windows::{Place, Region, WINDOWS};
 use crate::contact::engine::Engine;
 use crate::contact::patch::{extent, mechanics};
 use crate::contact::problem::Coupling;
@@ -68,7 +69,9 @@ const FINE_TOLERANCE: f64 = 1e-7;
 /// Error of the load, relative, for the approach that windows are placed for.
 const APPROACH_TOLERANCE: f64 = 1e-2;
 /// Room for windows beyond which a contact is held within them.
-const LARGEST_ROOM: f64 = 4.0;
+const LARGEST_ROOM: f64 = 10.0;
+/// Largest number of times in a step that windows that hold their contacts are placed anew, for finer strips or for a contact that begins elsewhere.
+const REPLACED: usize = 2;
 
 /// Solves the pressure alone in windows that were placed for the overlap of the bodies. Returns the approach, `m`; none where nothing is
 /// carried or it is not found.
@@ -315,6 +318,7 @@ fn press_at(
         }
         if round + 1 >= SETTLING_ROUNDS && change > UNSETTLED && problem.conditions.room < LARGEST_ROOM {
             solvers.is_unsettled = true;
+            solvers.found.clear();
             return Err(Error::ContactOutgrowsWindow);
         }
     }
@@ -384,6 +388,7 @@ fn check_room(problem: &SurfaceProblem, fields: &SurfaceFields, solvers: &mut Su
     }
     let mut holds_all = true;
     let cuts = solvers.cut_off.len();
+    let mut outgrown = [[false; 2]; WINDOWS];
     for (window, place) in fields.used() {
         let grid = &problem.operators.of(&place).grid;
         let (pressure, own) = (&fields.windows[window].pressure, &solvers.windows[window].patch);
@@ -400,6 +405,7 @@ fn check_room(problem: &SurfaceProblem, fields: &SurfaceFields, solvers: &mut Su
         let [along, across] = extent::is_cut_off(grid, pressure, &own.normal.separation, overlap);
         // The largest window has no larger one: with more room it would only have longer cells.
         let ways = [along && place.length > 0, across && place.breadth > 0];
+        outgrown[window] = ways;
         if ways != [false; 2] {
             solvers.outgrown = fields.approach[0];
             let region = place.region(grid);
@@ -407,13 +413,77 @@ fn check_room(problem: &SurfaceProblem, fields: &SurfaceFields, solvers: &mut Su
             holds_all = false;
         }
     }
+    let is_cut_off = solvers.cut_off.len() > cuts;
+    if !is_cut_off && !(holds_all && solvers.serves) {
+        let serve = serves(problem, fields, &outgrown, solvers);
+        solvers.serves = true;
+        if holds_all && !serve && solvers.replaced < REPLACED {
+            solvers.replaced += 1;
+            // Seams of other regions.
+            solvers.cut_off.clear();
+            holds_all = false;
+        }
+    }
     if holds_all {
         return Ok(());
     }
-    if solvers.cut_off.len() > cuts {
+    if is_cut_off {
         // The windows will stand elsewhere, and may hold their contacts there.
         solvers.too_small = [None; WINDOWS];
         solvers.room_before = problem.conditions.room * MORE_ROOM;
     }
     Err(Error::ContactOutgrowsWindow)
+}
+
+/// Whether the windows serve the pressure that has been found in them: whether their strips resolve its contacts, and no contact begins outside of them. Lists the regions that would, with
+/// room for the contacts that have outgrown their windows. They were placed for the pressure of the step before, and the wheelset may have moved by much since.
+fn serves(
+    problem: &SurfaceProblem,
+    fields: &SurfaceFields,
+    outgrown: &[[bool; 2]; WINDOWS],
+    solvers: &mut SurfaceSolvers,
+) -> bool {
+    let SurfaceSolvers {
+        search,
+        apart,
+        found,
+        outgrown: outgrown_at,
+        own,
+        ..
+    } = solvers;
+    let sizes = &problem.operators.sizes;
+    let approach = fields.approach[0];
+    contacts::find(
+        problem.operators,
+        fields,
+        Expected::unchanged(approach),
+        search,
+        apart,
+        found,
+    );
+    *outgrown_at = approach;
+    let mut serve = true;
+    for (window, place) in fields.used() {
+        let covers = place.region(&sizes.grid(place.length, place.breadth));
+        let is_here = |wanted: &&mut Wanted| wanted.reach.is_some() && covers.meets(&wanted.region);
+        let mut all: Option<Region> = None;
+        for wanted in found.iter_mut().filter(is_here) {
+            all = Some(all.map_or(wanted.region, |all| all.union(&wanted.region)));
+            wanted.room = outgrown[window].map(|is_outgrown| if is_outgrown { MORE_ROOM } else { 1.0 });
+            if !outgrown[window][0] {
+                wanted.region = sizes.as_long(&wanted.region, &place);
+            }
+        }
+        serve &= all.is_none_or(|region| sizes.resolves(&region, &place));
+    }
+    let begins_elsewhere = |wanted: &Wanted| {
+        let middle = wanted.region.across.iter().sum::<f64>() / 2.0;
+        wanted.reach.is_none()
+            && !fields.used().any(|(window, place)| {
+                let [from, to] = own[window];
+                let grid = sizes.grid(place.length, place.breadth);
+                (from..to).contains(&middle) && place.region(&grid).holds_across(middle)
+            })
+    };
+    serve && !found.iter().any(begins_elsewhere)
 }

@@ -48,6 +48,12 @@ pub struct SurfaceSolvers {
     pub followed: bool,
     /// Regions to place windows for.
     pub wanted: Vec<Wanted>,
+    /// Regions of the pressure that the last try of this step has found, for which the next try places its windows; none where that goes by the step before.
+    pub found: Vec<Wanted>,
+    /// Whether this try has found its windows to serve the pressure in them.
+    pub serves: bool,
+    /// Number of times in this step that windows that held their contacts have been placed anew.
+    pub replaced: usize,
     /// Arc lengths between which each window has the surface to itself, `m`; infinite where there is no other one.
     pub own: [[f64; 2]; WINDOWS],
     /// Approach for which the geometry is that of the windows, `m`.
@@ -124,6 +130,9 @@ impl SurfaceSolvers {
             responded: false,
             followed: false,
             wanted: Vec::with_capacity(CONTACTS),
+            found: Vec::with_capacity(CONTACTS),
+            serves: false,
+            replaced: 0,
             own: [EVERYWHERE; WINDOWS],
             reference: 0.0,
             outgrown: 0.0,

@@ -22,6 +22,9 @@ pub const EVERYWHERE: [f64; 2] = [f64::NEG_INFINITY, f64::INFINITY];
 const MARGIN: [f64; 2] = [1.5, 1.0];
 /// Strips across the window that stay free on either side of a region in a window that stays, and in one for a contact whose ends are known.
 const LEAST_MARGIN: f64 = 0.5;
+/// Share of the cells along a window that stays that are free on either side of a region, at most one cell: with few cells a contact that just fits does not go to and fro between
+/// windows of two lengths.
+const MARGIN_ALONG: f64 = 1.0 / 32.0;
 /// Least share of a window's length that the region in it takes up, before the window becomes shorter.
 const LEAST_SHARE: f64 = 0.36;
 /// Share of a window's strips that the narrowest contact in it has at least when a window is placed, and when it stays.
@@ -232,13 +235,34 @@ impl Sizes {
         let holds = |outer: [f64; 2], inner: [f64; 2], margin: f64| {
             inner[0] >= outer[0] + margin && inner[1] <= outer[1] - margin
         };
+        let margin_along = (MARGIN_ALONG * grid.cells as f64).min(1.0);
         let length = (region.along[1] - region.along[0]) / (window.along[1] - window.along[0]);
         let strips = region.resolved() / (window.across[1] - window.across[0]);
-        holds(window.along, region.along, grid.length)
+        holds(window.along, region.along, margin_along * grid.length)
             && holds(window.across, region.across, LEAST_MARGIN * grid.breadth)
             && (place.length + 1 == LENGTHS || length > LEAST_SHARE)
-            && (strips > FEWEST_STRIPS[1] || self.breadth_for(region) <= place.breadth)
+            && self.resolves(region, place)
             && (place.breadth == 0 || strips < MOST_STRIPS)
+    }
+
+    /// A region of a contact that a window holds along the rail, shortened to what a new window of the same length is placed for: its outermost cells are known by whole cells
+    /// only, and in longer ones it would be longer.
+    pub fn as_long(&self, region: &Region, place: &Place) -> Region {
+        let [from, to] = region.along;
+        let cell = self.grid(place.length, place.breadth).length;
+        let most = (self.largest.cells as f64 - 2.0 * MARGIN[0]) * cell;
+        let less = (0.5 * (to - from - most)).max(0.0);
+        Region {
+            along: [from + less, to - less],
+            ..*region
+        }
+    }
+
+    /// Whether the strips of a window resolve the narrowest contact of a region, or are the finest that hold it.
+    pub fn resolves(&self, region: &Region, place: &Place) -> bool {
+        let grid = self.grid(place.length, place.breadth);
+        let strips = region.resolved() / (grid.strips as f64 * grid.breadth);
+        strips > FEWEST_STRIPS[1] || self.breadth_for(region) <= place.breadth
     }
 }
 
