@@ -414,7 +414,7 @@ fn check_room(problem: &SurfaceProblem, fields: &SurfaceFields, solvers: &mut Su
         }
     }
     let is_cut_off = solvers.cut_off.len() > cuts;
-    if !is_cut_off && !(holds_all && solvers.serves) {
+    if !(is_cut_off || holds_all && solvers.serves) {
         let serve = serves(problem, fields, &outgrown, solvers);
         solvers.serves = true;
         if holds_all && !serve && solvers.replaced < REPLACED {
