@@ -57,13 +57,13 @@ fn begin_windows(
         moved,
         responded,
         followed,
-        serves,
+        compared,
         ..
     } = solvers;
     let before = before.map(|before| at_places(*moved, carried, before));
     (*responded, *followed) = (false, false);
-    // Those of an initial state have been placed for its pressure.
-    *serves = before.is_none();
+    // The windows of an initial state have been placed for its own pressure.
+    *compared = before.is_none();
     // The work of a window that is used no longer is not of this step.
     for own in windows.iter_mut() {
         own.patch.start_step();

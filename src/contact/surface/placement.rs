@@ -22,8 +22,8 @@ use crate::mechanics::patch::normal::is_free;
 const FAR_DEEPER: f64 = 3.0;
 /// Approach over that of the step before above which the approach of ellipses under the load limits it.
 const MUCH_DEEPER: f64 = 2.0;
-/// Largest factor on the extents of the contacts of the step before, and on the approach that windows are placed for by the overlap of the bodies.
-const LARGEST_ROOM: f64 = 4.0;
+/// Largest room about the contacts of the step before, and for the overlap of the bodies, whatever the room of the conditions.
+const MOST_ROOM: f64 = 4.0;
 /// Least approach under a load for which windows are placed by the overlap of the bodies, over that of Hertz's ellipses.
 const LEAST_OVERLAP: f64 = 0.5;
 /// Distance of two regions, over their mean breadth, below which they share a window that resolves both.
@@ -58,7 +58,6 @@ pub fn place(
     now.touch = solvers.search.touch(bodies, &pose.position, guess);
     if problem.conditions.room <= 1.0 {
         solvers.outgrown = 0.0;
-        solvers.too_small = [None; WINDOWS];
         solvers.found.clear();
         solvers.replaced = 0;
         solvers.is_unsettled = false;
@@ -213,15 +212,14 @@ fn expected_approach(
     }
 }
 
-/// Lists the regions to place windows for, from the gauge side to the field side: the contacts of the source, and those that begin beside them;
-/// the overlaps of the bodies where the source has none.
+/// Lists the regions to place windows for, from the gauge side to the field side: those that an earlier try of the step has found; in a first try the contacts of the source, and those
+/// that begin beside them; the overlaps of the bodies where the source has none.
 fn want(problem: &SurfaceProblem, source: Option<&SurfaceFields>, approach: f64, solvers: &mut SurfaceSolvers) {
     let SurfaceSolvers {
         search,
         apart,
         wanted,
         is_unsettled,
-        too_small,
         room_before,
         found,
         ..
@@ -234,7 +232,7 @@ fn want(problem: &SurfaceProblem, source: Option<&SurfaceFields>, approach: f64,
         wanted.extend_from_slice(found);
         return;
     }
-    let room = problem.conditions.room.min(LARGEST_ROOM);
+    let room = problem.conditions.room.min(MOST_ROOM);
     // Of a wheelset that has come to lie far deeper than in the step before, the contacts then say nothing of what carries now.
     let tells = |source: &&SurfaceFields| {
         let before = source.approach[0];
@@ -250,19 +248,9 @@ fn want(problem: &SurfaceProblem, source: Option<&SurfaceFields>, approach: f64,
         };
         contacts::find(problem.operators, source, expected, search, apart, wanted);
         let more = room / *room_before;
-        for own in wanted.iter_mut() {
-            if *is_unsettled {
-                // Those that are so large meet, and share a window.
-                own.region = own.region.grown(more);
-                continue;
-            }
-            for outgrown in too_small
-                .iter()
-                .flatten()
-                .filter(|window| window.region.meets(&own.region))
-            {
-                own.room = std::array::from_fn(|way| if outgrown.ways[way] { more } else { own.room[way] });
-            }
+        if *is_unsettled {
+            // Those that are so large meet, and share a window.
+            wanted.iter_mut().for_each(|own| own.region = own.region.grown(more));
         }
         // A wheelset that has jumped touches elsewhere: the contacts of the step before say nothing then.
         let covers = |place| {
@@ -290,7 +278,7 @@ fn want_overlaps(problem: &SurfaceProblem, approach: f64, solvers: &mut SurfaceS
         let of_ellipses = search.approach(problem.vertical_load(), problem.parameters.contact_modulus());
         approach.max(LEAST_OVERLAP * of_ellipses)
     };
-    let approach = approach * AHEAD * problem.conditions.room.min(LARGEST_ROOM);
+    let approach = approach * AHEAD * problem.conditions.room.min(MOST_ROOM);
     // The overlaps come from the field side to the gauge side.
     let overlaps = search.overlaps(approach).iter().rev();
     wanted.extend(overlaps.map(|overlap| Wanted::overlap(overlap.region)));

@@ -12,7 +12,7 @@ use super::operators::SurfaceOperators;
 use super::problem::SurfaceProblem;
 use super::seams::{self, CUTS};
 use super::search::LEAST_RISE;
-use super::solvers::{Outgrown, SurfaceSolvers};
+use super::solvers::SurfaceSolvers;
 use super::windows::{Place, Region, WINDOWS};
 use crate::contact::engine::Engine;
 use crate::contact::patch::{extent, mechanics};
@@ -408,18 +408,16 @@ fn check_room(problem: &SurfaceProblem, fields: &SurfaceFields, solvers: &mut Su
         outgrown[window] = ways;
         if ways != [false; 2] {
             solvers.outgrown = fields.approach[0];
-            let region = place.region(grid);
-            solvers.too_small[window] = Some(Outgrown { region, ways });
             holds_all = false;
         }
     }
     let is_cut_off = solvers.cut_off.len() > cuts;
-    if !(is_cut_off || holds_all && solvers.serves) {
+    if !(is_cut_off || holds_all && solvers.compared) {
         let serve = serves(problem, fields, &outgrown, solvers);
-        solvers.serves = true;
+        solvers.compared = true;
         if holds_all && !serve && solvers.replaced < REPLACED {
             solvers.replaced += 1;
-            // Seams of other regions.
+            // The seams will be those of other regions.
             solvers.cut_off.clear();
             holds_all = false;
         }
@@ -428,15 +426,14 @@ fn check_room(problem: &SurfaceProblem, fields: &SurfaceFields, solvers: &mut Su
         return Ok(());
     }
     if is_cut_off {
-        // The windows will stand elsewhere, and may hold their contacts there.
-        solvers.too_small = [None; WINDOWS];
         solvers.room_before = problem.conditions.room * MORE_ROOM;
     }
     Err(Error::ContactOutgrowsWindow)
 }
 
-/// Whether the windows serve the pressure that has been found in them: whether their strips resolve its contacts, and no contact begins outside of them. Lists the regions that would, with
-/// room for the contacts that have outgrown their windows. They were placed for the pressure of the step before, and the wheelset may have moved by much since.
+/// Whether the windows serve the pressure that has been found in them: their strips resolve its contacts, and no contact begins outside of them. They were placed for the pressure of
+/// the step before, and the wheelset may have moved by much since. Lists the regions for the windows of another try, with more room where a contact has outgrown its window:
+/// `outgrown` says of each window whether along the rail and whether across it.
 fn serves(
     problem: &SurfaceProblem,
     fields: &SurfaceFields,
@@ -466,6 +463,7 @@ fn serves(
     for (window, place) in fields.used() {
         let covers = place.region(&sizes.grid(place.length, place.breadth));
         let is_here = |wanted: &&mut Wanted| wanted.reach.is_some() && covers.meets(&wanted.region);
+        // Region of all contacts in the window.
         let mut all: Option<Region> = None;
         for wanted in found.iter_mut().filter(is_here) {
             all = Some(all.map_or(wanted.region, |all| all.union(&wanted.region)));

@@ -10,8 +10,8 @@ use super::windows::{Place, Region, WINDOWS};
 use crate::body::grid::Grid;
 use crate::contact::patch::extent::is_loaded;
 
-/// Number of contacts that are found to be cut off in a step, at most: at both ends of each window in three tries.
-pub const CUTS: usize = 6 * WINDOWS;
+/// Number of contacts that are found to be cut off in a step, at most: at both ends of each window in five tries.
+pub const CUTS: usize = 10 * WINDOWS;
 /// Distance of two seams, over the mean breadth of the regions beside one, below which they are the same: between two tries the regions change a little with the approach.
 const SAME: f64 = 0.1;
 

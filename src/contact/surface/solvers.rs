@@ -8,7 +8,7 @@ use super::operators::SurfaceOperators;
 use super::seams::{CUTS, CutOff};
 use super::search::Search;
 use super::transfer::Transfer;
-use super::windows::{EVERYWHERE, LENGTHS, Region, WINDOWS};
+use super::windows::{EVERYWHERE, LENGTHS, WINDOWS};
 use super::worn_bodies::{WornBodies, WornOff};
 use crate::contact::interface::Interface;
 use crate::contact::patch::solvers::PatchSolvers;
@@ -48,10 +48,11 @@ pub struct SurfaceSolvers {
     pub followed: bool,
     /// Regions to place windows for.
     pub wanted: Vec<Wanted>,
-    /// Regions of the pressure that the last try of this step has found, for which the next try places its windows; none where that goes by the step before.
+    /// Regions of the contacts in the pressure that a try of this step has found, for which the next try places its windows. None in a first try, and after windows have
+    /// pushed each other's contacts away: windows are placed for the pressure of the step before then.
     pub found: Vec<Wanted>,
-    /// Whether this try has found its windows to serve the pressure in them.
-    pub serves: bool,
+    /// Whether this try has compared its windows with the pressure found in them.
+    pub compared: bool,
     /// Number of times in this step that windows that held their contacts have been placed anew.
     pub replaced: usize,
     /// Arc lengths between which each window has the surface to itself, `m`; infinite where there is no other one.
@@ -60,9 +61,7 @@ pub struct SurfaceSolvers {
     pub reference: f64,
     /// Approach at which a contact has outgrown its window in this step, `m`.
     pub outgrown: f64,
-    /// Windows that contacts have outgrown in this step.
-    pub too_small: [Option<Outgrown>; WINDOWS],
-    /// Room for contacts, as in the conditions, in the first try with the seams there are now. What contacts have outgrown since gets the room of the conditions over this one.
+    /// Room for contacts, as in the conditions, in the first try with the seams there are now. Contacts that have pushed each other away since get the room of the conditions over this one.
     pub room_before: f64,
     /// Contacts that have been cut off at the seams between windows in this step.
     pub cut_off: Vec<CutOff>,
@@ -70,15 +69,6 @@ pub struct SurfaceSolvers {
     pub is_unsettled: bool,
     /// Whether there are more contacts than windows.
     pub crowded: bool,
-}
-
-/// A window that a contact has outgrown.
-#[derive(Debug, Clone, Copy)]
-pub struct Outgrown {
-    /// Region that it covers.
-    pub region: Region,
-    /// Whether it is too short along the rail, and whether too narrow across it.
-    pub ways: [bool; 2],
 }
 
 /// Solvers and buffers of one window.
@@ -131,12 +121,11 @@ impl SurfaceSolvers {
             followed: false,
             wanted: Vec::with_capacity(CONTACTS),
             found: Vec::with_capacity(CONTACTS),
-            serves: false,
+            compared: false,
             replaced: 0,
             own: [EVERYWHERE; WINDOWS],
             reference: 0.0,
             outgrown: 0.0,
-            too_small: [None; WINDOWS],
             room_before: 1.0,
             cut_off: Vec::with_capacity(CUTS),
             is_unsettled: false,

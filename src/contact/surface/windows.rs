@@ -22,8 +22,8 @@ pub const EVERYWHERE: [f64; 2] = [f64::NEG_INFINITY, f64::INFINITY];
 const MARGIN: [f64; 2] = [1.5, 1.0];
 /// Strips across the window that stay free on either side of a region in a window that stays, and in one for a contact whose ends are known.
 const LEAST_MARGIN: f64 = 0.5;
-/// Share of the cells along a window that stays that are free on either side of a region, at most one cell: with few cells a contact that just fits does not go to and fro between
-/// windows of two lengths.
+/// Free cells on either side of a region along a window that stays, over all cells along it; one cell is enough. On few cells it is less than one: with a whole one, a contact that
+/// just fits went to and fro between windows of two lengths.
 const MARGIN_ALONG: f64 = 1.0 / 32.0;
 /// Least share of a window's length that the region in it takes up, before the window becomes shorter.
 const LEAST_SHARE: f64 = 0.36;
@@ -245,8 +245,8 @@ impl Sizes {
             && (place.breadth == 0 || strips < MOST_STRIPS)
     }
 
-    /// A region of a contact that a window holds along the rail, shortened to what a new window of the same length is placed for: its outermost cells are known by whole cells
-    /// only, and in longer ones it would be longer.
+    /// The region of a contact which a window is long enough for, not longer than a new window of the same length may hold. A contact is known by whole cells along the rail: its
+    /// region seems longer than it is, and would else get a longer window, with longer cells than it needs.
     pub fn as_long(&self, region: &Region, place: &Place) -> Region {
         let [from, to] = region.along;
         let cell = self.grid(place.length, place.breadth).length;
