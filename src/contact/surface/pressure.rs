@@ -70,7 +70,7 @@ const FINE_TOLERANCE: f64 = 1e-7;
 const APPROACH_TOLERANCE: f64 = 1e-2;
 /// Room for windows beyond which a contact is held within them.
 const LARGEST_ROOM: f64 = 10.0;
-/// Largest number of times in a step that windows that hold their contacts are placed anew, for finer strips or for a contact that begins elsewhere.
+/// Largest number of times in a step that windows that hold their contacts are placed anew, for finer strips.
 const REPLACED: usize = 2;
 
 /// Solves the pressure alone in windows that were placed for the overlap of the bodies. Returns the approach, `m`; none where nothing is
@@ -413,9 +413,9 @@ fn check_room(problem: &SurfaceProblem, fields: &SurfaceFields, solvers: &mut Su
     }
     let is_cut_off = solvers.cut_off.len() > cuts;
     if !(is_cut_off || holds_all && solvers.compared) {
-        let serve = serves(problem, fields, &outgrown, solvers);
+        let are_resolved = are_resolved(problem, fields, &outgrown, solvers);
         solvers.compared = true;
-        if holds_all && !serve && solvers.replaced < REPLACED {
+        if holds_all && !are_resolved && solvers.replaced < REPLACED {
             solvers.replaced += 1;
             // The seams will be those of other regions.
             solvers.cut_off.clear();
@@ -431,10 +431,10 @@ fn check_room(problem: &SurfaceProblem, fields: &SurfaceFields, solvers: &mut Su
     Err(Error::ContactOutgrowsWindow)
 }
 
-/// Whether the windows serve the pressure that has been found in them: their strips resolve its contacts, and no contact begins outside of them. They were placed for the pressure of
-/// the step before, and the wheelset may have moved by much since. Lists the regions for the windows of another try, with more room where a contact has outgrown its window:
-/// `outgrown` says of each window whether along the rail and whether across it.
-fn serves(
+/// Whether the strips of the windows resolve the contacts in the pressure that has been found. The windows were placed for the pressure of the step before, and the wheelset may have moved by
+/// much since. Lists the regions for the windows of another try, with more room where a contact has outgrown its window: `outgrown` says of each window whether along the rail and whether
+/// across it.
+fn are_resolved(
     problem: &SurfaceProblem,
     fields: &SurfaceFields,
     outgrown: &[[bool; 2]; WINDOWS],
@@ -445,7 +445,6 @@ fn serves(
         apart,
         found,
         outgrown: outgrown_at,
-        own,
         ..
     } = solvers;
     let sizes = &problem.operators.sizes;
@@ -459,7 +458,7 @@ fn serves(
         found,
     );
     *outgrown_at = approach;
-    let mut serve = true;
+    let mut are_resolved = true;
     for (window, place) in fields.used() {
         let covers = place.region(&sizes.grid(place.length, place.breadth));
         let is_here = |wanted: &&mut Wanted| wanted.reach.is_some() && covers.meets(&wanted.region);
@@ -468,20 +467,8 @@ fn serves(
         for wanted in found.iter_mut().filter(is_here) {
             all = Some(all.map_or(wanted.region, |all| all.union(&wanted.region)));
             wanted.room = outgrown[window].map(|is_outgrown| if is_outgrown { MORE_ROOM } else { 1.0 });
-            if !outgrown[window][0] {
-                wanted.region = sizes.as_long(&wanted.region, &place);
-            }
         }
-        serve &= all.is_none_or(|region| sizes.resolves(&region, &place));
+        are_resolved &= all.is_none_or(|region| sizes.resolves(&region, &place));
     }
-    let begins_elsewhere = |wanted: &Wanted| {
-        let middle = wanted.region.across.iter().sum::<f64>() / 2.0;
-        wanted.reach.is_none()
-            && !fields.used().any(|(window, place)| {
-                let [from, to] = own[window];
-                let grid = sizes.grid(place.length, place.breadth);
-                (from..to).contains(&middle) && place.region(&grid).holds_across(middle)
-            })
-    };
-    serve && !found.iter().any(begins_elsewhere)
+    are_resolved
 }

@@ -245,19 +245,6 @@ impl Sizes {
             && (place.breadth == 0 || strips < MOST_STRIPS)
     }
 
-    /// The region of a contact which a window is long enough for, not longer than a new window of the same length may hold. A contact is known by whole cells along the rail: its
-    /// region seems longer than it is, and would else get a longer window, with longer cells than it needs.
-    pub fn as_long(&self, region: &Region, place: &Place) -> Region {
-        let [from, to] = region.along;
-        let cell = self.grid(place.length, place.breadth).length;
-        let most = (self.largest.cells as f64 - 2.0 * MARGIN[0]) * cell;
-        let less = (0.5 * (to - from - most)).max(0.0);
-        Region {
-            along: [from + less, to - less],
-            ..*region
-        }
-    }
-
     /// Whether the strips of a window resolve the narrowest contact of a region, or are the finest that hold it.
     pub fn resolves(&self, region: &Region, place: &Place) -> bool {
         let grid = self.grid(place.length, place.breadth);
