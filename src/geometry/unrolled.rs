@@ -30,12 +30,13 @@ impl RailPoint {
     }
 }
 
-/// Position of a wheelset over a rail, or a change of it. Of one side: y points to the field side.
+/// Position of a wheelset over a rail, or a change of it. Of one side: y points to the field side, and is turned with a rolled rail. A wheel that
+/// rises under a load does so along the vertical of the track: this is the direction of the height, so that `lateral` says all else of the place.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct WheelsetPosition {
-    /// Lateral position of the axle's middle, `m`.
+    /// Lateral position of the axle's middle, `m`: where the track's vertical through it meets the line across the rail at the height of its top.
     pub lateral: f64,
-    /// Height of the axle's middle over the rail's top, `m`.
+    /// Height of the axle's middle over that line along the track's vertical, `m`.
     pub height: f64,
     /// Roll about the forward axis, rad.
     pub roll: f64,
@@ -72,7 +73,10 @@ pub struct Wheel {
 /// Wheel in its position.
 pub struct PlacedWheel<'a> {
     wheel: &'a Wheel,
-    centre: [f64; 3],
+    /// Place of the axle's middle, `m`.
+    pub centre: [f64; 3],
+    /// Height of the axle's middle along the track's vertical, `m`.
+    height: f64,
     /// R by rows.
     turn: [[f64; 3]; 3],
     /// Axis of the roll: forward, turned by the yaw.
@@ -139,7 +143,8 @@ impl<'a> PlacedWheel<'a> {
         let rows = [0, 1, 2].map(in_rail);
         PlacedWheel {
             wheel,
-            centre: [0.0, position.lateral, position.height],
+            centre: [0.0, position.lateral + sine * position.height, cosine * position.height],
+            height: position.height,
             turn: [
                 [cos_yaw, -sin_yaw * cos_roll, sin_yaw * sin_roll],
                 rows.map(|[lateral, _]| lateral),
@@ -236,7 +241,19 @@ impl<'a> PlacedWheel<'a> {
     /// Displacement of the wheel's material at a point by a change of the position, `m`.
     fn displacement(&self, at: &Distance, change: &WheelsetPosition) -> [f64; 3] {
         let turned = cross(self.turn_vector(change), at.arm);
-        add([0.0, change.lateral, change.height], turned, 1.0)
+        add(self.centre_change(change), turned, 1.0)
+    }
+
+    /// Displacement of the axle's middle by a change of the position, `m`.
+    fn centre_change(&self, change: &WheelsetPosition) -> [f64; 3] {
+        // The axis of the yaw is the track's vertical, in the plane across the track.
+        let [_, sine, cosine] = self.yaw_axis;
+        let turned = self.height * change.rail_roll;
+        [
+            0.0,
+            change.lateral + sine * change.height + cosine * turned,
+            cosine * change.height - sine * turned,
+        ]
     }
 
     /// Turn by a change of roll and yaw, and of the roll of the rail.
@@ -294,12 +311,11 @@ impl<'a> PlacedWheel<'a> {
     ) -> [f64; 3] {
         let (position, motion_change) = change;
         // The place Q moves along the normal, the axle's middle with the wheelset.
-        let distance = self.distance_change(at, position);
-        let arm = [
-            0.0,
-            distance * point.normal[0] - position.lateral,
-            distance * point.normal[1] - position.height,
-        ];
+        let normal = [0.0, point.normal[0], point.normal[1]];
+        let arm = sub(
+            normal.map(|part| part * self.distance_change(at, position)),
+            self.centre_change(position),
+        );
         let turn = self.turn_vector(position);
         let axle = cross(turn, self.axle());
         let back = [-position.rail_roll, 0.0, 0.0];

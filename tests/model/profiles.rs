@@ -79,6 +79,55 @@ fn a_rolled_rail_carries_the_load_along_the_tracks_vertical() {
     }
 }
 
+/// Under a load the wheel rises along the track's vertical, also over a rolled rail: it stands where one stands whose given height carries that load, however high the rail is.
+#[test]
+fn a_wheel_over_a_rolled_rail_rises_along_the_tracks_vertical() {
+    let model = |control| {
+        Model::new(Parameters {
+            control,
+            largest_load: 60e3,
+            ..bodies(Side::Right)
+        })
+        .unwrap()
+    };
+    let (loaded, placed) = (model(Control::Load), model(Control::Height));
+    let at = |rail_vertical_displacement: f64| Inputs {
+        normal_load: 50e3,
+        rail_vertical_displacement,
+        rail_roll_angle: 0.005,
+        ..inputs([6.4, -0.004_376, 0.0, -43.4])
+    };
+    let forces = |outputs: &Outputs| {
+        [
+            outputs.force_x,
+            outputs.force_y,
+            outputs.force_z,
+            outputs.contact[0].normal_force,
+        ]
+    };
+    let found = [-5e-3, 0.0, 5e-3].map(|rail| start(&loaded, &at(rail)).outputs);
+    let (mut low, mut high) = (-8e-3, 8e-3);
+    let height = |vertical_displacement: f64| Inputs {
+        vertical_displacement,
+        ..at(0.0)
+    };
+    for _ in 0..40 {
+        let middle = 0.5 * (low + high);
+        // Far too low a wheel is refused.
+        let state = placed.initial_state(&mut placed.workspace(), &height(middle));
+        let is_too_high = state.is_ok_and(|state| state.outputs.force_z <= 50e3);
+        *(if is_too_high { &mut high } else { &mut low }) = middle;
+    }
+    let given = start(&placed, &height(high)).outputs;
+    assert!(given.force_y.abs() > 0.2 * 50e3);
+    for outputs in &found {
+        for (one, other) in forces(outputs).into_iter().zip(forces(&given)) {
+            // The tolerance of a step, over the stiffness across of a flange.
+            assert!((one - other).abs() < 1e-5 * 50e3, "{one} {other}");
+        }
+    }
+}
+
 /// The right wheel is the left one in a mirror, to the last bit.
 #[test]
 fn the_other_side_is_the_mirror_image() {

@@ -7,7 +7,6 @@ use crate::body::grid::Grid;
 use crate::contact::patch::undeformed::Undeformed;
 use crate::geometry::rail::PlacedRail;
 use crate::geometry::unrolled::{Distance, PlacedWheel, RailPoint, WheelsetMotion, WheelsetPosition};
-use crate::parameters::Parameters;
 use crate::signals::Inputs;
 
 /// Distance that is added where another window has the surface, and beyond the places where contacts are sought, `m`: far more than any approach.
@@ -30,15 +29,15 @@ impl Pose {
     pub fn new(operators: &SurfaceOperators, inputs: &Inputs, radius: f64) -> Pose {
         let side = operators.side;
         let top = operators.bodies.rail.top();
-        // About the rail's top, the axle's middle is turned back by the roll of the rail.
+        // The rail is rolled about its top. From there the way to the axle's middle, across the track and up, is one across the rolled rail and up in the track.
         let rail_roll = side * inputs.rail_roll_angle;
         let (sine, cosine) = rail_roll.sin_cos();
         let lateral = side * (inputs.lateral_displacement - inputs.rail_lateral_displacement) - top;
         let height = radius + inputs.vertical_displacement - inputs.rail_vertical_displacement;
         Pose {
             position: WheelsetPosition {
-                lateral: top + cosine * lateral + sine * height,
-                height: cosine * height - sine * lateral,
+                lateral: top + lateral / cosine,
+                height: height - lateral * sine / cosine,
                 roll: side * inputs.roll_angle,
                 yaw: side * inputs.yaw_angle,
                 rail_roll,
@@ -73,45 +72,26 @@ impl Pose {
     }
 
     /// Change of the pose of the given inputs with a change of them.
-    pub fn change(
-        &self,
-        operators: &SurfaceOperators,
-        inputs: &Inputs,
-        change: &Inputs,
-        parameters: &Parameters,
-    ) -> Pose {
+    pub fn change(&self, operators: &SurfaceOperators, inputs: &Inputs, change: &Inputs) -> Pose {
         let side = operators.side;
         let top = operators.bodies.rail.top();
         let (sine, cosine) = self.position.rail_roll.sin_cos();
         let rail_roll = side * change.rail_roll_angle;
         let lateral = side * (inputs.lateral_displacement - inputs.rail_lateral_displacement) - top;
-        let height = parameters.wheel_radius + inputs.vertical_displacement - inputs.rail_vertical_displacement;
+        let lateral_change = side * (change.lateral_displacement - change.rail_lateral_displacement);
+        let height_change = change.vertical_displacement - change.rail_vertical_displacement;
         let across = side * (inputs.lateral_speed - inputs.rail_lateral_speed);
         let up = inputs.vertical_speed - inputs.rail_vertical_speed;
-        let turned = |[y, z]: [f64; 2], [dy, dz]: [f64; 2]| {
-            [
-                cosine * dy + sine * dz + (cosine * z - sine * y) * rail_roll,
-                cosine * dz - sine * dy - (cosine * y + sine * z) * rail_roll,
-            ]
-        };
-        let place = turned(
-            [lateral, height],
-            [
-                side * (change.lateral_displacement - change.rail_lateral_displacement),
-                change.vertical_displacement - change.rail_vertical_displacement,
-            ],
-        );
-        let velocity = turned(
-            [across, up],
-            [
-                side * (change.lateral_speed - change.rail_lateral_speed),
-                change.vertical_speed - change.rail_vertical_speed,
-            ],
-        );
+        let across_change = side * (change.lateral_speed - change.rail_lateral_speed);
+        let up_change = change.vertical_speed - change.rail_vertical_speed;
+        let velocity = [
+            cosine * across_change + sine * up_change + (cosine * up - sine * across) * rail_roll,
+            cosine * up_change - sine * across_change - (cosine * across + sine * up) * rail_roll,
+        ];
         Pose {
             position: WheelsetPosition {
-                lateral: place[0],
-                height: place[1],
+                lateral: (lateral_change + lateral * sine / cosine * rail_roll) / cosine,
+                height: height_change - (lateral_change * sine + lateral / cosine * rail_roll) / cosine,
                 roll: side * change.roll_angle,
                 yaw: side * change.yaw_angle,
                 rail_roll,

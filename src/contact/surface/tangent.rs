@@ -180,12 +180,7 @@ impl SurfaceTangent {
         change.copy_places(fields);
         let operators = problem.operators;
         let pose = problem.pose();
-        let mut moved = pose.change(
-            operators,
-            &problem.conditions.inputs,
-            &direction.inputs,
-            problem.parameters,
-        );
+        let mut moved = pose.change(operators, &problem.conditions.inputs, &direction.inputs);
         let height = moved.position.height;
         moved.position.height = 0.0;
         let touching = pose.at_height(fields.touch);

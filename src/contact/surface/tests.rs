@@ -120,7 +120,7 @@ fn the_change_of_the_geometry_is_its_difference() {
                 let mut change = Inputs::ZERO;
                 (signal.set)(&mut change, 1.0);
                 let pose = Pose::new(&operators, &inputs, parameters.wheel_radius);
-                let change = pose.change(&operators, &inputs, &change, &parameters);
+                let change = pose.change(&operators, &inputs, &change);
                 let wheel = PlacedWheel::new(&operators.bodies.wheel, &pose.position);
                 let mut tangent = Undeformed::none(grid);
                 let mut own = WindowGeometry::new(&operators);
@@ -219,7 +219,10 @@ fn a_rail_that_rolls_sees_the_wheelset_turned_back() {
         height: parameters.wheel_radius + 0.02,
         ..WheelsetPosition::default()
     };
+    // The same place by the height along the track's vertical.
     let rolled = WheelsetPosition {
+        lateral: position.lateral - position.height * rail_roll.tan(),
+        height: position.height / rail_roll.cos(),
         roll,
         yaw,
         rail_roll,

@@ -91,8 +91,8 @@ fn on_wheelset(
 ) -> OnWheelset {
     let operators = problem.operators;
     let bodies = solvers.worn.of(operators);
-    let (pose, height) = (problem.pose(), problem.height(fields));
-    let wheel = PlacedWheel::new(&bodies.wheel, &pose.at_height(height));
+    let pose = problem.pose();
+    let wheel = PlacedWheel::new(&bodies.wheel, &pose.at_height(problem.height(fields)));
     let mut all = OnWheelset {
         // A step that wears the profiles has computed them.
         worn_area_rates: match solvers.worn_off {
@@ -111,7 +111,6 @@ fn on_wheelset(
             bodies,
             wheel: &wheel,
             pose: &pose,
-            height,
             place: &place,
             patch: &problem.of(&place),
             fields: own,
@@ -155,8 +154,6 @@ struct PlacedContact<'a> {
     bodies: &'a Bodies,
     wheel: &'a PlacedWheel<'a>,
     pose: &'a Pose,
-    /// Height of the wheelset's centre, `m`.
-    height: f64,
     place: &'a Place,
     patch: &'a PatchProblem<'a>,
     fields: &'a PatchFields,
@@ -232,10 +229,8 @@ impl PlacedContact<'_> {
 
     /// Lateral and vertical distance of a point of the rail from the wheelset's centre, `m`.
     fn arm(&self, point: &RailPoint) -> [f64; 2] {
-        [
-            point.place[0] - self.pose.position.lateral,
-            point.place[1] - self.height,
-        ]
+        let [_, y, z] = self.wheel.centre;
+        [point.place[0] - y, point.place[1] - z]
     }
 
     /// Says where a contact is and how it moves, at the resultant of its pressure, and what its integrals are.
