@@ -258,6 +258,29 @@ def test_a_contact_that_fills_its_window_is_told_of_once(either):
     assert len(told) == 1
 
 
+def test_a_load_above_the_largest_is_told_of_once(either):
+    """A wheel that is set too low carries more than the windows are made for."""
+    low = {"contact_model": "profiles", "control": "height", "vertical_displacement": -0.4e-3}
+    with Instance(either, **low, slip_source="vehicle_speed", vehicle_speed=20.0, wheel_speed=43.5) as instance:
+        with pytest.warns(SimulationWarning, match="carries more than largest_load = 100000 N") as told:
+            instance.start()
+            for _ in range(3):
+                instance.step(1e-3)
+    assert len(told) == 1
+
+
+def test_what_has_no_effect_is_told_of(either):
+    """Parameters of profiles where the contact is a line, and a load where the penetration is given."""
+    with Instance(either, gauge=1.43, control="penetration", normal_load=50e3) as instance:
+        with pytest.warns(SimulationWarning, match="gauge = 1.43 has no effect with contact_model = 1") as told:
+            instance.start()
+        assert len(told) == 1
+        with pytest.warns(SimulationWarning, match="normal_load = 50000 has no effect with control = 2") as told:
+            for _ in range(3):
+                instance.step(1e-3)
+    assert len(told) == 1
+
+
 def test_more_contacts_than_windows_are_told_of_once(either, tmp_path):
     """A hollow wheel on a rail with crests 11 mm apart, of which five touch: one warning, by the first such step."""
     y = np.linspace(-34.0, 34.0, 681)

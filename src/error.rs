@@ -90,7 +90,7 @@ pub enum Error {
     #[error(transparent)]
     Profile(ProfileError),
     /// A profile that a parameter names does not serve.
-    #[error("{name} = {text:?}: {reason}")]
+    #[error("{name} = {text:?}: {reason}{}", way_to_say(reason))]
     NamedProfile {
         /// Parameter.
         name: &'static str,
@@ -113,8 +113,8 @@ pub enum Error {
         lateral: f64,
         /// Roll of the wheelset relative to the rail, rad.
         roll: f64,
-        /// Roughness of a profile that may be the cause, in words; empty where both are smooth.
-        because: &'static str,
+        /// Words on what may be the cause: the roughness of a profile, or dimensions that do not belong together; empty where neither is.
+        because: String,
     },
     /// The surface of a body has folded onto itself where it is worn.
     #[error(
@@ -271,8 +271,11 @@ pub enum Error {
     },
     /// The contact reaches the end of the window that was sized for `largest_load`, under a larger load.
     #[error(
-        "{name} = {value} {unit} is too much: the contact reaches the end of the contact window (half-width {half_width} m), and the penetration takes a load \
-         of {load} N; allowed is as deep as largest_load = {largest_load} N takes it"
+        "{name} = {value} {unit} is too much: the contact reaches the end of the contact window (half-width {} m) and carries {} N, more than \
+         largest_load = {largest_load} N, which about {name} = {} {unit} takes",
+        short(*half_width),
+        short(*load),
+        short(*about)
     )]
     ContactLeavesWindow {
         /// Variable that gives the penetration.
@@ -283,11 +286,28 @@ pub enum Error {
         unit: &'static str,
         /// Half-width of the window, `m`.
         half_width: f64,
+        /// Value that takes `largest_load`, about.
+        about: f64,
         /// The load, `N`.
         load: f64,
         /// The load that sized it, `N`.
         largest_load: f64,
     },
+}
+
+/// Way to a file that says what a profile's does not: a parameter has no option for it.
+fn way_to_say(reason: &ProfileError) -> &'static str {
+    match reason {
+        ProfileError::NotSaid { .. } => {
+            "; `wheelrail profile`, or `Profile` in Python, can be told, and writes a file that says it itself"
+        }
+        _ => "",
+    }
+}
+
+/// A value to four digits, as a message tells it.
+fn short(value: f64) -> f64 {
+    format!("{value:.3e}").parse().unwrap_or(value)
 }
 
 /// A part of a message behind what separates it from the rest; nothing where the part is empty.

@@ -162,7 +162,7 @@ inputs! {
     wheel_speed "ω": "rad/s" shown in "rpm", start 10.0 / 0.46, range [-1e4, 1e4], nominal 20.0;
     /// Normal load of the wheel on the rail, where contact_model is profiles its vertical load, at most largest_load; 0 is a lifted
     /// wheel
-    normal_load "N": "N" shown in "kN", start 60e3, range [0.0, 1e7; |parameters| (0.0, parameters.largest_load), "largest_load sets the upper limit"], nominal 6e4;
+    normal_load "N": "N" shown in "kN", by load, start 60e3, range [0.0, 1e7; |parameters| (0.0, parameters.largest_load), "largest_load sets the upper limit"], nominal 6e4;
     /// Creepage (wheel_speed*wheel_radius - V)/V
     creepage "ξ": "1", by creepage, start 0.0, range [-0.99, 100.0], nominal 1e-2;
     /// Speed of the wheel's axle along the rail

@@ -45,6 +45,8 @@ pub struct Convergence {
     pub fills_window: bool,
     /// Whether profiles have more contacts than windows, so that contacts far apart share one.
     pub crowded: bool,
+    /// Whether the contact carries more than `largest_load`, for which its cells and windows are made: by a penetration or a height that is given.
+    pub overloaded: bool,
     /// Whether a part of the step was taken staggered: the mechanics for temperature and wear before it, because neither method found
     /// the solution of the coupled equations within the budget of work. The residual is 1 or more where the pressure was held besides.
     pub staggered: bool,
@@ -62,6 +64,7 @@ impl Convergence {
         self.residual = next.residual;
         self.fills_window |= next.fills_window;
         self.crowded |= next.crowded;
+        self.overloaded |= next.overloaded;
         self.staggered |= next.staggered;
         self.profile_change = self.profile_change.max(next.profile_change);
     }

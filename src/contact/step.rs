@@ -276,6 +276,7 @@ fn finish<E: Engine>(
     residual: f64,
 ) -> Result<Convergence> {
     let fills_window = fills_window(problem, now, solvers)?;
+    let overloaded = is_overloaded(problem, now);
     E::finalise_friction(problem, now, solvers);
     E::end_memory(problem, now);
     E::finalise_displacement(problem, interface, now, solvers);
@@ -286,6 +287,7 @@ fn finish<E: Engine>(
         residual,
         fills_window,
         crowded: E::is_crowded(solvers),
+        overloaded,
         staggered: problem.conditions.coupling.is_staggered(),
         profile_change: E::profile_change(solvers),
     })
@@ -332,6 +334,7 @@ fn initial_state_in_room<E: Engine>(
                 residual: if rests { 0.0 } else { tractions.residual() },
                 fills_window: fills_window(problem, &now, solvers)?,
                 crowded: E::is_crowded(solvers),
+                overloaded: is_overloaded(problem, &now),
                 staggered: !rests,
                 profile_change: 0.0,
             };
@@ -362,17 +365,33 @@ fn depth(parameters: &Parameters, inputs: &Inputs) -> (&'static str, f64, &'stat
 /// that is given, is an error.
 fn fills_window<E: Engine>(problem: &Problem<E>, now: &E::Fields, solvers: &E::Solvers) -> Result<bool> {
     let cut_off = E::is_cut_off(problem, now, solvers);
-    let load = problem.load(now);
-    if cut_off && load > problem.parameters.largest_load * (1.0 + 1e-9) {
-        let (name, value, unit) = depth(problem.parameters, &problem.conditions.inputs);
+    if cut_off && is_overloaded(problem, now) {
+        let (parameters, load) = (problem.parameters, problem.load(now));
+        let (name, value, unit) = depth(parameters, &problem.conditions.inputs);
+        // Hertz's law, of a patch and of a line, from what the contact carries now.
+        let exponent = if parameters.contact_model == ContactModel::Line {
+            1.0
+        } else {
+            2.0 / 3.0
+        };
+        let penetration = E::integrals(problem, now, solvers).penetration;
+        let less = penetration * (1.0 - (parameters.largest_load / load).powf(exponent));
+        let deeper_is_more =
+            parameters.control != Control::Height || parameters.contact_model != ContactModel::Profiles;
         return Err(Error::ContactLeavesWindow {
             name,
             value,
             unit,
             half_width: 0.5 * problem.operators.window_length(),
+            about: if deeper_is_more { value - less } else { value + less },
             load,
-            largest_load: problem.parameters.largest_load,
+            largest_load: parameters.largest_load,
         });
     }
     Ok(cut_off)
+}
+
+/// Whether the contact carries more than the load that its cells and windows are made for.
+fn is_overloaded<E: Engine>(problem: &Problem<E>, now: &E::Fields) -> bool {
+    problem.load(now) > problem.parameters.largest_load * (1.0 + 1e-9)
 }

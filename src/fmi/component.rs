@@ -71,8 +71,8 @@ pub struct Component {
     pub(super) texts: Vec<CString>,
     /// The inputs without effect that were told of, a bit for each.
     pub(super) told: u32,
-    /// Whether it was told of a contact that fills its window, since it last did not, and of more contacts than windows likewise.
-    pub(super) told_of_windows: [bool; 2],
+    /// Whether it was told of a contact that fills its window, since it last did not, and of more contacts than windows and of a load above the largest likewise.
+    pub(super) told_of_windows: [bool; 3],
     /// Messages that wait for the end of a call.
     pub journal: Journal,
 }
@@ -96,7 +96,7 @@ impl Component {
             saved: SavedStates::default(),
             texts: vec![CString::default(); TEXT_PARAMETERS.len()],
             told: 0,
-            told_of_windows: [false; 2],
+            told_of_windows: [false; 3],
             journal,
         }
     }
@@ -179,6 +179,9 @@ impl Component {
     /// [`Failure::Model`].
     pub fn exit_initialization(&mut self) -> Result<(), Failure> {
         self.solution()?;
+        for remark in self.parameters.without_effect() {
+            self.journal.failure(Blame::Remark, || remark);
+        }
         self.mode = Mode::StepComplete;
         self.inform(Category::Events, |component| {
             format!("initialized at t = {} s", component.time)
@@ -202,7 +205,7 @@ impl Component {
         self.inputs = Inputs::default();
         self.rates = Inputs::ZERO;
         self.told = 0;
-        self.told_of_windows = [false; 2];
+        self.told_of_windows = [false; 3];
         self.time = 0.0;
         self.forget_profiles();
         self.inform(Category::Events, |_| "reset to the start values".to_owned());

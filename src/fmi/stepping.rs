@@ -129,14 +129,15 @@ impl Component {
         });
     }
 
-    /// Tells, when either begins, that the contact is held within its window, and that there are more contacts than windows. The status
-    /// of the step is not touched.
+    /// Tells, when any of them begins, that the contact is held within its window, that there are more contacts than windows, and that the load is
+    /// above the largest. The status of the step is not touched.
     fn warn_of_windows(&mut self) {
         let Some(convergence) = self.state.as_ref().map(|state| state.convergence) else {
             return;
         };
         self.tell_when_it_begins(0, convergence.fills_window, Parameters::full_window_remark);
         self.tell_when_it_begins(1, convergence.crowded, |_| Convergence::CROWDED.to_owned());
+        self.tell_when_it_begins(2, convergence.overloaded, Parameters::overload_remark);
     }
 
     /// Tells the remark of a number in `told_of_windows` where its cause is there and was not at the step before.

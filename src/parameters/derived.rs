@@ -113,6 +113,14 @@ impl Parameters {
         )
     }
 
+    /// Remark on a contact that carries more than `largest_load`.
+    pub fn overload_remark(&self) -> String {
+        format!(
+            "the contact carries more than largest_load = {} N, for which its cells and windows are made: it may be less exact",
+            self.largest_load
+        )
+    }
+
     /// Distance of the running circle from the middle of the wheelset, `m`.
     pub fn running_circle(&self) -> f64 {
         0.5 * self.flange_back_distance + self.flange_back_position

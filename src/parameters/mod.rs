@@ -5,7 +5,7 @@
 //! read; `rows` has the macros that make these three of one declaration.
 //! `choices` are the types of those that choose, `derived` what follows from the values by a formula, `validation` what must
 //! hold between them, `text` what a text must be, `source` what
-//! that of a profile names, `profile_contents` what is in its file; `grids` are names for pairs of `patch_nodes` and `patch_strips`.
+//! that of a profile names, `profile_contents` what is in its file; `without_effect` finds those that the choices leave unused; `grids` are names for pairs of `patch_nodes` and `patch_strips`.
 
 // First, because `table` is written in its macros.
 #[macro_use]
@@ -20,6 +20,7 @@ mod source;
 mod table;
 mod text;
 mod validation;
+mod without_effect;
 
 pub use crate::geometry::hertz::HertzEllipse;
 pub use choices::{

@@ -159,9 +159,10 @@ parameters! {
     /// Which inputs define the motion: 1 creepage (wheel_speed and creepage), 2 vehicle_speed (wheel_speed and
     /// vehicle_speed)
     slip_source: SlipSource = choice { SlipSource::Creepage }
-    /// Penetration of the undeformed wheel into the undeformed rail where control is penetration
+    /// Penetration of the undeformed wheel into the undeformed rail, used where control is penetration
     prescribed_penetration "δ": f64 = real { "m" shown in "µm", 1e-4, -1e-2, 1e-2 }
-    /// Largest normal load: it sizes the contact window, and a larger load is refused
+    /// Largest normal load: it sizes the contact window; a larger normal_load is refused, and one that follows from a penetration or a height is
+    /// remarked on
     largest_load: f64 = real { "N" shown in "kN", 100e3, 1.0, 1e7 }
     /// Number of evenly spaced surface nodes in the contact window of the graded mesh
     contact_nodes: usize = count { 51, 13, 401 }

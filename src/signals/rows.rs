@@ -31,6 +31,9 @@ macro_rules! used_by {
     (vehicle_speed) => {
         Some(UsedBy::SlipSource(SlipSource::VehicleSpeed))
     };
+    (load) => {
+        Some(UsedBy::Control(Control::Load))
+    };
     (height) => {
         Some(UsedBy::Control(Control::Height))
     };
@@ -43,6 +46,9 @@ macro_rules! used_by {
 macro_rules! used_where {
     () => {
         ""
+    };
+    (load) => {
+        ", used where control is load"
     };
     (height) => {
         ", used where control is height"

@@ -221,7 +221,8 @@ fn reverse_is_forward_seen_from_the_other_end() {
     );
 }
 
-/// A height at which the bodies lie too deep in each other is refused by its name and value.
+/// A height at which the bodies lie too deep in each other is refused by its name and value, with about the height that carries the largest load; below that
+/// one the step says that it carries more.
 #[test]
 fn a_height_that_is_too_deep_is_refused() {
     let parameters = Parameters {
@@ -235,16 +236,26 @@ fn a_height_that_is_too_deep_is_refused() {
         wheel_speed: 20.0 / 0.46,
         ..Inputs::default()
     };
-    let error = model
-        .initial_state(&mut model.workspace(), &deep)
-        .unwrap_err()
-        .to_string();
+    let refused = model.initial_state(&mut model.workspace(), &deep).unwrap_err();
+    let error = refused.to_string();
     for part in [
         "vertical_displacement = -0.02 m is too much",
-        "as deep as largest_load = ",
+        "more than largest_load = 100000 N, which about vertical_displacement = -0.00",
     ] {
         assert!(error.contains(part), "{error}");
     }
+    let Error::ContactLeavesWindow { about, .. } = refused else {
+        panic!("{refused:?}");
+    };
+    let [higher, lower] = [0.1e-3, -0.1e-3].map(|way| {
+        let inputs = Inputs {
+            vertical_displacement: about + way,
+            ..deep
+        };
+        start(&model, &inputs)
+    });
+    assert!(higher.outputs.force_z < 100e3 && !higher.convergence.overloaded);
+    assert!(lower.outputs.force_z > 100e3 && lower.convergence.overloaded);
 }
 
 /// The wheelset's height under a load carries the load where it is given.
@@ -368,6 +379,26 @@ fn a_flange_beside_the_head_is_off_the_rail() {
     // From some place on it is off the rail.
     let last = found.iter().rposition(|stands| *stands).unwrap();
     assert!(found[..last].iter().all(|stands| *stands) && last < 60, "{found:?}");
+}
+
+/// Where dimensions that do not belong together put the wheel beside its rail, they are what the refusal names.
+#[test]
+fn dimensions_that_put_the_wheel_beside_the_rail_are_named() {
+    let refusal = |parameters: Parameters| {
+        let model = Model::new(parameters).unwrap();
+        let refused = model.initial_state(&mut model.workspace(), &rolling(0.0, 20e3, 0.0));
+        refused.unwrap_err().to_string()
+    };
+    let narrow = refusal(Parameters {
+        gauge: 1.3,
+        ..bodies(Side::Left)
+    });
+    for part in [
+        "gauge = 1.3 m, flange_back_distance = 1.36 m",
+        "mm to the field side of the rail's top",
+    ] {
+        assert!(narrow.contains(part), "{narrow}");
+    }
 }
 
 /// Heat, wear and thermal bulge, on small windows.

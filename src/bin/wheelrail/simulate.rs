@@ -174,9 +174,13 @@ impl Simulate {
             return Err(Error::NotProfiles { option });
         }
         self.check_worn(&parameters)?;
+        let unused = parameters.without_effect();
         let model = Arc::new(Model::new(parameters).map_err(Error::Parameter)?);
         let start = schedule.start();
         let mut simulation = Simulation::of(model, &start.inputs).map_err(Error::Start)?;
+        for remark in unused {
+            eprintln!("{remark}");
+        }
         // Only now that nothing can be refused any more, so that a refusal leaves no file behind.
         let contact_model = simulation.model.parameters().contact_model;
         let columns = Columns::of(contact_model);
@@ -187,7 +191,8 @@ impl Simulate {
 
         let count = steps.len();
         let mut progress = Progress::new(count as u64);
-        let (mut interrupted, mut staggered, mut full, mut crowded, mut worn_at_once) = (None, 0, 0, 0, 0f64);
+        let (mut interrupted, mut staggered, mut full, mut crowded, mut overloaded, mut worn_at_once) =
+            (None, 0, 0, 0, 0, 0f64);
         for step in steps {
             if let Err(source) = simulation.follow(&step) {
                 interrupted = Some(Box::new(source));
@@ -196,6 +201,7 @@ impl Simulate {
             staggered += usize::from(simulation.state.convergence.staggered);
             full += usize::from(simulation.state.convergence.fills_window);
             crowded += usize::from(simulation.state.convergence.crowded);
+            overloaded += usize::from(simulation.state.convergence.overloaded);
             worn_at_once = worn_at_once.max(simulation.state.convergence.profile_change);
             columns.write(&mut table, &step.to, simulation.outputs())?;
             progress.step();
@@ -223,6 +229,12 @@ impl Simulate {
         }
         if crowded > 0 {
             eprintln!("{crowded} steps: {}", Convergence::CROWDED);
+        }
+        if overloaded > 0 {
+            eprintln!(
+                "{overloaded} steps: {}",
+                simulation.model.parameters().overload_remark()
+            );
         }
         if let Some(source) = interrupted {
             let output = self.output.clone();

@@ -33,6 +33,8 @@ const NEAR: f64 = 0.5;
 const TOUCHES: f64 = -0.05;
 /// Strips that the smaller of two regions must have left in a window of both.
 const LEAST_STRIPS: f64 = 8.0;
+/// Distance of the running circle from the rail's top in the middle of the track above which the dimensions of wheelset and track hardly belong together, `m`.
+const FARTHEST_BESIDE: f64 = 15e-3;
 
 /// Places the windows for the pose of the step, carries the fields before over to them, and sets what their cells see of wheel and rail.
 /// Without fields before, the approach is the one that is known, `m`, at which the pressure of the fields has been solved, or that of
@@ -174,12 +176,28 @@ fn check_on_rail(problem: &SurfaceProblem, solvers: &SurfaceSolvers, position: &
     Err(Error::WheelOffRail {
         lateral: inputs.lateral_displacement - inputs.rail_lateral_displacement,
         roll: inputs.roll_angle - inputs.rail_roll_angle,
-        because: if operators.profiles.iter().any(Profile::is_rough) {
-            "a profile's direction turns to and fro, as noise does, which profile_smoothing takes off"
-        } else {
-            ""
-        },
+        because: cause(problem),
     })
+}
+
+/// Words on what may be the cause of a wheel that does not stand on its rail; empty where nothing is known.
+fn cause(problem: &SurfaceProblem) -> String {
+    let (operators, parameters) = (problem.operators, problem.parameters);
+    let beside = parameters.running_circle() - operators.bodies.rail.top();
+    if operators.profiles.iter().any(Profile::is_rough) {
+        "a profile's direction turns to and fro, as noise does, which profile_smoothing takes off".to_owned()
+    } else if beside.abs() > FARTHEST_BESIDE {
+        format!(
+            "gauge = {} m, flange_back_distance = {} m and flange_back_position = {} m put the running circle {:.1} mm to the {} side of the rail's top",
+            parameters.gauge,
+            parameters.flange_back_distance,
+            parameters.flange_back_position,
+            1e3 * beside.abs(),
+            if beside > 0.0 { "field" } else { "gauge" }
+        )
+    } else {
+        String::new()
+    }
 }
 
 /// Approach to expect, `m`: the given one, or that of the step before under the load of this one, or that of ellipses.

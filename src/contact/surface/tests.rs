@@ -226,7 +226,6 @@ fn a_rail_that_rolls_sees_the_wheelset_turned_back() {
         roll,
         yaw,
         rail_roll,
-        ..position
     };
     let same = WheelsetPosition {
         roll: turned[1].asin(),

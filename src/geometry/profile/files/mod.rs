@@ -22,6 +22,8 @@ use std::path::Path;
 
 /// Length of a file at most, bytes: 200 for each of the points that a profile may have.
 const LONGEST: u64 = 200 * MOST_POINTS as u64;
+/// Distances of the running circle from the back of the flange, `m`, as of the parameter `flange_back_position`.
+const FLANGE_BACK_POSITIONS: [f64; 2] = [10e-3, 200e-3];
 
 /// Unit of lengths in a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -205,6 +207,18 @@ impl Profile {
         }
         if options.flange_back_position.is_some() && body == Body::Rail {
             return Err(not_used("flange_back_position", "a rail has no flange"));
+        }
+        if let Some(value) = options.flange_back_position
+            && !(FLANGE_BACK_POSITIONS[0]..=FLANGE_BACK_POSITIONS[1]).contains(&value)
+        {
+            let [minimum, maximum] = FLANGE_BACK_POSITIONS;
+            return Err(ProfileError::OutOfRange {
+                name: "flange_back_position",
+                value,
+                minimum,
+                maximum,
+                unit: "m",
+            });
         }
         let (points, found) = orientation::framed(name, body, raw, options)?;
         let source = format!("{} file {name}{found}", format.name());

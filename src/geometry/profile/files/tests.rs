@@ -261,6 +261,13 @@ fn the_running_circle_is_asked_for_where_it_is_elsewhere() {
         &Profile::parse(&shifted, "a.csv", Format::Columns, &options).unwrap(),
         &profile,
     );
+    // In millimetres it would be another wheel's.
+    let in_mm = ReadOptions {
+        flange_back_position: Some(70.0),
+        ..options
+    };
+    let error = Profile::parse(&shifted, "a.csv", Format::Columns, &in_mm).unwrap_err();
+    assert_eq!(error.to_string(), "flange_back_position = 70: allowed is 0.01 to 0.2 m");
 }
 
 #[test]
