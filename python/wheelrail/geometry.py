@@ -521,9 +521,10 @@ def contact_geometry(
     rail_right, wheel_right
         Those of the right side, where they are others.
     lateral
-        First and last lateral displacement, to the left [m].
+        First and last lateral displacement, to the left [m]. The table begins at the first one, and ends at the last
+        one where that is a whole number of steps away, else at the last step before it.
     step
-        Step of the displacement [m].
+        Step of the displacement, from the first one on [m].
     yaw
         Yaw, anticlockwise from above [rad].
     level

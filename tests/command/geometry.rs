@@ -67,6 +67,23 @@ fn the_table_has_contacts_and_conicities() {
     }
 }
 
+/// The table begins at `--from`, also between multiples of a step that is longer than the way to `--to`, and goes on in steps from there.
+#[test]
+fn the_table_begins_where_it_is_asked_to() {
+    for (range, expected) in [
+        (["0.0051", "0.0053", "0.001"], &[5.1][..]),
+        (["-4e-3", "4e-3", "3e-3"], &[-4.0, -1.0, 2.0]),
+    ] {
+        let [from, to, step] = range;
+        let (table, _) = said(&["geometry", "--from", from, "--to", to, "--step", step]);
+        let lateral = column(&table, "lateral_displacement [m]");
+        assert_eq!(lateral.len(), expected.len(), "{table}");
+        for (lateral, expected) in lateral.iter().zip(expected) {
+            assert!((lateral - 1e-3 * expected).abs() < 1e-15, "{table}");
+        }
+    }
+}
+
 /// The picture has both sides, a line for each body, and panels for radii, conicity and contacts.
 #[test]
 fn the_picture_shows_contacts_and_conicity() {

@@ -28,13 +28,13 @@ pub struct Geometry {
     /// Wavelength of the smoothing of profiles from files, `m`: waves of this length are halved.
     #[arg(long, value_name = "METRES", default_value_t = 0.0, allow_hyphen_values = true)]
     smoothing: f64,
-    /// First lateral displacement of the wheelset, `m`, to the left.
+    /// First lateral displacement of the wheelset, `m`, to the left: the table begins there.
     #[arg(long, value_name = "METRES", default_value_t = -8e-3, allow_hyphen_values = true)]
     from: f64,
-    /// Last lateral displacement, `m`.
+    /// Last lateral displacement, `m`: the table ends there, or at the last step before it.
     #[arg(long, value_name = "METRES", default_value_t = 8e-3, allow_hyphen_values = true)]
     to: f64,
-    /// Step of the lateral displacement, `m`.
+    /// Step of the lateral displacement from the first one on, `m`.
     #[arg(long, value_name = "METRES", default_value_t = 1e-4, allow_hyphen_values = true)]
     step: f64,
     /// Yaw of the wheelset, rad, anticlockwise from above.

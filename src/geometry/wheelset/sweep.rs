@@ -12,6 +12,8 @@ const SUSPECT: f64 = 0.3e-3;
 const LEAP: f64 = 0.1e-3;
 /// Displacement down to which a jump is found, `m`.
 const CLOSE: f64 = 1e-8;
+/// Part of a step that is round-off: of 2 million steps of 1e-7 m, which the farthest displacement is away from 0, it is 1e-9.
+const ROUNDING: f64 = 1e-9;
 
 /// Jump of a contact at a lateral displacement: there the wheel touches at two places.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -38,7 +40,8 @@ pub struct Sweep {
 }
 
 impl Sweep {
-    /// Places at all multiples of a `step` within a `range` of displacements, `m`, at a yaw, rad.
+    /// Places from the first displacement of a `range` on in steps of `step` as far as the last one, `m`, at a yaw, rad: the last one is among them where it
+    /// is a whole number of steps away, to round-off.
     ///
     /// # Errors
     /// The range or the step is none, or a wheel stands beside its rail.
@@ -61,11 +64,19 @@ impl Sweep {
         if !(shortest..=0.1).contains(&step) {
             return Err(refused("step", step, shortest, 0.1));
         }
-        // Rounding is not to lose the last one.
-        let [first, last] = [(first / step - 1e-9).ceil(), (last / step + 1e-9).floor()];
-        let count = (last - first).max(0.0) as usize;
+        let count = ((last - first) / step + ROUNDING).floor() as usize;
+        // From a multiple of the step on, all displacements are the nearest numbers to multiples: 0 is 0, and both signs have the same ones.
+        let number = (first / step).round();
+        let begins_at_multiple = (first / step - number).abs() <= ROUNDING;
+        let lateral = |k: usize| {
+            if begins_at_multiple {
+                (number + k as f64) * step
+            } else {
+                first + k as f64 * step
+            }
+        };
         let poses = (0..=count)
-            .map(|k| wheelset.at((first + k as f64) * step, yaw))
+            .map(|k| wheelset.at(lateral(k), yaw))
             .collect::<Result<Vec<_>, _>>()?;
         let mut jumps = Vec::new();
         for pair in poses.windows(2) {

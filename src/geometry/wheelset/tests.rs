@@ -104,6 +104,34 @@ fn s1002_on_60e1_has_its_jumps_and_its_conicity() {
     assert_eq!(sweep.conicity(8e-3), None);
 }
 
+/// Displacements of a table, `mm`: from the first one on, the last one where steps reach it to round-off, and no other.
+#[test]
+fn a_sweep_begins_at_the_first_displacement() {
+    let wheelset = wheelset("60E1", "S1002", &Dimensions::default());
+    let swept = |range: [f64; 2], step: f64| {
+        let sweep = Sweep::new(&wheelset, range.map(|y| 1e-3 * y), 1e-3 * step, 0.0).unwrap();
+        sweep.poses.iter().map(|pose| pose.lateral).collect::<Vec<_>>()
+    };
+    for (range, step, expected) in [
+        ([5.1, 5.3], 1.0, &[5.1][..]),
+        ([5.1, 5.3], 0.1, &[5.1, 5.2, 5.3]),
+        ([-4.0, 4.0], 3.0, &[-4.0, -1.0, 2.0]),
+        ([-4.5, 4.5], 3.0, &[-4.5, -1.5, 1.5, 4.5]),
+        ([0.3, 0.99], 0.1, &[0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9]),
+        ([2.0, 2.0], 1.0, &[2.0]),
+    ] {
+        let found = swept(range, step);
+        assert_eq!(found.len(), expected.len(), "{range:?}: {found:?}");
+        for (found, expected) in found.iter().zip(expected) {
+            assert!((found - 1e-3 * expected).abs() < 1e-15, "{range:?}: {found}");
+        }
+    }
+    // Of multiples of the step 0 is 0, and each one has its mirror image to the bit.
+    let found = swept([-0.7, 0.7], 0.1);
+    assert_eq!((found.len(), found[7]), (15, 0.0));
+    assert!(found.iter().zip(found.iter().rev()).all(|(a, b)| *a == -b));
+}
+
 #[test]
 fn what_is_no_wheelset_is_refused() {
     let (rail, wheel) = (built_in("60E1"), built_in("S1002"));
