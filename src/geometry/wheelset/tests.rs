@@ -132,6 +132,45 @@ fn a_sweep_begins_at_the_first_displacement() {
     assert!(found.iter().zip(found.iter().rev()).all(|(a, b)| *a == -b));
 }
 
+/// The largest amplitude is half the way from the first displacement to the last one, and has its conicity, which round-off of the potentials at both ends
+/// took away: it is what a longer table has. An amplitude beyond it has none; nor has
+/// the largest one where wheels of two radii go about another middle.
+#[test]
+fn the_largest_amplitude_has_its_conicity() {
+    for (rail, wheel) in [
+        ("UIC60", "cone20"),
+        ("60E1", "S1002"),
+        ("UIC60", "S1002"),
+        ("54E1", "S1002"),
+    ] {
+        let wheelset = wheelset(rail, wheel, &Dimensions::default());
+        for (reach, step) in [
+            (3e-3, 1e-3),
+            (3e-3, 1e-4),
+            (4e-3, 1e-4),
+            (4.5e-3, 1e-3),
+            (4.55e-3, 1e-4),
+        ] {
+            let sweep = |reach: f64| Sweep::new(&wheelset, [-reach, reach], step, 0.0).unwrap();
+            let (found, longer) = (sweep(reach).conicity(reach), sweep(reach + step).conicity(reach));
+            let [found, longer] = [found, longer].map(|found| found.unwrap().conicity);
+            assert!(
+                (found / longer - 1.0).abs() < 1e-9,
+                "{rail} {wheel} {reach} {step}: {found} {longer}"
+            );
+            assert_eq!(sweep(reach).conicity(1.001 * reach), None);
+        }
+    }
+    let (rail, wheel) = (built_in("60E1"), built_in("S1002"));
+    let other = Dimensions {
+        wheel_radii: [0.46, 0.4601],
+        ..Dimensions::default()
+    };
+    let unequal = Wheelset::new([&rail; 2], [&wheel; 2], &other).unwrap();
+    let sweep = Sweep::new(&unequal, [-3e-3, 3e-3], 1e-4, 0.0).unwrap();
+    assert_eq!(sweep.conicity(3e-3), None);
+}
+
 #[test]
 fn what_is_no_wheelset_is_refused() {
     let (rail, wheel) = (built_in("60E1"), built_in("S1002"));
