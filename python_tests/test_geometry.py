@@ -2,6 +2,7 @@
 
 import re
 import sys
+import warnings
 from pathlib import Path
 
 import numpy as np
@@ -194,6 +195,18 @@ def test_contact_geometry_is_a_table():
     for lateral in (5e-3, (1e-3,), (0.0, 1e-3, 2e-3)):
         with pytest.raises(TypeError, match=f"^lateral = {re.escape(repr(lateral))}: two numbers are needed"):
             package.contact_geometry(lateral=lateral)
+
+
+def test_noise_is_warned_of():
+    """Contacts of a profile with noise come with a warning that has its name; of a smooth one there is none."""
+    points = package.Profile("S1002").points
+    noise = np.random.default_rng(3).uniform(-0.03e-3, 0.03e-3, (2, len(points)))
+    rough = package.Profile.from_points(points["y"] + noise[0], points["z"] + noise[1], body="wheel")
+    with pytest.warns(UserWarning, match="^points: its direction turns to and fro, as noise does"):
+        package.contact_geometry("60E1", rough, step=4e-3)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        package.contact_geometry("60E1", rough.smoothed(2e-3), step=4e-3)
 
 
 def test_the_picture_has_profiles_and_curves():

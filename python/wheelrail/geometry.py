@@ -9,6 +9,7 @@ import shutil
 import subprocess
 import sysconfig
 import tempfile
+import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
@@ -81,10 +82,15 @@ def run(*arguments: str, named: Mapping[Path, str] | None = None) -> "subprocess
             re.split("^wheelrail: ", done.stderr.strip(), flags=re.MULTILINE)[-1]
             or f"{arguments[0]}: {done.returncode}"
         )
-        for path, name in (named or {}).items():
-            text = text.replace(str(path), name).replace(path.name, name)
-        raise ValueError(text)
+        raise ValueError(called(text, named or {}))
     return done
+
+
+def called(text: str, named: Mapping[Path, str]) -> str:
+    """A text of the command with the user's names in place of the files that were made for the call."""
+    for path, name in named.items():
+        text = text.replace(str(path), name).replace(path.name, name)
+    return text
 
 
 @cache
@@ -546,11 +552,16 @@ def contact_geometry(
     Raises
     ------
     ValueError
-        A profile or a dimension does not serve; a wheel stands beside its rail.
+        A profile or a dimension does not serve; a wheel stands beside its rail or on the tip of its flange.
     TypeError
         A dimension that there is not, or one that is no number; `lateral` is not two numbers.
     OSError
         A profile's file is not there, or cannot be read.
+
+    Warns
+    -----
+    UserWarning
+        A profile's direction turns to and fro, as noise does, and the contacts jump with it: smoothing takes that off.
 
     Examples
     --------
@@ -583,6 +594,9 @@ def contact_geometry(
         table.attrs["jumps"] = table_of(files["jumps"]).to_dict("records")
         if outlines_at is not None:
             table.attrs["outlines"] = table_of(files["outlines"]).to_dict("list")
+    for line in said.splitlines():
+        if line.startswith("remark: "):
+            warnings.warn(called(line.removeprefix("remark: "), named), stacklevel=2)
     marker = "equivalent conicity at 3 mm: "
     table.attrs["conicity"] = next(
         (float(line.removeprefix(marker)) for line in said.splitlines() if line.startswith(marker)), None

@@ -155,8 +155,8 @@ pub enum ProfileError {
     /// A wheel that stands beside its rail, or on the edge of its profile.
     #[error(
         "at the lateral displacement {} mm and the yaw {} mrad a wheel touches beside its rail, or with the edge of a profile{because}",
-        1e3 * lateral,
-        1e3 * yaw
+        in_thousandths(*lateral),
+        in_thousandths(*yaw)
     )]
     WheelBesideRail {
         /// Lateral displacement of the wheelset, `m`.
@@ -166,6 +166,34 @@ pub enum ProfileError {
         /// Roughness of a profile that may be the cause, as the end of the sentence; empty where all are smooth.
         because: &'static str,
     },
+    /// A wheel that stands on its flange.
+    #[error(
+        "at the lateral displacement {} mm and the yaw {} mrad the {side} wheel stands on its flange: it touches at {:.2} mm on its profile, and the tip \
+         of the flange reaches to {:.2} mm{because}",
+        in_thousandths(*lateral),
+        in_thousandths(*yaw),
+        1e3 * on_wheel,
+        1e3 * tip
+    )]
+    WheelOnFlange {
+        /// "left" or "right".
+        side: &'static str,
+        /// Lateral displacement of the wheelset, `m`.
+        lateral: f64,
+        /// Yaw of the wheelset, rad.
+        yaw: f64,
+        /// Place of the contact on the wheel's profile, from its running circle, `m`.
+        on_wheel: f64,
+        /// Place of the flange's tip there towards the tread, `m`.
+        tip: f64,
+        /// Roughness of a profile that may be the cause, as the end of the sentence; empty where all are smooth.
+        because: &'static str,
+    },
+}
+
+/// A value in thousandths of its unit, without digits of round-off.
+fn in_thousandths(value: f64) -> f64 {
+    (1e9 * value).round() / 1e6
 }
 
 /// Names a line of a file; nothing where none is meant.

@@ -200,6 +200,27 @@ fn noise(size: f64) -> String {
     format!("y [mm],z [mm]\n{rows}")
 }
 
+/// Noise that leaves a table is remarked on beside it, by the name of its file; smoothed, and of a profile without noise, there is nothing to remark.
+#[test]
+fn noise_is_remarked_on() {
+    let slight = file("slight.csv");
+    fs::write(&slight, noise(0.005)).unwrap();
+    let wheel = ["geometry", "--step", "4e-3", "--wheel", slight.to_str().unwrap()];
+    let (_, beside) = said(&wheel);
+    assert_eq!(
+        beside
+            .matches("remark: slight.csv: its direction turns to and fro, as noise does")
+            .count(),
+        1,
+        "{beside}"
+    );
+    let smoothed = [&wheel[..], &["--smoothing", "2e-3"]].concat();
+    for arguments in [&smoothed[..], &["geometry", "--step", "4e-3"]] {
+        let (_, beside) = said(arguments);
+        assert!(!beside.contains("remark"), "{beside}");
+    }
+}
+
 #[test]
 fn what_cannot_be_is_refused() {
     let bare = file("bare.csv");
@@ -224,7 +245,9 @@ fn what_cannot_be_is_refused() {
         ),
         (&["geometry", "--wheel", "missing.whl"], "missing.whl"),
         (&["geometry", "--wheel", rough], "rough.csv"),
-        (&["geometry", "--to", "0.05"], "beside its rail"),
+        (&["geometry", "--from", "0.05", "--to", "0.05"], "beside its rail"),
+        (&["geometry", "--to", "0.05"], "the left wheel stands on its flange"),
+        (&["geometry", "--gauge", "1.3"], "stands on its flange"),
         (&["geometry", "--gauge", "5"], "gauge = 5"),
         (&["geometry", "--step", "0"], "step = 0"),
         (&["geometry", "--step", "-1"], "step = -1: allowed is"),

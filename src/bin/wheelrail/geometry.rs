@@ -127,7 +127,8 @@ impl Geometry {
     /// Runs the command.
     pub fn run(&self) -> Result<(), Error> {
         self.check_files()?;
-        let wheelset = self.wheelset()?;
+        let profiles = self.profiles()?;
+        let wheelset = self.wheelset(&profiles)?;
         let sweep = Sweep::new(&wheelset, [self.from, self.to], self.step, self.yaw)?;
         let motion = sweep.motion();
         let conicity = |amplitude: f64| motion.as_ref().and_then(|motion| motion.conicity(amplitude));
@@ -167,6 +168,7 @@ impl Geometry {
             }
         }
         summary(conicity(AMPLITUDE), &sweep.jumps);
+        remark(&profiles);
         Ok(())
     }
 
@@ -191,7 +193,8 @@ impl Geometry {
         Ok(files.check()?)
     }
 
-    fn wheelset(&self) -> Result<Wheelset, Error> {
+    /// Profiles of the rails, then those of the wheels, each the left one first.
+    fn profiles(&self) -> Result<[Profile; 4], Error> {
         let named = |name: &str, body: Body| profile::named(name, body, self.smoothing);
         let names = [&self.rail, &self.wheel].into_iter();
         let mut names = names.chain(&self.rail_right).chain(&self.wheel_right);
@@ -210,6 +213,10 @@ impl Geometry {
         };
         let rail_right = other(&self.rail_right, Body::Rail, &rail)?;
         let wheel_right = other(&self.wheel_right, Body::Wheel, &wheel)?;
+        Ok([rail, rail_right, wheel, wheel_right])
+    }
+
+    fn wheelset(&self, [rail, rail_right, wheel, wheel_right]: &[Profile; 4]) -> Result<Wheelset, Error> {
         let radius = self.wheel_radius;
         let dimensions = Dimensions {
             gauge: self.gauge,
@@ -219,7 +226,7 @@ impl Geometry {
             flange_back_position: self.flange_back_position,
             wheel_radii: [radius, self.wheel_radius_right.unwrap_or(radius)],
         };
-        let wheelset = Wheelset::new([&rail, &rail_right], [&wheel, &wheel_right], &dimensions)?;
+        let wheelset = Wheelset::new([rail, rail_right], [wheel, wheel_right], &dimensions)?;
         Ok(if self.level { wheelset.level() } else { wheelset })
     }
 }
@@ -239,6 +246,18 @@ fn summary(conicity: Option<Conicity>, jumps: &[Jump]) {
             "the {} contact jumps at {:.3} mm from {from:.2} to {to:.2} mm on the wheel",
             SIDES[jump.side],
             1e3 * jump.lateral
+        );
+    }
+}
+
+/// Says of which profiles the contacts jump with the noise.
+fn remark(profiles: &[Profile]) {
+    let mut rough: Vec<_> = profiles.iter().filter(|profile| profile.is_rough()).collect();
+    rough.dedup_by_key(|profile| profile.name());
+    for profile in rough {
+        eprintln!(
+            "remark: {}: its direction turns to and fro, as noise does, and the contacts jump with it; smoothing takes that off (--smoothing)",
+            profile.name()
         );
     }
 }

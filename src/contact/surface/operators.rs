@@ -51,7 +51,7 @@ pub struct SurfaceOperators {
     pub shapes: Vec<PatchOperators>,
     /// The bodies as half-spaces.
     pub pair: HalfSpaces,
-    /// Position of the flange's tip on the wheel's profile, from the running circle to the field side, `m`.
+    /// Position of the flange's tip on the wheel's profile towards the tread, from the running circle to the field side, `m`.
     pub flange_tip: f64,
     /// Strips of the rail by the number of their breadth.
     gauge_faces: Vec<GaugeFace>,
@@ -141,7 +141,7 @@ impl SurfaceOperators {
         Ok(SurfaceOperators {
             wheel_radii: (0..grids[WHEEL].cells).map(radius).collect(),
             wears: [parameters.wheel_profile_wear, parameters.rail_profile_wear].map(|wear| wear == ProfileWear::On),
-            flange_tip: flange_tip(&wheel),
+            flange_tip: wheel.profile.flange_tip(),
             bodies: Bodies {
                 measures: measures(&wheel),
                 rail,
@@ -194,19 +194,6 @@ fn placed([wheel, rail]: &[Profile; 2], parameters: &Parameters) -> Result<(Plac
         offset: parameters.running_circle(),
     };
     Ok((rail, wheel))
-}
-
-/// Position on a wheel's profile from the running circle to the field side where its radius is largest towards the middle of the track, `m`; of a
-/// wheel without a flange its end.
-fn flange_tip(wheel: &Wheel) -> f64 {
-    /// Distance of the places that are looked at, `m`.
-    const STEP: f64 = 0.1e-3;
-    let height = |place: f64| wheel.profile.value_slope_curvature(place)[0];
-    let first = wheel.profile.range()[0];
-    let places = (0..)
-        .map(|number| first + f64::from(number) * STEP)
-        .take_while(|place| *place < 0.0);
-    places.min_by(|a, b| height(*a).total_cmp(&height(*b))).unwrap_or(first)
 }
 
 /// Profile that the text of a parameter names: one that is built in, or one of a file with this content.

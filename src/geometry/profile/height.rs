@@ -136,6 +136,32 @@ impl HeightFunction {
         self.cells.range()
     }
 
+    /// Lateral position of a wheel's flange's tip towards its tread, `m`: where the flange is 1 mm higher than at its lowest place, as a wheel
+    /// that stands on a rail's crown touches beside that place. Of a wheel without a flange of 12 mm its lowest place before the running circle.
+    pub fn flange_tip(&self) -> f64 {
+        /// Distance of the places that are looked at, `m`.
+        const STEP: f64 = 0.1e-3;
+        /// Height of the tip, `m`.
+        const TIP: f64 = 1e-3;
+        /// Height of a flange at least, `m`.
+        const FLANGE: f64 = 12e-3;
+        let height = |place: f64| self.value_slope_curvature(place)[0];
+        let places = |from: f64| {
+            let places = (0..).map(move |number| from + f64::from(number) * STEP);
+            places.take_while(|place| *place < 0.0)
+        };
+        let first = self.range()[0];
+        let lowest = places(first).min_by(|a, b| height(*a).total_cmp(&height(*b)));
+        let lowest = lowest.unwrap_or(first);
+        let bottom = height(lowest);
+        if height(0.0) - bottom < FLANGE {
+            return lowest;
+        }
+        places(lowest)
+            .find(|place| height(*place) > bottom + TIP)
+            .unwrap_or(lowest)
+    }
+
     /// Height z, `m`, slope dz/dy and second derivative d²z/dy², `1/m`, at a lateral position, `m`; beyond the range on the straight
     /// lines that begin at its ends.
     pub fn value_slope_curvature(&self, y: f64) -> [f64; 3] {

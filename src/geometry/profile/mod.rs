@@ -235,7 +235,7 @@ impl Profile {
     }
 
     /// Whether the profile turns to and fro by more than any wheel or rail does, as one that is measured and not smoothed may.
-    pub(crate) fn is_rough(&self) -> bool {
+    pub fn is_rough(&self) -> bool {
         self.turning() > MOST_TURNING
     }
 

@@ -158,7 +158,7 @@ impl Wheelset {
     /// Place of the wheelset at a lateral displacement of its centre, `m`, to the left, and a yaw, rad, anticlockwise from above.
     ///
     /// # Errors
-    /// The yaw is not within ± 0.2 rad; at that displacement a wheel stands beside its rail, or on the edge of its profile.
+    /// The yaw is not within ± 0.2 rad; at that displacement a wheel stands beside its rail, on the edge of its profile, or on the tip of its flange.
     pub fn at(&self, lateral: f64, yaw: f64) -> Result<Pose, ProfileError> {
         if !(-LARGEST_YAW..=LARGEST_YAW).contains(&yaw) {
             return Err(ProfileError::OutOfRange {
@@ -169,15 +169,12 @@ impl Wheelset {
                 unit: "rad",
             });
         }
-        let beside = || ProfileError::WheelBesideRail {
-            lateral,
-            yaw,
-            because: if self.rough {
-                ": a profile's direction turns to and fro, as noise does, which --smoothing takes off"
-            } else {
-                ""
-            },
+        let because = if self.rough {
+            ": a profile's direction turns to and fro, as noise does, which --smoothing takes off"
+        } else {
+            ""
         };
+        let beside = || ProfileError::WheelBesideRail { lateral, yaw, because };
         // Height of the left wheel's lowest point over its rail, less that of the right one's: rises with the roll.
         let tilt = |roll: f64| -> Option<f64> {
             let [left, right] = Self::attitudes(lateral, yaw, roll);
@@ -188,6 +185,18 @@ impl Wheelset {
         let attitudes = Self::attitudes(lateral, yaw, roll);
         let left = self.sides[0].touch(&attitudes[0]).ok_or_else(beside)?;
         let right = self.sides[1].touch(&attitudes[1]).ok_or_else(beside)?;
+        for (side, pair, touch) in [("left", &self.sides[0], left.0), ("right", &self.sides[1], right.0)] {
+            if let Some(tip) = pair.tip_under(&touch) {
+                return Err(ProfileError::WheelOnFlange {
+                    side,
+                    lateral,
+                    yaw,
+                    on_wheel: touch.on_wheel,
+                    tip,
+                    because,
+                });
+            }
+        }
         Ok(Pose {
             lateral,
             yaw,

@@ -52,6 +52,8 @@ pub struct Pair {
     /// Place of the running circle, from the wheelset's middle, `m`.
     wheel_place: f64,
     radius: f64,
+    /// Place of the flange's tip towards the tread, from the running circle, `m`.
+    flange_tip: f64,
 }
 
 /// Point of the silhouette, from the wheelset's centre.
@@ -79,13 +81,21 @@ struct Above {
 
 impl Pair {
     pub fn new(rail: &Profile, wheel: &Profile, dimensions: &Dimensions, radius: f64) -> Result<Pair, ProfileError> {
+        let rail_place = 0.5 * dimensions.gauge - rail.gauge_point(dimensions.gauge_depth)?;
+        let (rail, wheel) = (rail.height_function()?, wheel.height_function()?);
         Ok(Pair {
-            rail_place: 0.5 * dimensions.gauge - rail.gauge_point(dimensions.gauge_depth)?,
+            rail_place,
             wheel_place: dimensions.running_circle(),
-            rail: rail.height_function()?,
-            wheel: wheel.height_function()?,
+            flange_tip: wheel.flange_tip(),
+            rail,
+            wheel,
             radius,
         })
+    }
+
+    /// Place of the flange's tip on the wheel towards its tread, `m`, where a contact is on it or beyond it.
+    pub fn tip_under(&self, touch: &Touch) -> Option<f64> {
+        (touch.on_wheel <= self.flange_tip).then_some(self.flange_tip)
     }
 
     /// Silhouette at a place along the wheel's profile; `None` where the surface is turned so far that it has none.

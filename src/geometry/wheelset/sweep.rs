@@ -44,7 +44,7 @@ impl Sweep {
     /// is a whole number of steps away, to round-off.
     ///
     /// # Errors
-    /// The range or the step is none, or a wheel stands beside its rail.
+    /// The range or the step is none, or a wheel stands beside its rail or on its flange.
     pub fn new(wheelset: &Wheelset, range: [f64; 2], step: f64, yaw: f64) -> Result<Sweep, ProfileError> {
         let refused = |name, value, minimum, maximum| ProfileError::OutOfRange {
             name,

@@ -187,6 +187,8 @@ fn what_is_no_wheelset_is_refused() {
         ..Dimensions::default()
     };
     let good = Dimensions::default();
+    let tight = Dimensions { gauge: 1.3, ..good };
+    let on_flanges = wheelset("60E1", "S1002", &tight);
     let wheelset = wheelset("60E1", "S1002", &good);
     for (error, said) in [
         (
@@ -210,6 +212,17 @@ fn what_is_no_wheelset_is_refused() {
             "depth of the gauge",
         ),
         (wheelset.at(0.1, 0.0).unwrap_err(), "lateral displacement 100 mm"),
+        (
+            wheelset.at(0.03, 0.0).unwrap_err(),
+            "at the lateral displacement 30 mm and the yaw 0 mrad the left wheel stands on its flange: it touches at -53.44 mm on its profile, and the tip of the flange \
+             reaches to -50.18 mm",
+        ),
+        (
+            wheelset.at(-0.018, 0.0).unwrap_err(),
+            "at the lateral displacement -18 mm and the yaw 0 mrad the right wheel stands on its flange",
+        ),
+        (on_flanges.clone().at(0.0, 0.0).unwrap_err(), "stands on its flange"),
+        (on_flanges.level().at(2e-3, 0.0).unwrap_err(), "stands on its flange"),
         (wheelset.at(f64::NAN, 0.0).unwrap_err(), "lateral displacement NaN"),
         (wheelset.at(0.0, 1.0).unwrap_err(), "yaw = 1"),
         (Sweep::new(&wheelset, [-1e-3, 1e-3], 0.0, 0.0).unwrap_err(), "step = 0"),
