@@ -118,6 +118,22 @@ pub enum ProfileError {
         /// Option of the reader.
         option: &'static str,
     },
+    /// A rail or a wheel that is broader than any.
+    #[error(
+        "{name}: {part} is {:.1} mm broad: allowed is up to {:.0} mm; unit says in which unit the file is",
+        1e3 * breadth,
+        1e3 * most
+    )]
+    TooBroad {
+        /// Profile.
+        name: String,
+        /// Part of it that is too broad, in words.
+        part: &'static str,
+        /// Breadth, `m`.
+        breadth: f64,
+        /// Largest breadth that is allowed, `m`.
+        most: f64,
+    },
     /// An option without a use for this profile.
     #[error("{name}: {option} has no use: {reason}")]
     NotUsed {

@@ -232,6 +232,11 @@ fn what_cannot_be_is_refused() {
     let two = file("two.csv");
     fs::write(&two, "y [mm],z [mm]\n-36,-14\n0,0\n36,-14\n").unwrap();
     let two = two.to_str().unwrap();
+    let thrice = file("thrice.csv");
+    let rows = wheelrail::Profile::built_in("60E1").unwrap().points().into_iter();
+    let rows: String = rows.map(|[y, z]| format!("{},{}\n", 3.0 * y, 3.0 * z)).collect();
+    fs::write(&thrice, format!("y [m],z [m]\n{rows}")).unwrap();
+    let thrice = thrice.to_str().unwrap();
     let [smooth, noisy, noisier] = ["smooth.prw", "noisy.csv", "noisier.csv"].map(file);
     let [smooth, noisy, noisier] = [&smooth, &noisy, &noisier].map(|path| path.to_str().unwrap());
     said(&["profile", "S1002", "-o", smooth]);
@@ -248,6 +253,11 @@ fn what_cannot_be_is_refused() {
         (&["geometry", "--from", "0.05", "--to", "0.05"], "beside its rail"),
         (&["geometry", "--to", "0.05"], "the left wheel stands on its flange"),
         (&["geometry", "--gauge", "1.3"], "stands on its flange"),
+        (
+            &["geometry", "--rail", thrice],
+            "thrice.csv: its head, down to 14 mm below its top, is 185.7 mm broad: allowed is up to 120 mm; unit says in which unit the file is; as an option: \
+             `wheelrail profile FILE --unit m|mm|in`",
+        ),
         (&["geometry", "--gauge", "5"], "gauge = 5"),
         (&["geometry", "--step", "0"], "step = 0"),
         (&["geometry", "--step", "-1"], "step = -1: allowed is"),

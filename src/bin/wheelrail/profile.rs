@@ -106,11 +106,13 @@ pub enum Error {
 
 /// Returns how a file is made readable that does not say all that it must.
 fn hint(error: &ProfileError) -> String {
-    let ProfileError::NotSaid { option, .. } = error else {
-        return String::new();
-    };
     // The reader's names of what `wheelrail profile` has options for.
-    let option = match *option {
+    let option = match error {
+        ProfileError::NotSaid { option, .. } => *option,
+        ProfileError::TooBroad { .. } => "unit",
+        _ => return String::new(),
+    };
+    let option = match option {
         "body" => "--body rail|wheel",
         "unit" => "--unit m|mm|in",
         "y_to" => "--y-to field|gauge",

@@ -9,6 +9,7 @@ mod miniprof;
 mod numbers;
 mod orientation;
 mod simpack;
+mod size;
 mod vampire;
 mod write;
 
@@ -222,7 +223,9 @@ impl Profile {
         }
         let (points, found) = orientation::framed(name, body, raw, options)?;
         let source = format!("{} file {name}{found}", format.name());
-        Profile::from_weighted(body, name, &source, points, options.smoothing)
+        let profile = Profile::from_weighted(body, name, &source, points, options.smoothing)?;
+        size::check(&profile)?;
+        Ok(profile)
     }
 }
 

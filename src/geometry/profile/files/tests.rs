@@ -58,6 +58,48 @@ fn what_is_written_is_read_back() {
     }
 }
 
+/// A rail twice as large as 60E1, whose head is 133 mm broad within 14 mm of its top, and a cylinder 210 mm broad are refused, by what is too broad about them;
+/// a cylinder of 190 mm is a wheel. A rail with a groove beside its head is no broader than the head.
+#[test]
+fn what_is_broader_than_any_rail_or_wheel_is_refused() {
+    let twice: String = (built_in("60E1").points().into_iter())
+        .map(|[y, z]| format!("{} {}\n", 2e3 * y, 2e3 * z))
+        .collect();
+    let said = rail(&twice, Format::Columns).unwrap_err().to_string();
+    assert!(
+        said.contains("its head, down to 14 mm below its top, is 133.0 mm broad: allowed is up to 120 mm; unit says"),
+        "{said}"
+    );
+    let cylinder = |half: f64| {
+        let rows: String = (-10..=10)
+            .map(|k| format!("{} 0\n", 0.1 * half * f64::from(k)))
+            .collect();
+        let options = ReadOptions {
+            body: Some(Body::Wheel),
+            y_to: Some(Lateral::ToField),
+            z_up: Some(true),
+            ..ReadOptions::default()
+        };
+        Profile::parse(&rows, "a file", Format::Columns, &options)
+    };
+    let said = cylinder(105.0).unwrap_err().to_string();
+    assert!(
+        said.contains("the wheel is 210.0 mm broad: allowed is up to 200 mm"),
+        "{said}"
+    );
+    assert!(cylinder(95.0).is_ok());
+    let grooved = "-30 -40\n-30 -20\n-28 -5\n-20 -1\n-10 -0.2\n0 0\n10 -0.2\n20 -1\n28 -5\n30 -16\n38 -40\n50 -40\n58 -16\n60 -3\n80 -3\n100 -3\n100 -40\n";
+    let options = ReadOptions {
+        body: Some(Body::Rail),
+        unit: Some(LengthUnit::Millimetre),
+        y_to: Some(Lateral::ToField),
+        z_up: Some(true),
+        ..ReadOptions::default()
+    };
+    let grooved = Profile::parse(grooved, "a file", Format::Columns, &options);
+    assert!(grooved.is_ok(), "{grooved:?}");
+}
+
 /// Each end of a name has its format, which reads back what was written.
 #[test]
 fn files_are_written_by_the_end_of_their_names() {
