@@ -139,6 +139,13 @@ def test_a_wheel_wears_and_is_measured(tmp_path):
     assert measures.flange_thickness == pytest.approx(32.5e-3, abs=1e-6)
     assert measures.flange_gradient == pytest.approx(10.794e-3, abs=1e-6)
     assert measures.hollow_depth == 0.0
+    far = new.measures(flange_back_position=0.0722)
+    assert far.flange_thickness == pytest.approx(34.7e-3, abs=1e-6)
+    assert far.flange_height == measures.flange_height
+    with pytest.raises(ValueError, match=r"flange_back_position = 0\.3: allowed is 0\.01 to 0\.2 m"):
+        new.measures(flange_back_position=0.3)
+    with pytest.raises(TypeError, match="flange_back_position = 'a': a number is needed"):
+        new.measures(flange_back_position="a")
     # 2 mm on the running circle, over 20 mm on either side.
     middle = np.interp(0.0, new.points["y"], new.points["arc_length"])
     over = np.linspace(-20e-3, 20e-3, 401)

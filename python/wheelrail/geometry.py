@@ -179,7 +179,7 @@ def table_of(path: Path) -> pd.DataFrame:
 
 @dataclass(frozen=True)
 class WheelMeasures:
-    """Measures of a wheel's profile by EN 15313, about the running circle 70 mm from the flange's back [m].
+    """Measures of a wheel's profile by EN 15313, about the running circle [m].
 
     Attributes
     ----------
@@ -428,13 +428,20 @@ class Profile:
         worn.name, worn.source, worn._built_in = self.name, self.source + suffix, None
         return worn
 
-    def measures(self) -> WheelMeasures:
+    def measures(self, *, flange_back_position: float = 0.07) -> WheelMeasures:
         """Measures of a wheel by EN 15313: height, thickness and gradient of its flange, hollow of its tread.
+
+        Parameters
+        ----------
+        flange_back_position
+            Distance of the running circle from the flange's back, from which the flange's thickness is measured [m].
 
         Raises
         ------
         ValueError
-            It is a rail, has no flange of 12 mm, or begins on it before its tip.
+            It is a rail, has no flange of 12 mm, or begins on it before its tip; the distance is not 0.01 to 0.2 m.
+        TypeError
+            The distance is no number.
 
         Examples
         --------
@@ -442,7 +449,8 @@ class Profile:
         32.5
         """
         with tempfile.TemporaryDirectory() as name:
-            return WheelMeasures(**self._measured(Path(name)))
+            back = option("flange_back_position", flange_back_position)
+            return WheelMeasures(**self._measured(Path(name), f"--back={back}"))
 
     def worn_against(self, new: "AnyProfile") -> WheelWear:
         """Wear of a wheel against its new profile: back and tip of the flange, which no rail touches, agree.
@@ -470,10 +478,10 @@ class Profile:
         """Area of the cross-section that a wheel has lost against its new profile, as in `worn_against` [m²]."""
         return self.worn_against(new).worn_area
 
-    def _measured(self, folder: Path, *against: str, named: Mapping[Path, str] | None = None) -> dict[str, float]:
+    def _measured(self, folder: Path, *arguments: str, named: Mapping[Path, str] | None = None) -> dict[str, float]:
         """What the command measures, by name."""
         table = folder / "measures.csv"
-        self._run(folder, "--measures", *against, "--output", str(table), named=named)
+        self._run(folder, "--measures", *arguments, "--output", str(table), named=named)
         return {str(name): float(value) for name, value in table_of(table).iloc[0].items()}
 
     def _run(self, folder: Path, *arguments: str, named: Mapping[Path, str] | None = None) -> None:

@@ -64,6 +64,7 @@ def measured(plan, new, progress):
     """Measures of the four wheels in a state, with the equivalent conicity of their wheelset at 3 mm."""
     worn = [new.worn(depth) for depth in progress.depth]
     radius, given = plan.vehicle.wheel_radius, geometry_of(plan)
+    back = {name: value for name, value in given.items() if name == "flange_back_position"}
     rows = []
     for axle in range(len(AXLES)):
         units = [new.for_units(progress.depth[2 * axle + side]) for side in range(2)]
@@ -85,7 +86,7 @@ def measured(plan, new, progress):
             conicity = None
         for side in range(2):
             number = 2 * axle + side
-            found = worn[number].measures()
+            found = worn[number].measures(**back)
             row = {"wheel": NAMES[number], "mileage": progress.distance, "worn_area": new.area(progress.depth[number])}
             row |= {"conicity": np.nan if conicity is None else conicity, "largest_depth": progress.depth[number].max()}
             rows.append(row | {name: getattr(found, name) for name in MEASURES})

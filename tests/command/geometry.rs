@@ -154,6 +154,13 @@ fn wheels_wear_and_are_measured() {
     ] {
         assert!(text.lines().any(|found| found == line), "{text}");
     }
+    let (text, _) = said(&["profile", "S1002", "--measures", "--back", "0.0722"]);
+    for line in [
+        "flange height Sh                  28.000 mm",
+        "flange thickness Sd               34.700 mm",
+    ] {
+        assert!(text.lines().any(|found| found == line), "{text}");
+    }
     let depths = file("depths.csv");
     fs::write(&depths, "arc_length [mm],depth [mm]\n75,0\n85,2\n105,2\n115,0\n").unwrap();
     let (worn, measures) = (file("worn.prw"), file("measures.csv"));
@@ -310,6 +317,11 @@ fn what_cannot_be_is_refused() {
         (&["profile", "60E1", "--measures"], "a wheel is needed"),
         (&["profile", "cone20", "--measures"], "it has no flange of 12 mm"),
         (&["profile", "S1002", "--against", "S1002"], "--measures"),
+        (&["profile", "S1002", "--back", "0.07"], "--measures"),
+        (
+            &["profile", "S1002", "--measures", "--back", "0.3"],
+            "flange_back_position = 0.3: allowed is 0.01 to 0.2 m",
+        ),
         (
             &["profile", "S1002", "--measures", "--against", "S1003"],
             "did you mean S1002",

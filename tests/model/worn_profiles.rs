@@ -152,6 +152,26 @@ fn profiles_that_do_not_wear_stay_as_they_are() {
     assert!(difference.abs() < 1e-7, "{difference:e}");
 }
 
+/// The flange's thickness is measured from where `flange_back_position` has its back, of new wheels and of wheels that wear. The wheel is as far from the middle
+/// of the track as with the default.
+#[test]
+fn the_flange_is_as_thick_as_its_back_is_far() {
+    for wear in [ProfileWear::Off, ProfileWear::On] {
+        let of = |back: f64| {
+            let usual = bodies();
+            let parameters = Parameters {
+                wheel_profile_wear: wear,
+                flange_back_position: back,
+                flange_back_distance: usual.flange_back_distance + 2.0 * (usual.flange_back_position - back),
+                ..usual
+            };
+            worn(&parameters, &sliding(2e-3, 0.0), 2).outputs().flange_thickness
+        };
+        let difference = of(72e-3) - of(70e-3);
+        assert!((difference - 2e-3).abs() < 1e-8, "{difference}");
+    }
+}
+
 /// The wheels of a wheelset on a mirrored way are the mirror images of those on the way, to the last bit.
 #[test]
 fn a_mirrored_way_wears_mirrored_wheels() {

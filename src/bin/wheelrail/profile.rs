@@ -52,6 +52,10 @@ pub struct Options {
     /// Measures of a wheel by EN 15313, in mm: height, thickness and gradient of the flange, hollow of the tread. With `--output` as CSV.
     #[arg(long, requires = "profile")]
     measures: bool,
+    /// Distance of the running circle from the back of the flange, `m`, from which the thickness of the flange is measured; without it
+    /// `--flange-back-position`, or else 0.07 as of EN 15313.
+    #[arg(long, value_name = "METRES", requires = "measures", allow_hyphen_values = true)]
+    back: Option<f64>,
     /// New profile, by its name or file, that the worn area and depths are measured against.
     #[arg(long, value_name = "NAME|FILE", requires = "measures")]
     against: Option<String>,
@@ -282,7 +286,10 @@ impl Options {
 
     /// Writes the measures of a wheel, and its wear where a new profile is given: to be read, or as CSV where a file is given.
     fn write_measures(&self, profile: &Profile) -> Result<(), Error> {
-        let measures = profile.measures()?;
+        let measures = match self.back.or(self.flange_back_position) {
+            Some(back) => profile.measures_with_back(back)?,
+            None => profile.measures()?,
+        };
         let mut rows = vec![
             Measure::length("flange_height", "flange height Sh", measures.flange_height),
             Measure::length("flange_thickness", "flange thickness Sd", measures.flange_thickness),

@@ -21,7 +21,7 @@ pub struct Bodies {
     pub measures: WheelMeasures,
 }
 
-/// Measures of a wheel by its height; 0 of one without a flange.
-pub fn measures(wheel: &Wheel) -> WheelMeasures {
-    WheelMeasures::of_height(&wheel.profile).unwrap_or_default()
+/// Measures of a wheel by its height, with its running circle so far from the back of its flange, `m`; 0 of one without a flange.
+pub fn measures(wheel: &Wheel, flange_back_position: f64) -> WheelMeasures {
+    WheelMeasures::of_height(&wheel.profile, flange_back_position).unwrap_or_default()
 }

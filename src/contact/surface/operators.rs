@@ -53,6 +53,8 @@ pub struct SurfaceOperators {
     pub pair: HalfSpaces,
     /// Position of the flange's tip on the wheel's profile towards the tread, from the running circle to the field side, `m`.
     pub flange_tip: f64,
+    /// Distance of the running circle from the back of the wheel's flange, `m`.
+    pub flange_back_position: f64,
     /// Strips of the rail by the number of their breadth.
     gauge_faces: Vec<GaugeFace>,
 }
@@ -142,8 +144,9 @@ impl SurfaceOperators {
             wheel_radii: (0..grids[WHEEL].cells).map(radius).collect(),
             wears: [parameters.wheel_profile_wear, parameters.rail_profile_wear].map(|wear| wear == ProfileWear::On),
             flange_tip: wheel.profile.flange_tip(),
+            flange_back_position: parameters.flange_back_position,
             bodies: Bodies {
-                measures: measures(&wheel),
+                measures: measures(&wheel, parameters.flange_back_position),
                 rail,
                 wheel,
                 scan,

@@ -77,7 +77,7 @@ impl WornBodies {
         if !depths[WHEEL].is_empty() {
             bodies.wheel.profile = operators.worn_height.function();
             // As after wear that has gone again, to the last bit.
-            bodies.measures = measures(&bodies.wheel);
+            bodies.measures = measures(&bodies.wheel, operators.flange_back_position);
         }
         if !depths[RAIL].is_empty() {
             bodies.rail.collect_wear(operators.grids[RAIL]);
@@ -125,7 +125,7 @@ impl WornBodies {
                 return Err(worn_away(operators, WHEEL, grid.at(depth, arc)[0], arc));
             }
             own[WHEEL][cells.clone()].copy_from_slice(&depth[cells]);
-            bodies.measures = measures(&bodies.wheel);
+            bodies.measures = measures(&bodies.wheel, operators.flange_back_position);
         }
         if let Some(cells) = dense::differing(&own[RAIL], &depths[RAIL]) {
             let (grid, depth) = (&operators.grids[RAIL], &depths[RAIL]);

@@ -1,6 +1,6 @@
 //! Measures of a wheel's profile, as those who maintain it have them.
 //!
-//! They refer to the running circle, 70 mm from the back of the flange (EN 15313:2016), which is the origin of a wheel's profile.
+//! They refer to the running circle, which is the origin of a wheel's profile: 70 mm from the back of the flange (EN 15313:2016), or another distance.
 
 use super::curve::Curve;
 use super::{Body, CurvePoint, HeightFunction, Profile};
@@ -8,8 +8,10 @@ use crate::error::ProfileError;
 use crate::numerics::root::crossing;
 use serde::{Deserialize, Serialize};
 
-/// Distance of the running circle from the back of the flange, `m`.
-const FLANGE_BACK: f64 = 70e-3;
+/// Distance of the running circle from the back of the flange by EN 15313, `m`.
+pub const FLANGE_BACK: f64 = 70e-3;
+/// Distances that a wheel can have there, `m`, as of the parameter `flange_back_position`.
+const FLANGE_BACKS: [f64; 2] = [10e-3, 200e-3];
 /// Depth below the running circle at which the flange's thickness is measured, `m`.
 const THICKNESS_DEPTH: f64 = 10e-3;
 /// Height above the flange's tip at which its gradient begins, `m`.
@@ -19,7 +21,7 @@ const GRADIENT_HEIGHT: f64 = 2e-3;
 pub struct WheelMeasures {
     /// Height Sh of the flange: of its tip from the running circle.
     pub flange_height: f64,
-    /// Thickness Sd of the flange: from its back, 70 mm from the running circle, to its face 10 mm below the running circle.
+    /// Thickness Sd of the flange: from its back, by EN 15313 70 mm from the running circle, to its face 10 mm below the running circle.
     pub flange_thickness: f64,
     /// Gradient qR of the flange: the distance along the axle between the face 2 mm above the tip and 10 mm below the running circle.
     pub flange_gradient: f64,
@@ -53,16 +55,36 @@ struct Flange {
 }
 
 impl Profile {
-    /// Measures of a wheel: height, thickness and gradient of its flange, depth of its tread's hollow.
+    /// Measures of a wheel: height, thickness and gradient of its flange, depth of its tread's hollow. The flange's back is 70 mm from the running
+    /// circle, as EN 15313 has it.
     ///
     /// # Errors
     /// The profile is a rail's, has no flange of 12 mm, or begins on it before its tip.
     pub fn measures(&self) -> Result<WheelMeasures, ProfileError> {
+        self.measures_with_back(FLANGE_BACK)
+    }
+
+    /// Measures of a wheel whose running circle is another distance `flange_back_position` from the back of its flange, `m`: the thickness of
+    /// the flange counts from there.
+    ///
+    /// # Errors
+    /// As [`Profile::measures`], and a distance that is not from 10 to 200 mm.
+    pub fn measures_with_back(&self, flange_back_position: f64) -> Result<WheelMeasures, ProfileError> {
+        let [minimum, maximum] = FLANGE_BACKS;
+        if !(minimum..=maximum).contains(&flange_back_position) {
+            return Err(ProfileError::OutOfRange {
+                name: "flange_back_position",
+                value: flange_back_position,
+                minimum,
+                maximum,
+                unit: "m",
+            });
+        }
         let flange = self.flange()?;
         let [tip, steep, thick] = [flange.tip, flange.steep, flange.thick].map(|arc| self.at(arc).place);
         Ok(WheelMeasures {
             flange_height: -tip[1],
-            flange_thickness: FLANGE_BACK + thick[0],
+            flange_thickness: flange_back_position + thick[0],
             flange_gradient: thick[0] - steep[0],
             hollow_depth: hollow(&self.curve, flange.thick),
         })
@@ -176,9 +198,9 @@ impl Profile {
 }
 
 impl WheelMeasures {
-    /// Measures of a wheel by the function of its height, whose running circle is at y = 0, wherever its surface is there; `None` where the
-    /// wheel has no flange of 12 mm or begins on it before its tip. Nothing is allocated.
-    pub fn of_height(function: &HeightFunction) -> Option<WheelMeasures> {
+    /// Measures of a wheel by the function of its height, whose running circle is at y = 0, wherever its surface is there, and a distance
+    /// `flange_back_position` from the back of the flange, `m`; `None` where the wheel has no flange of 12 mm or begins on it before its tip. Nothing is allocated.
+    pub fn of_height(function: &HeightFunction, flange_back_position: f64) -> Option<WheelMeasures> {
         let height = |y: f64| function.value_slope_curvature(y)[0];
         let slope = |y: f64| function.value_slope_curvature(y)[1];
         let (knots, begins) = (function.knots(), |cell: usize| function.beginning(cell)[0]);
@@ -221,7 +243,7 @@ impl WheelMeasures {
         visit(height(knots[last + 1]));
         Some(WheelMeasures {
             flange_height: datum - bottom,
-            flange_thickness: FLANGE_BACK + thick_place,
+            flange_thickness: flange_back_position + thick_place,
             flange_gradient: thick_place - steep,
             hollow_depth: deepest,
         })

@@ -55,6 +55,28 @@ fn lines_have_measures_in_closed_form() {
     }
 }
 
+/// The thickness counts from the back of the flange: with the running circle 72 mm from it, it is 2 mm more than with 70 mm, and nothing else is another.
+#[test]
+fn the_flange_is_as_thick_as_its_back_is_far() {
+    let s1002 = built_in("S1002");
+    let (usual, far) = (s1002.measures().unwrap(), s1002.measures_with_back(72e-3).unwrap());
+    assert!((far.flange_thickness - usual.flange_thickness - 2e-3).abs() < 1e-15);
+    let flange_thickness = usual.flange_thickness;
+    assert_eq!(
+        WheelMeasures {
+            flange_thickness,
+            ..far
+        },
+        usual
+    );
+    let found = WheelMeasures::of_height(&s1002.height_function().unwrap(), 72e-3).unwrap();
+    assert!((found.flange_thickness - far.flange_thickness).abs() < 1e-9);
+    for wrong in [0.0, 0.3, f64::NAN] {
+        let said = s1002.measures_with_back(wrong).unwrap_err().to_string();
+        assert!(said.contains("flange_back_position = "), "{said}");
+    }
+}
+
 /// A circular hollow in a level tread is as deep as its circle, r − √(r² − c²) with half the chord c; on a cone that rises to the field side
 /// it is less: the largest radius to its field side lies below the circle's end by the cone. A false flange beyond counts.
 #[test]
@@ -192,7 +214,7 @@ fn the_height_has_the_same_measures() {
     let rows: Vec<_> = arcs.into_iter().zip(depths).map(|(arc, depth)| [arc, depth]).collect();
     for profile in [s1002.worn_by(&rows).unwrap(), s1002, wheel(&flange(0.0))] {
         let expected = profile.measures().unwrap();
-        let found = WheelMeasures::of_height(&profile.height_function().unwrap()).unwrap();
+        let found = WheelMeasures::of_height(&profile.height_function().unwrap(), FLANGE_BACK).unwrap();
         for (expected, found) in [
             (expected.flange_height, found.flange_height),
             (expected.flange_thickness, found.flange_thickness),
@@ -206,5 +228,5 @@ fn the_height_has_the_same_measures() {
             );
         }
     }
-    assert!(WheelMeasures::of_height(&built_in("cone40").height_function().unwrap()).is_none());
+    assert!(WheelMeasures::of_height(&built_in("cone40").height_function().unwrap(), FLANGE_BACK).is_none());
 }
