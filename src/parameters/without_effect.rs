@@ -17,7 +17,7 @@ struct UsedWhere {
 }
 
 impl UsedWhere {
-    /// What a description says of it; `None` where it names no choice and values of it.
+    /// Choice that a description names; `None` where it names no choice and values of it.
     fn of(description: &str) -> Option<UsedWhere> {
         let (_, condition) = description.split_once(USED_WHERE)?;
         let mut words = condition.split_whitespace();
@@ -103,7 +103,7 @@ mod tests {
     use crate::signals::Inputs;
     use crate::wheel_rail::Model;
 
-    /// Where a description says that a choice uses a parameter, it can be read, but for conditions that are no choices.
+    /// Descriptions that say which choice uses a parameter can be read, but for conditions that are no choices.
     #[test]
     fn descriptions_name_choices_and_their_values() {
         let numbers = REAL_PARAMETERS.iter().map(|row| (row.name, row.description));

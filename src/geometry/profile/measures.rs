@@ -70,16 +70,7 @@ impl Profile {
     /// # Errors
     /// As [`Profile::measures`], and a distance that is not from 10 to 200 mm.
     pub fn measures_with_back(&self, flange_back_position: f64) -> Result<WheelMeasures, ProfileError> {
-        let [minimum, maximum] = FLANGE_BACKS;
-        if !(minimum..=maximum).contains(&flange_back_position) {
-            return Err(ProfileError::OutOfRange {
-                name: "flange_back_position",
-                value: flange_back_position,
-                minimum,
-                maximum,
-                unit: "m",
-            });
-        }
+        check_flange_back(flange_back_position)?;
         let flange = self.flange()?;
         let [tip, steep, thick] = [flange.tip, flange.steep, flange.thick].map(|arc| self.at(arc).place);
         Ok(WheelMeasures {
@@ -248,6 +239,24 @@ impl WheelMeasures {
             hollow_depth: deepest,
         })
     }
+}
+
+/// Refuses a distance of the running circle from the back of the flange, `m`, that no wheel has.
+///
+/// # Errors
+/// [`ProfileError::OutOfRange`].
+pub fn check_flange_back(value: f64) -> Result<(), ProfileError> {
+    let [minimum, maximum] = FLANGE_BACKS;
+    if (minimum..=maximum).contains(&value) {
+        return Ok(());
+    }
+    Err(ProfileError::OutOfRange {
+        name: "flange_back_position",
+        value,
+        minimum,
+        maximum,
+        unit: "m",
+    })
 }
 
 /// Largest fall of a curve's height from a place to one behind it, from an arc length on.

@@ -16,6 +16,7 @@ mod write;
 pub use write::{check_ending, written_endings};
 
 use super::measured::{MOST_POINTS, Weighted};
+use super::measures::check_flange_back;
 use super::{Body, Profile};
 use crate::error::ProfileError;
 use std::borrow::Cow;
@@ -23,8 +24,6 @@ use std::path::Path;
 
 /// Length of a file at most, bytes: 200 for each of the points that a profile may have.
 const LONGEST: u64 = 200 * MOST_POINTS as u64;
-/// Distances of the running circle from the back of the flange, `m`, as of the parameter `flange_back_position`.
-const FLANGE_BACK_POSITIONS: [f64; 2] = [10e-3, 200e-3];
 
 /// Unit of lengths in a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -209,18 +208,7 @@ impl Profile {
         if options.flange_back_position.is_some() && body == Body::Rail {
             return Err(not_used("flange_back_position", "a rail has no flange"));
         }
-        if let Some(value) = options.flange_back_position
-            && !(FLANGE_BACK_POSITIONS[0]..=FLANGE_BACK_POSITIONS[1]).contains(&value)
-        {
-            let [minimum, maximum] = FLANGE_BACK_POSITIONS;
-            return Err(ProfileError::OutOfRange {
-                name: "flange_back_position",
-                value,
-                minimum,
-                maximum,
-                unit: "m",
-            });
-        }
+        options.flange_back_position.map_or(Ok(()), check_flange_back)?;
         let (points, found) = orientation::framed(name, body, raw, options)?;
         let source = format!("{} file {name}{found}", format.name());
         let profile = Profile::from_weighted(body, name, &source, points, options.smoothing)?;
