@@ -212,6 +212,32 @@ def test_a_refusal_changes_nothing(running, call, kind, message):
     assert running.get(*READ) == beside.get(*READ)
 
 
+# On the tread and in the flange's root.
+TWO_CONTACTS = {"contact_model": "profiles", "slip_source": "vehicle_speed", "vehicle_speed": 20.0, "wheel_speed": 43.5}
+TWO_CONTACTS |= {"patch_grid": "fast", "normal_load": 30e3, "lateral_displacement": 5e-3}
+
+
+def test_derivatives_of_arrays(fmu, fmu3):
+    """An array stands for its elements in either version of FMI, each element for itself; absent contacts have 0."""
+    arrays = ["contact.normal_force", "contact.peak_pressure"]
+    elements = [f"{array}[{index}]" for array in arrays for index in (1, 2, 3, 4)]
+    found = []
+    for path in (fmu, fmu3):
+        with Instance(path, **TWO_CONTACTS).start() as instance:
+            instance.step(0.01)
+            assert instance.get("contacts") == [2.0]
+            found.append(instance.derivative(elements, "normal_load"))
+            assert instance.derivative(arrays, "normal_load") == found[-1]
+            some = instance.derivative([elements[1], "force_y", elements[4]], "normal_load")
+            assert [some[0], some[2]] == [found[-1][1], found[-1][4]]
+            for wrong in ("contact.normal_force[5]", "contact.normal_force[0]", "force_y[1]"):
+                with pytest.raises(ValueError, match=re.escape(f"there is no variable {wrong}")):
+                    instance.derivative([wrong], "normal_load")
+            assert found[-1][2:4] == [0.0, 0.0]
+    assert found[0] == found[1]
+    assert min(found[0][:2]) > 0.0
+
+
 def test_before_the_start(either):
     """What needs a start says so; parameters that do not go together can be mended."""
     instance = Instance(either, friction_hot=0.5, **MOVING)

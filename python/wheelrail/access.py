@@ -1,6 +1,7 @@
 """What an instance is told and asked: variables by name, and calls that are refused before they can do harm."""
 
 import math
+import re
 import warnings
 from collections.abc import Mapping, Sequence
 from itertools import groupby
@@ -265,6 +266,17 @@ class Access:
             return [self.variables[name]]
         elements = [variable for other, variable in self.variables.items() if other.startswith(f"{name}[")]
         return elements or [self._variable(name)]
+
+    def _part(self, name: str) -> tuple[list[ModelVariable], slice]:
+        """The variables of a name, and which of their values it means: all, or in FMI 3.0 one element of an array."""
+        array = re.fullmatch(r"(.+)\[([1-9]\d*)\]", name)
+        variable = self.variables.get(array[1]) if array and name not in self.variables else None
+        if array is None or variable is None:
+            return self._elements(name), slice(None)
+        place, lengths = int(array[2]), shape(variable, self.lengths)
+        if len(lengths) != 1 or place > lengths[0]:
+            raise ValueError(missing(self.fmu, name, self.variables))
+        return [variable], slice(place - 1, place)
 
     def parameters(self) -> dict[str, Any]:
         """Parameters as they are, choices by name and texts: what an instance like this one is made with.
