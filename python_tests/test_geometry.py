@@ -49,6 +49,32 @@ def test_points_and_files(tmp_path):
         package.Profile.from_points(exact["y"], exact["z"], body="rail")
 
 
+def test_a_profile_at_arc_lengths():
+    """Points at their arc lengths, the circle between them, straight lines beyond the ends; a number, a list, none."""
+    rail = package.Profile("60E1")
+    points, arcs = rail.points, rail.points["arc_length"].to_numpy()
+    found = rail.at(arcs)
+    np.testing.assert_array_equal(found.place, points[["y", "z"]].to_numpy())
+    np.testing.assert_array_equal(found.curvature, points["curvature"].to_numpy())
+    np.testing.assert_allclose(found.tangent[:, 1] / found.tangent[:, 0], np.tan(points["inclination"]), rtol=1e-12)
+    # More than one call of the command, on the crown of 300 mm.
+    crown = rail.at(np.linspace(-5e-3, 5e-3, 2500) + arcs[-1] / 2)
+    y, z = crown.place.T
+    np.testing.assert_allclose(np.hypot(y, z + 0.3), 0.3, rtol=0.0, atol=1e-12)
+    np.testing.assert_allclose(crown.tangent[:, 1], -y / 0.3, rtol=0.0, atol=1e-11)
+    np.testing.assert_allclose(crown.curvature, -1 / 0.3, rtol=1e-6)
+    before, after = rail.at(-0.01), rail.at(arcs[-1] + 0.01)
+    np.testing.assert_allclose(before.place, found.place[0] - 0.01 * found.tangent[0], atol=1e-12)
+    np.testing.assert_allclose(after.place, found.place[-1] + 0.01 * found.tangent[-1], atol=1e-12)
+    assert (before.place.shape, before.tangent.shape, before.curvature.shape) == ((2,), (2,), ())
+    assert float(before.curvature) == 0.0
+    assert rail.at([]).place.shape == (0, 2)
+    worn = package.Profile("S1002").worn_by([0.09, 0.1, 0.11], [0.0, 1e-3, 0.0])
+    np.testing.assert_allclose(worn.at(worn.points["arc_length"]).place, worn.points[["y", "z"]], atol=1e-8)
+    with pytest.raises(ValueError, match=r"arc\[1\] = inf: a finite number is needed"):
+        rail.at([0.0, np.inf])
+
+
 def test_a_profile_is_smoothed_after_it_was_read():
     """A wave of 1 µm and 2 mm on the tread, smoothed with 4 mm: 1/17 of it is left; a rail's is left as it was by 0."""
     wheel = package.Profile("S1002")

@@ -6,7 +6,7 @@
 - `preset`: a named set of parameters, for a wet rail for example.
 - `Instance`: the component step by step, for a master written by hand; `SavedState`: what it can go back to.
 - `Profile`, `contact_geometry`: profiles of wheels and rails, and where a wheelset touches its track;
-  `WheelMeasures`, `WheelWear`: what is measured on a wheel.
+  `CurvePoint`: a profile at an arc length; `WheelMeasures`, `WheelWear`: what is measured on a wheel.
 - `variables`: what there is to set and to read.
 - `wheelrail.plots`: pictures of a braking manoeuvre, of the patch in plan view, of creep curves, of profiles
   in contact.
@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING, Any
 from .archive import example, fmu_path, preset
 from .creep import creep_curves
 from .errors import InstanceClosedError, SimulationError, SimulationWarning
-from .geometry import Profile, WheelMeasures, WheelWear, contact_geometry
+from .geometry import CurvePoint, Profile, WheelMeasures, WheelWear, contact_geometry
 from .instance import Instance
 from .simulation import simulate
 from .states import SavedState
@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     from . import plots
 
 __all__ = [
+    "CurvePoint",
     "Instance",
     "InstanceClosedError",
     "Profile",

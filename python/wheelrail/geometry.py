@@ -15,7 +15,7 @@ from dataclasses import dataclass
 from functools import cache
 from os import PathLike, fspath
 from pathlib import Path
-from typing import Any, TypeAlias
+from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 import pandas as pd
@@ -28,6 +28,9 @@ from .variables import near
 NAME = "wheelrail.exe" if os.name == "nt" else "wheelrail"
 # Names of a file, by which the command knows what a profile is: with y to the field side and z as the format has it.
 ENDINGS = {"rail": ".prr", "wheel": ".prw"}
+
+# Arc lengths that one call of the command is given: Windows takes some 32 000 letters.
+ARCS_AT_ONCE = 1000
 
 # Options of a profile that are one of a few words.
 CHOICES = {"body": ("rail", "wheel"), "unit": ("m", "mm", "in", "inch")}
@@ -221,6 +224,24 @@ class WheelWear:
     largest_depth_position: float
 
 
+class CurvePoint(NamedTuple):
+    """Place, direction and curvature of a profile at arc lengths: those along y and z are the last axis of an array.
+
+    Attributes
+    ----------
+    place
+        Lateral position y, positive to the field side, and height z [m].
+    tangent
+        Unit tangent in the direction of rising arc length.
+    curvature
+        Derivative of the tangent's angle, from y towards z, over the arc length [1/m].
+    """
+
+    place: np.ndarray
+    tangent: np.ndarray
+    curvature: np.ndarray
+
+
 class Profile:
     """Profile of a wheel or a rail, built in or from a file.
 
@@ -358,6 +379,41 @@ class Profile:
             self._run(Path(own), "--output", str(written), named={written: str(path)})
             # Here, so that an error of the system is one of Python.
             path.write_bytes(written.read_bytes())
+
+    def at(self, arc: Any) -> CurvePoint:
+        """Place, tangent and curvature at an arc length, or at each of several.
+
+        Of a profile that is not built in they are those of its file, written and read again: places to 10 nm; where the
+        curvature jumps it passes over between the points beside the jump.
+
+        Parameters
+        ----------
+        arc
+            Arc length as in `points`, a number or a list of them; beyond the ends the profile goes on straight [m].
+
+        Raises
+        ------
+        ValueError
+            One is no finite number, or the list has more than one dimension.
+
+        Examples
+        --------
+        >>> tread = Profile("cone40").at([0.01, 0.02])
+        >>> (tread.tangent[:, 1] / tread.tangent[:, 0]).round(6).tolist()
+        [0.025, 0.025]
+        """
+        arcs = places("arc", arc)
+        found = [np.empty((0, 4))]
+        with tempfile.TemporaryDirectory() as name:
+            folder = Path(name)
+            for first in range(0, arcs.size, ARCS_AT_ONCE):
+                table = folder / "at.csv"
+                listed = ",".join(map(repr, arcs[first : first + ARCS_AT_ONCE].tolist()))
+                self._run(folder, f"--at={listed}", "--output", str(table))
+                found.append(table_of(table)[["y", "z", "inclination", "curvature"]].to_numpy())
+        y, z, inclination, curvature = (part.reshape(np.shape(arc)) for part in np.concatenate(found).T)
+        tangent = np.stack([np.cos(inclination), np.sin(inclination)], axis=-1)
+        return CurvePoint(np.stack([y, z], axis=-1), tangent, curvature)
 
     def smoothed(self, smoothing: float) -> "Profile":
         """Profile whose short waves are damped, after it has worn for example.

@@ -335,6 +335,12 @@ fn what_cannot_be_is_refused() {
             "bare.csv, columns, line 1: its headings have no unit",
         ),
         (&["profile", "S1002", "--worn-by", "missing.csv"], "missing.csv"),
+        (&["profile", "S1002", "--at", "0.1,top"], "a finite number of metres"),
+        (&["profile", "S1002", "--at", "0.1", "--measures"], "--measures"),
+        (
+            &["profile", "S1002", "--at", "0.1", "-o", "at.prw"],
+            "at.prw: --at is of the CSV",
+        ),
     ] {
         let done = wheelrail(arguments);
         let beside = String::from_utf8_lossy(&done.stderr).into_owned();
@@ -344,6 +350,22 @@ fn what_cannot_be_is_refused() {
         );
         assert!(done.stdout.is_empty());
     }
+}
+
+/// Between the points of a profile: the radius of the rail's crown, and beyond the end the straight line that begins there.
+#[test]
+fn a_profile_at_given_places() {
+    let (own, _) = said(&["profile", "60E1"]);
+    let arcs = column(&own, "arc_length [m]");
+    let (middle, end) = (0.5 * arcs[arcs.len() - 1], arcs[arcs.len() - 1]);
+    let beyond = end + 0.01;
+    let (table, _) = said(&["profile", "60E1", "--at", &format!("{beyond},{middle},{end},-1e-3")]);
+    assert_eq!(column(&table, "arc_length [m]"), [beyond, middle, end, -1e-3]);
+    let [y, z, curvature] = ["y [m]", "z [m]", "curvature [1/m]"].map(|name| column(&table, name));
+    assert!(y[1].abs() < 1e-9 && z[1].abs() < 1e-9, "{} {}", y[1], z[1]);
+    assert!((curvature[1] + 1.0 / 0.3).abs() < 1e-6, "{}", curvature[1]);
+    assert!(((y[0] - y[2]).hypot(z[0] - z[2]) - 0.01).abs() < 1e-9);
+    assert_eq!(curvature[0], 0.0);
 }
 
 /// No table takes the place of another one or of what is read, and none is begun where another one cannot be written.

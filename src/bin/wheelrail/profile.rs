@@ -59,6 +59,17 @@ pub struct Options {
     /// New profile, by its name or file, that the worn area and depths are measured against.
     #[arg(long, value_name = "NAME|FILE", requires = "measures")]
     against: Option<String>,
+    /// Arc lengths, `m`, between commas: the CSV has the profile there, in place of its points; beyond the ends it goes on straight.
+    #[arg(
+        long,
+        value_name = "METRES",
+        value_delimiter = ',',
+        value_parser = arc_length,
+        requires = "profile",
+        conflicts_with = "measures",
+        allow_hyphen_values = true
+    )]
+    at: Vec<f64>,
     /// File for the profile: SIMPACK's (.prr, .prw), MiniProf's (.ban, .whl, .mpt), VAMPIRE's (.rai, .whe), or CSV with arc length,
     /// inclination and curvature; without it the CSV goes to the standard output.
     #[arg(short, long, value_name = "OUT", requires = "profile")]
@@ -97,6 +108,9 @@ pub enum Error {
         /// Names that may be meant.
         hint: String,
     },
+    /// Places that a file of a profile has no room for.
+    #[error("{}: --at is of the CSV, a file with another ending or the standard output", .0.display())]
+    PlacesOfFile(PathBuf),
     /// A file that is not to be written, or cannot be.
     #[error(transparent)]
     Files(#[from] files::Error),
@@ -131,6 +145,11 @@ fn hint(error: &ProfileError) -> String {
 
 fn unit(text: &str) -> Result<LengthUnit, String> {
     LengthUnit::named(text).ok_or_else(|| "allowed is m, mm or in".to_owned())
+}
+
+fn arc_length(text: &str) -> Result<f64, String> {
+    let arc = text.trim().parse::<f64>().ok().filter(|arc| arc.is_finite());
+    arc.ok_or_else(|| "a finite number of metres is needed".to_owned())
 }
 
 /// Steepest inclination of a rail, as a slope: that of the parameter `rail_inclination`.
@@ -268,9 +287,13 @@ impl Options {
             (Some(path), Some(ending))
                 if ["prr", "prw", "ban", "whl", "mpt", "rai", "whe"].contains(&ending.as_str()) =>
             {
+                if !self.at.is_empty() {
+                    return Err(Error::PlacesOfFile(path.clone()));
+                }
                 Ok(profile.write(path)?)
             }
-            (path, _) => write(path.as_deref(), &profile),
+            (path, _) if self.at.is_empty() => write(path.as_deref(), &profile, profile.arc_lengths()),
+            (path, _) => write(path.as_deref(), &profile, &self.at),
         }
     }
 
@@ -353,8 +376,8 @@ impl Measure {
     }
 }
 
-/// Writes a table of a profile, of which the first two columns are read as a file of columns.
-fn write(path: Option<&Path>, profile: &Profile) -> Result<(), Error> {
+/// Writes a table of a profile at arc lengths, of which the first two columns are read as a file of columns.
+fn write(path: Option<&Path>, profile: &Profile, arcs: &[f64]) -> Result<(), Error> {
     let columns = [
         ("y", "m"),
         ("z", "m"),
@@ -363,7 +386,7 @@ fn write(path: Option<&Path>, profile: &Profile) -> Result<(), Error> {
         ("curvature", "1/m"),
     ];
     let mut table = Table::open(path, columns.into_iter().map(|(name, unit)| heading(name, unit)))?;
-    for arc in profile.arc_lengths() {
+    for arc in arcs {
         let point = profile.at(*arc);
         let inclination = point.tangent[1].atan2(point.tangent[0]);
         let [y, z] = point.place;
