@@ -15,6 +15,7 @@ from fmpy.model_description import ModelVariable
 
 from .arguments import names_of, plain
 from .errors import SimulationError, SimulationWarning
+from .geometry import is_given, is_inclined
 from .native import FMU3Component, Phase
 from .surface import LINE, formed, sources
 from .variables import (
@@ -39,6 +40,9 @@ WAY_OUT = {
     Phase.FAILED: "a call before has failed: restore() a saved state, reset() the instance, or make a new one",
 }
 
+
+# Parameters that say which profiles there are, and what is done to them.
+SHAPING = {"rail_profile", "wheel_profile", "profile_smoothing", "rail_inclination"}
 
 # Bounds that nothing lies between.
 NONE = (math.inf, -math.inf)
@@ -132,7 +136,8 @@ class Access:
         ----------
         **values
             Inputs, and parameters: before `start` all but the lengths of arrays of FMI 3.0, from then on those that are
-            tunable. Choices by name or number, arrays as a sequence, texts as a text or a path.
+            tunable. Choices by name or number, arrays as a sequence, texts as a text or a path, profiles as a
+            `Profile`, too.
 
         Raises
         ------
@@ -163,7 +168,9 @@ class Access:
         used = None
         if self.slave.phase is not Phase.INSTANTIATED and any(name in given for name in FRICTION_TABLE):
             used = self._count(TABLE_POINTS)
-        for name, value in start_values(self.fmu, given, used).items():
+        values = start_values(self.fmu, given, used)
+        self._check_profiles(values)
+        for name, value in values.items():
             variable = self.variables[name]
             self._check_settable(variable)
             elements = value if isinstance(value, list) else [value]
@@ -183,6 +190,25 @@ class Access:
             self.slave.exitConfigurationMode()
         for kind in sorted(calls, key=lambda kind: kind in ("Real", "Float64")):
             getattr(self.slave, f"set{kind}")(*calls[kind])
+
+    def _check_profiles(self, values: Mapping[str, Any]) -> None:
+        """Refuse what would smooth or incline once more what is given as a `Profile`."""
+        if not values.keys() & SHAPING or not self.variables.keys() >= SHAPING:
+            return
+        before = {} if self.slave.phase is Phase.INSTANTIATED else self.parameters()
+        now = {name: values.get(name, before.get(name, self.variables[name].start)) for name in SHAPING}
+        smoothing, inclination = float(now["profile_smoothing"]), float(now["rail_inclination"])
+        for name in ("rail_profile", "wheel_profile"):
+            if is_given(now[name]) and smoothing != 0.0:
+                raise ValueError(
+                    f"profile_smoothing = {smoothing:g}: {name} is a Profile, which is smoothed when it is made; one in"
+                    " a file goes beside it as a Profile with smoothing=…"
+                )
+        if is_inclined(now["rail_profile"]) and inclination != 0.0:
+            raise ValueError(
+                f"rail_inclination = {inclination:g}: rail_profile is a Profile that is inclined already;"
+                " rail_inclination=0 leaves it so"
+            )
 
     def _count(self, name: str) -> int:
         """A count as it is, within a call."""

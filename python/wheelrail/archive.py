@@ -152,11 +152,16 @@ def unpacked(fmu: AnyPath) -> str:
 @cache
 def unpack(fmu: str, process: int) -> str:
     """Unpack an FMU for a process: a fork of it has its own folder, as either may end first."""
-    folder = tempfile.mkdtemp(prefix="fmu-")
+    return str(fmpy.extract(fmu, kept_folder("fmu-", process)))
+
+
+def kept_folder(prefix: str, process: int) -> str:
+    """Make a folder that is removed when the process ends."""
+    folder = tempfile.mkdtemp(prefix=prefix)
     atexit.register(remove, folder, process)
     # A process of multiprocessing ends without what is registered there, with what is here.
     Finalize(None, remove, (folder, process), exitpriority=0)
-    return str(fmpy.extract(fmu, folder))
+    return folder
 
 
 def remove(folder: str, process: int) -> None:

@@ -2,6 +2,7 @@
 
 import copy
 import errno
+import hashlib
 import numbers
 import os
 import re
@@ -20,7 +21,7 @@ from typing import Any, NamedTuple, TypeAlias
 import numpy as np
 import pandas as pd
 
-from .archive import PACKAGE, AnyPath
+from .archive import PACKAGE, AnyPath, kept_folder
 from .arguments import finite
 from .units import heading
 from .variables import near
@@ -28,6 +29,9 @@ from .variables import near
 NAME = "wheelrail.exe" if os.name == "nt" else "wheelrail"
 # Names of a file, by which the command knows what a profile is: with y to the field side and z as the format has it.
 ENDINGS = {"rail": ".prr", "wheel": ".prw"}
+
+# Beginnings of the names of folders: that of the files of profiles that are parameters, in it those of inclined rails.
+GIVEN, INCLINED = "wheelrail-profiles-", "inclined-"
 
 # Arc lengths that one call of the command is given: Windows takes some 32 000 letters.
 ARCS_AT_ONCE = 1000
@@ -310,6 +314,7 @@ class Profile:
         given |= {"flange_back_position": flange_back_position, "inclination": inclination}
         self._read(["profile", file_of(profile), *options(given)])
         self._built_in = self.name if inclination is None and self.name in built_in_names() else None
+        self._inclined = bool(inclination)
 
     def _read(self, arguments: list[str], named: Mapping[Path, str] | None = None) -> None:
         """Take the profile of these arguments of the command; errors call files as `run` does."""
@@ -353,7 +358,7 @@ class Profile:
             path = Path(folder) / "points.csv"
             np.savetxt(path, np.column_stack(columns), delimiter=",", header="y [m],z [m]", comments="")
             made._read(["profile", str(path), *given], {path: "points"})
-        made.name, made.source, made._built_in = "points", "given points", None
+        made.name, made.source, made._built_in, made._inclined = "points", "given points", None, False
         return made
 
     @staticmethod
@@ -438,7 +443,7 @@ class Profile:
         with tempfile.TemporaryDirectory() as name:
             own = self._file(Path(name), "profile")
             smooth._read(["profile", own, given], {Path(own): self.name})
-        smooth.name, smooth.source, smooth._built_in = self.name, self.source, None
+        smooth.name, smooth.source, smooth._built_in, smooth._inclined = self.name, self.source, None, self._inclined
         return smooth
 
     def worn_by(self, arc_length: Any, depth: Any) -> "Profile":
@@ -481,7 +486,7 @@ class Profile:
             own = self.argument(folder, "profile")
             worn._read(["profile", own, f"--worn-by={table}"], {Path(own): self.name, table: "the depths"})
         suffix = ", worn" if np.any(rows[:, 1]) and not self.source.endswith(", worn") else ""
-        worn.name, worn.source, worn._built_in = self.name, self.source + suffix, None
+        worn.name, worn.source, worn._built_in, worn._inclined = self.name, self.source + suffix, None, self._inclined
         return worn
 
     def measures(self, *, flange_back_position: float = 0.07) -> WheelMeasures:
@@ -558,9 +563,39 @@ class Profile:
         path.write_text(self._text, encoding="utf-8")
         return str(path)
 
+    def parameter(self) -> str:
+        """What the component is given for this profile: its name, or a file that is kept until the process ends."""
+        if self._built_in is not None:
+            return self._built_in
+        kind = INCLINED if self._inclined else ""
+        digest = hashlib.sha256(self._text.encode()).hexdigest()[:16]
+        path = given_folder(os.getpid()) / f"{kind}{digest}" / f"{Path(self.name).stem}{ENDINGS[self.body]}"
+        if not path.exists():
+            path.parent.mkdir(exist_ok=True)
+            with tempfile.TemporaryDirectory(dir=path.parent) as own:
+                # In one piece, as another thread may be reading it.
+                Path(self._file(Path(own), "profile")).replace(path)
+        return str(path)
+
     def __repr__(self) -> str:
         """Name and body."""
         return f"<Profile {self.name}: {self.body}, {self.source}>"
+
+
+@cache
+def given_folder(process: int) -> Path:
+    """Folder of the files that a process has made of profiles for its components."""
+    return Path(kept_folder(GIVEN, process))
+
+
+def is_given(text: str) -> bool:
+    """Whether the text of a parameter is the file of a `Profile`."""
+    return Path(text).parent.parent.name.startswith(GIVEN)
+
+
+def is_inclined(text: str) -> bool:
+    """Whether it is that of one which was inclined when it was made."""
+    return is_given(text) and Path(text).parent.name.startswith(INCLINED)
 
 
 AnyProfile: TypeAlias = Profile | str | PathLike[str]

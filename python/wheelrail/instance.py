@@ -46,7 +46,7 @@ class Instance(Saving):
         Time at which it starts [s].
     **start_values
         Parameters and inputs by name, in any order; choices by name or number, tables of parameters as a sequence:
-        `**{"friction_table.temperature": [300.0, 400.0]}`.
+        `**{"friction_table.temperature": [300.0, 400.0]}`; profiles by name, as the path of a file or a `Profile`.
 
     Attributes
     ----------

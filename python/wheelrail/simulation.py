@@ -111,7 +111,8 @@ def simulate(
     instance
         An `Instance` to go on with from its own time; it is left as it is at the end.
     **values
-        Parameters and constant inputs by name, in SI units; choices by name or number: `friction_law="constant"`.
+        Parameters and constant inputs by name, in SI units; choices by name or number: `friction_law="constant"`;
+        `rail_profile` and `wheel_profile` by name, as the path of a file or a `Profile`.
         `largest_load`, which sizes the contact window, follows the largest load up to 200 kN unless it is given.
 
     Returns

@@ -164,15 +164,23 @@ def number(variable: ModelVariable, value: Any) -> float | int:
 
 
 def text(variable: ModelVariable, value: Any) -> str:
-    """A text, or a path as one.
+    """A text, or a path as one; a `Profile` by its name or a file.
 
     Raises
     ------
     TypeError
-        It is neither.
+        It is none of them.
     ValueError
-        It is blank, or has a character in it that no text of C has.
+        It is blank, has a character in it that no text of C has, or is the profile of the other body.
     """
+    # It imports from here.
+    from .geometry import Profile
+
+    if isinstance(value, Profile):
+        body = variable.name.removesuffix("_profile")
+        if value.body != body:
+            raise ValueError(f"{variable.name} = {value!r}: the profile of a {body} is needed")
+        return value.parameter()
     if isinstance(value, np.str_ | PathLike):
         value = fspath(value)
     if not isinstance(value, str):
@@ -240,7 +248,8 @@ def with_grid(fmu: AnyPath, given: Mapping[str, Any]) -> dict[str, Any]:
 def start_values(fmu: AnyPath, given: Mapping[str, Any], used: int | None = None) -> dict[str, Any]:
     """Parameters and constant inputs as the component takes them.
 
-    The points of a table may be given in one: `{"friction_table.temperature": [300.0, 400.0]}`. A text may be a path.
+    The points of a table may be given in one: `{"friction_table.temperature": [300.0, 400.0]}`. A text may be a path,
+    that of a profile a `Profile`.
     `patch_grid` becomes the cells and strips of the grid of that name. `friction_table_points` follows the lists of the
     friction table where it is not given.
 

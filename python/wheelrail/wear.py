@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .geometry import Profile, built_in_names
+from .geometry import Profile, built_in_names, is_inclined
 
 
 class ProfileWear(NamedTuple):
@@ -47,4 +47,6 @@ def new_profile(text: str, body: str, smoothing: float, resources: Path) -> Prof
     path = Path(text.removeprefix("file://"))
     if not path.exists() and (resources / text).exists():
         path = resources / text
-    return Profile(path, body=body, smoothing=smoothing or None)
+    profile = Profile(path, body=body, smoothing=smoothing or None)
+    profile._inclined = is_inclined(text)
+    return profile
