@@ -234,6 +234,9 @@ def test_derivatives_of_arrays(fmu, fmu3):
                 with pytest.raises(ValueError, match=re.escape(f"there is no variable {wrong}")):
                     instance.derivative([wrong], "normal_load")
             assert found[-1][2:4] == [0.0, 0.0]
+            every = [name for name in instance.variables if re.fullmatch(r"contact\.\w+(\[1\])?", name)]
+            absent = [instance.get(name.removesuffix("[1]"))[2:] for name in every]
+            assert absent == [[0.0, 0.0]] * 21
     assert found[0] == found[1]
     assert min(found[0][:2]) > 0.0
 

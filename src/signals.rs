@@ -240,7 +240,7 @@ outputs! {
     /// Largest absolute temperature of the rail surface: of a line over all the rail that it follows, also ahead of the contact,
     /// otherwise over the contact windows
     peak_temperature: "K" shown in "degC", Instantaneous, at least 0.0, nominal 300.0;
-    /// Friction force over normal load
+    /// traction_force over the normal force, of profiles the sum over the contacts, in either without normal_damping
     traction_coefficient: "1", Instantaneous, nominal 0.1;
     /// Creepage (wheel_speed*wheel_radius - V)/V of the last step, over 0.001 m/s in the direction of V where V is slower
     slip_creepage "ξ": "1", Instantaneous, nominal 1e-2;

@@ -283,10 +283,10 @@ macro_rules! contact_outputs {
 
         /// The rows of arrays, element by element.
         const ELEMENTS: &[[OutputSignal; CONTACTS]] = &[$([
-            contact_row!(0 "1", $field, $unit, optional!($($display)?), optional!($($minimum)?), $nominal, concat!($($description,)+ "; contacts count from the gauge side").trim_ascii()),
-            contact_row!(1 "2", $field, $unit, optional!($($display)?), optional!($($minimum)?), $nominal, concat!($($description,)+ "; contacts count from the gauge side").trim_ascii()),
-            contact_row!(2 "3", $field, $unit, optional!($($display)?), optional!($($minimum)?), $nominal, concat!($($description,)+ "; contacts count from the gauge side").trim_ascii()),
-            contact_row!(3 "4", $field, $unit, optional!($($display)?), optional!($($minimum)?), $nominal, concat!($($description,)+ "; contacts count from the gauge side").trim_ascii()),
+            contact_row!(0 "1", $field, $unit, optional!($($display)?), optional!($($minimum)?), $nominal, concat!($($description,)+ "; 0 where there is no such contact; contacts count from the gauge side").trim_ascii()),
+            contact_row!(1 "2", $field, $unit, optional!($($display)?), optional!($($minimum)?), $nominal, concat!($($description,)+ "; 0 where there is no such contact; contacts count from the gauge side").trim_ascii()),
+            contact_row!(2 "3", $field, $unit, optional!($($display)?), optional!($($minimum)?), $nominal, concat!($($description,)+ "; 0 where there is no such contact; contacts count from the gauge side").trim_ascii()),
+            contact_row!(3 "4", $field, $unit, optional!($($display)?), optional!($($minimum)?), $nominal, concat!($($description,)+ "; 0 where there is no such contact; contacts count from the gauge side").trim_ascii()),
         ],)+];
     };
 }
