@@ -300,6 +300,19 @@ def test_over_time(fmu):
     assert len(plots.over_time(result, "traction_force").axes) == 1
 
 
+def test_over_time_of_all_elements(fmu, fmu3):
+    """The name of what each contact has stands for all four, which one unit goes for; one of them has its own."""
+    for path in (fmu, fmu3):
+        outputs = ["contact.rail_position", "contacts"]
+        result = wheelrail.simulate(stop_time=2e-3, outputs=outputs, fmu=path, **PROFILES)
+        units = {"contact.rail_position": "m", "contact.rail_position[2]": "mm"}
+        figure = plots.over_time(result, outputs, units=units)
+        labels = [f"contact.rail position[{index}] [{'mm' if index == 2 else 'm'}]" for index in (1, 2, 3, 4)]
+        assert [axes.get_ylabel() for axes in figure.axes] == [*labels, "contacts"]
+        assert figure.axes[0].get_lines()[0].get_ydata() == pytest.approx(result["contact.rail_position[1]"].to_numpy())
+        assert len(plots.over_time(result, "contact.rail_position[1]").axes) == 1
+
+
 def test_pictures_take_other_units(fmu):
     """A frame that says kilonewtons is drawn as one in newtons."""
     result = wheelrail.simulate(

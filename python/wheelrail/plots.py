@@ -58,17 +58,18 @@ def over_time(
     result
         What `simulate` returned, or a table of `read_table` with a column `time`.
     names
-        Names of columns, or one name.
+        Names of columns, or one name; that of a profile or of what each contact has, `contact.normal_force`, stands for
+        the columns of its elements.
     units
-        Units to draw in, by name: `{"traction_force": "MN"}`; by default those in which people read the variables, kN
-        and °C for example.
+        Units to draw in, by these names: `{"traction_force": "MN"}`; by default those in which people read the
+        variables, kN and °C for example.
     title
         Heading.
 
     Returns
     -------
     matplotlib.figure.Figure
-        A panel for each name.
+        A panel for each column.
 
     Raises
     ------
@@ -82,16 +83,24 @@ def over_time(
     >>> result = wheelrail.simulate(wheelrail.example(), slip_source="vehicle_speed")
     >>> over_time(result, ["traction_force", "peak_temperature"]).savefig("over_time.png")
     """
-    chosen = [names] if isinstance(names, str) else list(names)
-    if not chosen or not all(isinstance(name, str) for name in chosen):
+    listed = [names] if isinstance(names, str) else list(names)
+    if not listed or not all(isinstance(name, str) for name in listed):
         raise TypeError(f"names = {names!r}: the names of columns are needed")
+    there = list(map(str, result)) if isinstance(result, Mapping | pd.DataFrame) else []
+    # The name under which each column was chosen: its own, or that of all elements.
+    named = {
+        column: name
+        for name in listed
+        for column in [other for other in there if other.startswith(f"{name}[")] or [name]
+    }
+    chosen, wished = list(named), dict(units or {})
     known = {variable.name: variable for variable in model(None).modelVariables}
-    of_table = said_units(result.attrs, map(str, result)) if isinstance(result, pd.DataFrame) else {}
+    of_table = said_units(result.attrs, there) if isinstance(result, pd.DataFrame) else {}
     needed = {"time": "s"} | {
         name: unit_of(known[name]) if name in known else of_table.get(name, "") for name in chosen
     }
     columns = columns_for("over_time", result, needed, "simulate")
-    if others := [name for name in units or {} if name not in chosen]:
+    if others := [name for name in wished if name not in (*listed, *chosen)]:
         raise ValueError(f"units: {others[0]} is not drawn{near(others[0], chosen)}")
     figure, panels = plt.subplots(
         len(chosen), 1, figsize=(8.4, 0.8 + 1.8 * len(chosen)), sharex=True, layout="constrained", squeeze=False
@@ -100,7 +109,7 @@ def over_time(
         values, label = columns[name], needed[name]
         if values.dtype.kind not in "biuf":
             raise ValueError(f"over_time: the column {name} is no numbers")
-        wanted = (units or {}).get(name) or (display_unit(known[name]) if name in known else None)
+        wanted = wished.get(name) or wished.get(named[name]) or (display_unit(known[name]) if name in known else None)
         if wanted is not None:
             scale = scale_of(None, name, label, wanted)
             values, label = in_shown_units(values, scale), scale.name
