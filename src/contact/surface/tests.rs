@@ -248,6 +248,69 @@ fn a_rail_that_rolls_sees_the_wheelset_turned_back() {
     }
 }
 
+/// A rail that is rolled about its top is one that is inclined by as much more, where that puts the same places of the profile: it makes the same forces and moments.
+#[test]
+fn a_rolled_rail_is_one_that_is_inclined_more() {
+    let roll = 0.01_f64;
+    for (side, sign) in [(Side::Left, 1.0), (Side::Right, -1.0)] {
+        let upright = Parameters {
+            side,
+            ..parameters(Control::Load)
+        };
+        let inclined = Parameters {
+            rail_inclination: (upright.rail_inclination.atan() + roll).tan(),
+            ..upright.clone()
+        };
+        let [rolls, leans] = [&upright, &inclined].map(|parameters| {
+            let operators = SurfaceOperators::build(parameters, &ProfileContents::default()).unwrap();
+            operators.bodies.rail.clone()
+        });
+        // One place of the profile in the track, of the rolled rail and of the inclined one.
+        let arc = rolls.range()[0] + 0.03;
+        let ([y, z], [there_y, there_z]) = (rolls.at(arc).place, leans.at(arc).place);
+        let y = y - rolls.top();
+        let turned = [
+            rolls.top() + roll.cos() * y - roll.sin() * z,
+            roll.sin() * y + roll.cos() * z,
+        ];
+        for lateral in [1e-3, 4.5e-3, 6.4e-3] {
+            let rolled = Inputs {
+                normal_load: 50e3,
+                wheel_speed: 20.1 / 0.46,
+                vehicle_speed: 20.0,
+                lateral_displacement: sign * lateral,
+                yaw_angle: 2e-3,
+                lateral_speed: 0.02,
+                roll_rate: 0.02,
+                vertical_speed: 0.01,
+                rail_roll_angle: sign * roll,
+                ..Inputs::default()
+            };
+            let leaning = Inputs {
+                rail_roll_angle: 0.0,
+                rail_lateral_displacement: sign * (turned[0] - there_y),
+                rail_vertical_displacement: turned[1] - there_z,
+                ..rolled
+            };
+            let [one, other] = [(&upright, &rolled), (&inclined, &leaning)]
+                .map(|(parameters, inputs)| run(parameters, inputs, 2).outputs);
+            assert!(one.force_y.abs() > 100.0);
+            for (name, one, other) in [
+                ("force_x", one.force_x, other.force_x),
+                ("force_y", one.force_y, other.force_y),
+                ("force_z", one.force_z, other.force_z),
+                ("moment_x", one.moment_x, other.moment_x),
+                ("moment_y", one.moment_y, other.moment_y),
+                ("moment_z", one.moment_z, other.moment_z),
+            ] {
+                // Round-off of the places, over the stiffness of the contact.
+                let error = (one - other).abs() / rolled.normal_load;
+                assert!(error < 1e-9, "{side:?} {lateral} {name}: {one} {other}");
+            }
+        }
+    }
+}
+
 /// A distance is guessed from slope and curvature of the one beside it: what is missing is of third order.
 #[test]
 fn a_distance_is_guessed_from_the_one_beside_it() {
