@@ -16,7 +16,7 @@ use crate::parameters::{INTEGER_PARAMETERS, Parameters, REAL_PARAMETERS, TEXT_PA
 use crate::signals::{INPUTS, OUTPUTS};
 
 const MAGIC: [u8; 8] = *b"WHLRAIL\0";
-const VERSION: u32 = 12;
+const VERSION: u32 = 13;
 const HEADER: usize = 8 + 4 + 8 + 8;
 const CHECKSUM: usize = 4;
 
