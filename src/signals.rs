@@ -194,7 +194,7 @@ inputs! {
     lateral_displacement "y": "m" shown in "mm", start 0.0, range [-0.1, 0.1], nominal 1e-3, only [profiles];
     /// Height of the centre of the wheelset above wheel_radius over the tops of the rails
     vertical_displacement "z": "m" shown in "mm", by height, start 0.0, range [-0.1, 0.1], nominal 1e-4, only [profiles];
-    /// Roll of the wheelset about the axis along the track, positive where its left wheel rises
+    /// Roll of the wheelset about its forward axis, which is that along the track turned by yaw_angle, positive where its left wheel rises
     roll_angle "φ_x": "rad" shown in "mrad", start 0.0, range [-0.2, 0.2], nominal 1e-3, only [profiles];
     /// Yaw of the wheelset about the upward axis, positive anticlockwise seen from above
     yaw_angle "ψ": "rad" shown in "mrad", start 0.0, range [-0.2, 0.2], nominal 1e-3, only [profiles];
@@ -278,7 +278,7 @@ outputs! {
     wheel_heat_flow: "W" shown in "kW", Instantaneous, nominal 1e4;
     /// Radius that the wheel has lost by wear since the start, uniform over the circumference
     wheel_wear_depth: "m" shown in "µm", Total, at least 0.0, nominal 1e-9;
-    /// Absolute temperature of the rail leaving at the trailing edge of the strip: its heat spread over skin_depth
+    /// Absolute temperature of the rail leaving at the trailing edge of the strip: its heat spread over skin_depth and the breadth of the contacts
     leaving_temperature: "K" shown in "degC", Instantaneous, nominal 300.0;
     /// Depth of wear of the rail leaving at the trailing edge of the strip
     leaving_wear_depth: "m" shown in "µm", Instantaneous, at least 0.0, nominal 1e-7;

@@ -60,6 +60,22 @@ pub enum ProfileError {
         /// Reason in words, with the values that made it.
         reason: String,
     },
+    /// A wheel with a wall on the face of its flange.
+    #[error(
+        "{name}: the face of its flange is 84 degrees steep or more at y = {:.2} mm, z = {:.2} mm, above its tip at z = {:.2} mm: no contact can be \
+         found beyond; where it is noise, smoothing takes it off",
+        1e3 * place[0],
+        1e3 * place[1],
+        1e3 * tip
+    )]
+    SteepFlange {
+        /// Profile.
+        name: String,
+        /// Lateral position and height where the wall begins, `m`.
+        place: [f64; 2],
+        /// Height of the flange's tip, `m`.
+        tip: f64,
+    },
     /// Wear that leaves no profile.
     #[error("{name} cannot wear so: {reason}")]
     NoWear {

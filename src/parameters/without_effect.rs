@@ -2,7 +2,7 @@
 //!
 //! The descriptions of `table` say under which choice a parameter is used, as "used where contact_model is patch or profiles": they are read here.
 
-use super::choices::ContactModel;
+use super::choices::{ContactModel, ProfileWear, WearLaw, WheelWearLaw};
 use super::source::ProfileSource;
 use super::table::{INTEGER_PARAMETERS, IntegerKind, IntegerParameter, Parameters, REAL_PARAMETERS, TEXT_PARAMETERS};
 use std::fmt::Display;
@@ -81,6 +81,7 @@ impl Parameters {
         for row in TEXT_PARAMETERS.iter().filter(|row| (row.get)(self) != row.start) {
             look(row.name, row.description, &(row.get)(self));
         }
+        self.look_at_wear(&mut remarks);
         let is_built_in = |text: &str| matches!(ProfileSource::of("", text), Ok(ProfileSource::BuiltIn(_)));
         let profiles = [&self.rail_profile, &self.wheel_profile];
         if self.contact_model == ContactModel::Profiles
@@ -93,6 +94,37 @@ impl Parameters {
             ));
         }
         remarks
+    }
+
+    /// Adds the remarks on wear of profiles that wears nothing off.
+    fn look_at_wear(&self, remarks: &mut Vec<String>) {
+        if self.contact_model != ContactModel::Profiles {
+            return;
+        }
+        let rail_law = match self.wear_law {
+            WearLaw::Archard if self.wear_coefficient == 0.0 => Some("wear_law = 1 (archard) and wear_coefficient = 0"),
+            _ => None,
+        };
+        let wheel_law = match self.wheel_wear_law {
+            WheelWearLaw::Coefficient if self.wheel_wear_coefficient == 0.0 => {
+                Some("wheel_wear_law = 1 (coefficient) and wheel_wear_coefficient = 0")
+            }
+            WheelWearLaw::Coefficient => None,
+            WheelWearLaw::WearLaw => rail_law,
+        };
+        let wears = [self.wheel_profile_wear, self.rail_profile_wear].map(|wear| wear == ProfileWear::On);
+        let switches = ["wheel_profile_wear", "rail_profile_wear"];
+        for ((name, wears), law) in switches.iter().zip(wears).zip([wheel_law, rail_law]) {
+            if let Some(law) = law.filter(|_| wears) {
+                remarks.push(format!("{name} = 2 (on) has no effect with {law}"));
+            }
+        }
+        if self.wear_acceleration != 1.0 && wears == [false; 2] {
+            remarks.push(format!(
+                "wear_acceleration = {} has no effect: wheel_profile_wear and rail_profile_wear are 1 (off)",
+                self.wear_acceleration
+            ));
+        }
     }
 }
 
@@ -188,6 +220,12 @@ mod tests {
             remark.starts_with("profile_smoothing = 0.004 has no effect: rail_profile = 60E1"),
             "{remark}"
         );
+        let wearing = Parameters {
+            wheel_profile_wear: ProfileWear::On,
+            ..smoothed.clone()
+        };
+        let nothing = "wheel_profile_wear = 2 (on) has no effect with wheel_wear_law = 1 (coefficient) and wheel_wear_coefficient = 0";
+        assert!(wearing.without_effect().contains(&nothing.to_owned()));
         let measured = Parameters {
             wheel_profile: "measured.prw".to_owned(),
             ..smoothed

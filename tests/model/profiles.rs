@@ -401,6 +401,37 @@ fn dimensions_that_put_the_wheel_beside_the_rail_are_named() {
     }
 }
 
+/// Rail that has passed two contacts leaves with the heat and the wear of both: its means over their breadth, times it, are what goes into the rail and off it.
+#[test]
+fn rail_leaves_two_contacts_with_the_heat_of_both() {
+    let parameters = Parameters {
+        strip_half_length: 0.1,
+        contact_thermal_resistance: 1e12,
+        ..bodies(Side::Left)
+    };
+    for (lateral, contacts) in [(2e-3, 1.0), (5.5e-3, 2.0)] {
+        let inputs = Inputs {
+            normal_load: 60e3,
+            vehicle_speed: 20.0,
+            wheel_speed: 43.8,
+            lateral_displacement: lateral,
+            ..Inputs::default()
+        };
+        let mut run = Simulation::new(&parameters, &inputs).unwrap();
+        run.hold(&inputs, 1e-3, 40).unwrap();
+        let outputs = run.outputs();
+        assert_eq!(outputs.contacts, contacts);
+        let area_rate = inputs.vehicle_speed * outputs.contact_breadth;
+        let rise = outputs.leaving_temperature - inputs.ambient_temperature;
+        let heat = parameters.density * parameters.heat_capacity * parameters.skin_depth * area_rate * rise;
+        let worn = area_rate * outputs.leaving_wear_depth;
+        // What a window still changes by when it has settled, as its breadth follows the load between the contacts.
+        for share in [heat / outputs.rail_heat_flow, worn / outputs.wear_rate] {
+            assert!((share - 1.0).abs() < 1e-3, "{lateral}: {share}");
+        }
+    }
+}
+
 /// Heat, wear and thermal bulge, on small windows.
 fn warm(side: Side, control: Control) -> Parameters {
     Parameters {

@@ -42,7 +42,7 @@ pub fn integrals(problem: &SurfaceProblem, fields: &SurfaceFields, solvers: &Sur
         contact_area: 0.0,
         peak_rise: f64::NEG_INFINITY,
         wear_depth: 0.0,
-        leaving_rise: f64::NEG_INFINITY,
+        leaving_rise: 0.0,
         leaving_wear_depth: 0.0,
         wheel_heat: ContactHeat::new(
             problem.parameters,
@@ -68,10 +68,9 @@ pub fn integrals(problem: &SurfaceProblem, fields: &SurfaceFields, solvers: &Sur
         all.contact_area += own.contact_area;
         all.peak_rise = all.peak_rise.max(own.peak_rise);
         all.wear_depth = all.wear_depth.max(own.wear_depth);
-        all.leaving_rise = all.leaving_rise.max(own.leaving_rise);
-        all.leaving_wear_depth = all.leaving_wear_depth.max(own.leaving_wear_depth);
         all.damage = all.damage.with(&own.damage);
     }
+    (all.leaving_rise, all.leaving_wear_depth) = leaving(&of_windows, all.contact_breadth);
     if fields.used().next().is_none() {
         // Rail that nothing touches leaves as it has come in.
         all.peak_rise = problem.incoming_rise();
@@ -80,6 +79,23 @@ pub fn integrals(problem: &SurfaceProblem, fields: &SurfaceFields, solvers: &Sur
         all.leaving_wear_depth = all.wear_depth;
     }
     all
+}
+
+/// Temperature rise and depth of wear with which the rail leaves, of windows and the breadth of all contacts: the means over the breadth, which take the heat and the wear of all
+/// windows along. Where nothing touches any more, the largest.
+fn leaving(of_windows: &[Option<Integrals>; WINDOWS], breadth: f64) -> (f64, f64) {
+    let windows = || of_windows.iter().flatten();
+    let over_windows = |of: fn(&Integrals) -> f64| {
+        if breadth > 0.0 {
+            windows().map(|own| own.contact_breadth / breadth * of(own)).sum()
+        } else {
+            windows().map(of).fold(f64::NEG_INFINITY, f64::max)
+        }
+    };
+    (
+        over_windows(|own| own.leaving_rise),
+        over_windows(|own| own.leaving_wear_depth),
+    )
 }
 
 /// Force and moment on the wheelset and the contacts, of which the integrals are given.

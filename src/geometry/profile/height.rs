@@ -137,7 +137,7 @@ impl HeightFunction {
     }
 
     /// Lateral position of a wheel's flange's tip towards its tread, `m`: where the flange is 1 mm higher than at its lowest place, as a wheel
-    /// that stands on a rail's crown touches beside that place. Of a wheel without a flange of 12 mm its lowest place before the running circle.
+    /// that stands on a rail's crown touches beside that place. Of a wheel without a flange of 12 mm its end.
     pub fn flange_tip(&self) -> f64 {
         /// Distance of the places that are looked at, `m`.
         const STEP: f64 = 0.1e-3;
@@ -155,7 +155,7 @@ impl HeightFunction {
         let lowest = lowest.unwrap_or(first);
         let bottom = height(lowest);
         if height(0.0) - bottom < FLANGE {
-            return lowest;
+            return first;
         }
         places(lowest)
             .find(|place| height(*place) > bottom + TIP)

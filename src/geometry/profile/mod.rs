@@ -81,6 +81,8 @@ const STEEPEST_INCLINATION: f64 = 0.2;
 const SHARP_TURN: f64 = 10.0 / 180.0 * std::f64::consts::PI;
 /// Sum of such turns, rad, above which a profile is rough: many times those at the kinks of a rim and a head's lower edges.
 const MOST_TURNING: f64 = 4.0 * std::f64::consts::PI;
+/// Height, `m`, that a wheel's profile may still fall by where its height function ends.
+const LOST_FLANGE: f64 = 1e-3;
 
 impl Profile {
     /// Profile of a curve in its frame, except for the origin: a rail's is moved to its highest point, a wheel's to the height of its running circle.
@@ -203,9 +205,28 @@ impl Profile {
     /// the other: for a wheel from the back of the flange to the field side.
     ///
     /// # Errors
-    /// The profile is nowhere flat.
+    /// The profile is nowhere flat; a wheel's flange begins with a wall of 84° or more, and no height leads to its tip.
     pub fn height_function(&self) -> Result<HeightFunction, ProfileError> {
-        HeightFunction::of_curve(&self.curve, self.middle).ok_or_else(|| self.nowhere_flat())
+        let function = HeightFunction::of_curve(&self.curve, self.middle).ok_or_else(|| self.nowhere_flat())?;
+        if self.body == Body::Wheel {
+            self.check_flange(&function)?;
+        }
+        Ok(function)
+    }
+
+    /// Refuses a wheel whose height ends on the face of its flange: contacts would be missed beyond that place.
+    fn check_flange(&self, function: &HeightFunction) -> Result<(), ProfileError> {
+        let first = function.range()[0];
+        let [end, ..] = function.value_slope_curvature(first);
+        let tip = self.at(self.curve.extreme(false)).place;
+        if first <= tip[0] || end - tip[1] <= LOST_FLANGE {
+            return Ok(());
+        }
+        Err(ProfileError::SteepFlange {
+            name: self.name.clone(),
+            place: [first, end],
+            tip: tip[1],
+        })
     }
 
     /// Error of a profile that is nowhere flat.

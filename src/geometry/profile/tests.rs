@@ -326,3 +326,35 @@ fn the_height_is_that_of_the_curve() {
         }
     }
 }
+
+/// A wheel whose flange has a groove with a wall cannot be touched beyond it: no height leads there, and it is refused with the place; its measures are there.
+#[test]
+fn a_wall_on_the_flange_is_refused() {
+    let rows = [[45e-3, 0.0], [49e-3, 2e-3], [57e-3, 2e-3], [62e-3, 0.0]];
+    let grooved = built_in("S1002").worn_by(&rows).unwrap();
+    assert!(grooved.measures().is_ok());
+    let said = grooved.height_function().unwrap_err().to_string();
+    for part in [
+        "the face of its flange is 84 degrees steep or more at y = -41.",
+        "above its tip at z = -28.00 mm",
+    ] {
+        assert!(said.contains(part), "{said}");
+    }
+    for name in built_in::NAMES {
+        assert!(built_in(name).height_function().is_ok(), "{name}");
+    }
+}
+
+/// A crowned roller has no flange to stand on: its lowest place is where it runs.
+#[test]
+fn a_crowned_roller_has_no_tip() {
+    let points: Vec<_> = (-60..=120)
+        .map(|k| {
+            let y = 0.5e-3 * f64::from(k);
+            [y, y * y / 0.8]
+        })
+        .collect();
+    let roller = Profile::from_points(Body::Wheel, "a roller", "a test", &points, 0.0).unwrap();
+    let height = roller.height_function().unwrap();
+    assert_eq!(height.flange_tip(), height.range()[0]);
+}

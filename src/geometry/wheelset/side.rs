@@ -6,8 +6,10 @@ use crate::geometry::profile::{HeightFunction, Profile};
 
 /// Distance of the stations along the axle at which the distance is computed first, `m`.
 const STATION: f64 = 0.25e-3;
-/// Local minima this much above the lowest station may be the lowest ones, `m`: curvatures of 300 1/m, across half a station.
-const NEAR: f64 = 5e-6;
+/// Local minima this much above the lowest station may be the lowest ones, `m`: across half a station, the height of an arc of 13 mm where it is 84° steep.
+const NEAR: f64 = 0.5e-3;
+/// Steps to the place between two stations at which the rail ends.
+const EDGE_STEPS: usize = 40;
 
 /// Place where a rigid wheel touches its rail; lateral places are positive to the field side.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -154,9 +156,9 @@ impl Pair {
         let mut window: [Option<Above>; 3] = [None; 3];
         let mut minima: Vec<[Above; 3]> = Vec::new();
         let mut lowest = f64::INFINITY;
-        for k in 0..=count as usize {
-            window = [window[1], window[2], at(k as f64)];
-            if let Some(here) = window[2] {
+        let mut visit = |next: Option<Above>| {
+            window = [window[1], window[2], next];
+            if let Some(here) = next {
                 lowest = lowest.min(here.height);
             }
             if let [Some(before), Some(here), Some(after)] = window
@@ -165,6 +167,16 @@ impl Pair {
             {
                 minima.push([before, here, after]);
             }
+        };
+        let mut last = None;
+        for k in 0..=count as usize {
+            let next = at(k as f64);
+            // A steep flange touches within less than a station of where the rail ends.
+            if k > 0 && last.is_some() != next.is_some() {
+                visit(edge(at, [k - 1, k].map(|k| k as f64), last.is_some()));
+            }
+            visit(next);
+            last = next;
         }
         let near = minima.iter().filter(|[_, here, _]| here.height <= lowest + NEAR);
         let found = near.map(|minimum| self.refined(attitude, minimum));
@@ -229,4 +241,14 @@ impl Pair {
         });
         [rail.collect(), wheel.collect()]
     }
+}
+
+/// Last place over the rail between two stations, of which one is over it: the first one or the other.
+fn edge(at: impl Fn(f64) -> Option<Above>, stations: [f64; 2], is_first: bool) -> Option<Above> {
+    let [mut over, mut beside] = if is_first { stations } else { [stations[1], stations[0]] };
+    for _ in 0..EDGE_STEPS {
+        let middle = 0.5 * (over + beside);
+        *(if at(middle).is_some() { &mut over } else { &mut beside }) = middle;
+    }
+    at(over)
 }
