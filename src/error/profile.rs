@@ -63,7 +63,7 @@ pub enum ProfileError {
     /// A wheel with a wall on the face of its flange.
     #[error(
         "{name}: the face of its flange is 84 degrees steep or more at y = {:.2} mm, z = {:.2} mm, above its tip at z = {:.2} mm: no contact can be \
-         found beyond; where it is noise, smoothing takes it off",
+         found beyond{because}",
         1e3 * place[0],
         1e3 * place[1],
         1e3 * tip
@@ -75,6 +75,8 @@ pub enum ProfileError {
         place: [f64; 2],
         /// Height of the flange's tip, `m`.
         tip: f64,
+        /// Roughness of the profile that may be the cause, as the end of the sentence; empty where it is smooth.
+        because: &'static str,
     },
     /// Wear that leaves no profile.
     #[error("{name} cannot wear so: {reason}")]

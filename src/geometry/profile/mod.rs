@@ -226,6 +226,11 @@ impl Profile {
             name: self.name.clone(),
             place: [first, end],
             tip: tip[1],
+            because: if self.is_rough() {
+                "; its direction turns to and fro, as noise does, which --smoothing takes off, profile_smoothing of the component"
+            } else {
+                ""
+            },
         })
     }
 
