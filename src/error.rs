@@ -295,10 +295,10 @@ pub enum Error {
     },
 }
 
-/// Way to a file that says what a profile's does not: a parameter has no option for it.
+/// Way to a file that says of itself what the parameter has no option for, as its unit.
 fn way_to_say(reason: &ProfileError) -> &'static str {
     match reason {
-        ProfileError::NotSaid { .. } => {
+        ProfileError::NotSaid { .. } | ProfileError::TooBroad { .. } => {
             "; `wheelrail profile`, or `Profile` in Python, can be told, and writes a file that says it itself"
         }
         _ => "",

@@ -350,14 +350,17 @@ fn initial_state_in_room<E: Engine>(
     })
 }
 
-/// Variable that says how deep the wheel is, with its value and unit: the load where the load does.
-fn depth(parameters: &Parameters, inputs: &Inputs) -> (&'static str, f64, &'static str) {
-    match (parameters.control, parameters.contact_model) {
-        (Control::Load, _) => ("normal_load", inputs.normal_load, "N"),
-        (Control::Penetration, _) => ("prescribed_penetration", parameters.prescribed_penetration, "m"),
-        (Control::Height, ContactModel::Profiles) => ("vertical_displacement", inputs.vertical_displacement, "m"),
-        (Control::Height, _) => ("contact_penetration", inputs.contact_penetration, "m"),
-    }
+/// Variable that says how deep the wheel is, with its value and unit, and what it becomes where the wheel is a way deeper, `m`: the load, which no such way changes, where
+/// the load says it.
+fn depth(parameters: &Parameters, inputs: &Inputs, way: f64) -> (&'static str, f64, &'static str, f64) {
+    let load = inputs.normal_load;
+    let (name, value, deeper) = match (parameters.control, parameters.contact_model) {
+        (Control::Load, _) => return ("normal_load", load, "N", load),
+        (Control::Penetration, _) => ("prescribed_penetration", parameters.prescribed_penetration, way),
+        (Control::Height, ContactModel::Profiles) => ("vertical_displacement", inputs.vertical_displacement, -way),
+        (Control::Height, _) => ("contact_penetration", inputs.contact_penetration, way),
+    };
+    (name, value, "m", value + deeper)
 }
 
 /// Whether the contact is held within its window. Under a load that the window was made for it may be: a wheel that spins on the
@@ -367,23 +370,21 @@ fn fills_window<E: Engine>(problem: &Problem<E>, now: &E::Fields, solvers: &E::S
     let cut_off = E::is_cut_off(problem, now, solvers);
     if cut_off && is_overloaded(problem, now) {
         let (parameters, load) = (problem.parameters, problem.load(now));
-        let (name, value, unit) = depth(parameters, &problem.conditions.inputs);
-        // Hertz's law, of a patch and of a line, from what the contact carries now.
+        // Hertz's law, of a line and of a patch, from what the contact carries now.
         let exponent = if parameters.contact_model == ContactModel::Line {
             1.0
         } else {
             2.0 / 3.0
         };
         let penetration = E::integrals(problem, now, solvers).penetration;
-        let less = penetration * (1.0 - (parameters.largest_load / load).powf(exponent));
-        let deeper_is_more =
-            parameters.control != Control::Height || parameters.contact_model != ContactModel::Profiles;
+        let way = penetration * ((parameters.largest_load / load).powf(exponent) - 1.0);
+        let (name, value, unit, about) = depth(parameters, &problem.conditions.inputs, way);
         return Err(Error::ContactLeavesWindow {
             name,
             value,
             unit,
             half_width: 0.5 * problem.operators.window_length(),
-            about: if deeper_is_more { value - less } else { value + less },
+            about,
             load,
             largest_load: parameters.largest_load,
         });

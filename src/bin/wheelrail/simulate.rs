@@ -174,11 +174,10 @@ impl Simulate {
             return Err(Error::NotProfiles { option });
         }
         self.check_worn(&parameters)?;
-        let unused = parameters.without_effect();
         let model = Arc::new(Model::new(parameters).map_err(Error::Parameter)?);
         let start = schedule.start();
         let mut simulation = Simulation::of(model, &start.inputs).map_err(Error::Start)?;
-        for remark in unused {
+        for remark in simulation.model.parameters().without_effect() {
             eprintln!("{remark}");
         }
         // Only now that nothing can be refused any more, so that a refusal leaves no file behind.

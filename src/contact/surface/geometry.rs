@@ -29,7 +29,8 @@ impl Pose {
     pub fn new(operators: &SurfaceOperators, inputs: &Inputs, radius: f64) -> Pose {
         let side = operators.side;
         let top = operators.bodies.rail.top();
-        // The rail is rolled about its top. From there the way to the axle's middle, across the track and up, is one across the rolled rail and up in the track.
+        // The rail is rolled about its top. The way from there to the axle's middle is made of one across the rolled rail and one along the vertical of the track: a wheel
+        // that rises under its load changes the second alone.
         let rail_roll = side * inputs.rail_roll_angle;
         let (sine, cosine) = rail_roll.sin_cos();
         let lateral = side * (inputs.lateral_displacement - inputs.rail_lateral_displacement) - top;

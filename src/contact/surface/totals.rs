@@ -81,8 +81,8 @@ pub fn integrals(problem: &SurfaceProblem, fields: &SurfaceFields, solvers: &Sur
     all
 }
 
-/// Temperature rise and depth of wear with which the rail leaves, of windows and the breadth of all contacts: the means over the breadth, which take the heat and the wear of all
-/// windows along. Where nothing touches any more, the largest.
+/// Temperature rise and depth of wear with which the rail leaves: the means over the `breadth` of all contacts, so that they stand for the heat and the wear of all windows.
+/// Where nothing touches any more there is no breadth: then the largest of the windows.
 fn leaving(of_windows: &[Option<Integrals>; WINDOWS], breadth: f64) -> (f64, f64) {
     let windows = || of_windows.iter().flatten();
     let over_windows = |of: fn(&Integrals) -> f64| {

@@ -3,6 +3,7 @@
 use super::CurvePoint;
 use super::curve::{CELL, Curve};
 use super::divided::Part;
+use super::measures::LEAST_FLANGE;
 use crate::geometry::quintics::{Quintics, Span};
 use std::ops::Range;
 
@@ -143,8 +144,6 @@ impl HeightFunction {
         const STEP: f64 = 0.1e-3;
         /// Height of the tip, `m`.
         const TIP: f64 = 1e-3;
-        /// Height of a flange at least, `m`.
-        const FLANGE: f64 = 12e-3;
         let height = |place: f64| self.value_slope_curvature(place)[0];
         let places = |from: f64| {
             let places = (0..).map(move |number| from + f64::from(number) * STEP);
@@ -154,7 +153,7 @@ impl HeightFunction {
         let lowest = places(first).min_by(|a, b| height(*a).total_cmp(&height(*b)));
         let lowest = lowest.unwrap_or(first);
         let bottom = height(lowest);
-        if height(0.0) - bottom < FLANGE {
+        if height(0.0) - bottom < LEAST_FLANGE {
             return first;
         }
         places(lowest)

@@ -16,6 +16,8 @@ const FLANGE_BACKS: [f64; 2] = [10e-3, 200e-3];
 const THICKNESS_DEPTH: f64 = 10e-3;
 /// Height above the flange's tip at which its gradient begins, `m`.
 const GRADIENT_HEIGHT: f64 = 2e-3;
+/// Height of a flange at least, `m`: without it the places of the measures are none.
+pub const LEAST_FLANGE: f64 = THICKNESS_DEPTH + GRADIENT_HEIGHT;
 /// Measures of a wheel's profile by EN 15313, all in `m`.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct WheelMeasures {
@@ -152,11 +154,10 @@ impl Profile {
         };
         let (arcs, tip) = (self.curve.arcs(), self.curve.extreme(false));
         let [y, lowest] = self.at(tip).place;
-        let least = THICKNESS_DEPTH + GRADIENT_HEIGHT;
-        if tip >= self.middle || -lowest < least {
+        if tip >= self.middle || -lowest < LEAST_FLANGE {
             return Err(refused(format!(
                 "it has no flange of {} mm: its lowest place is {:.3} mm below the running circle, at y = {:.3} mm",
-                1e3 * least,
+                1e3 * LEAST_FLANGE,
                 -1e3 * lowest,
                 1e3 * y
             )));
@@ -205,7 +206,7 @@ impl WheelMeasures {
             }
         };
         let (lowest, _) = (0..=middle).fold((0, f64::INFINITY), lower);
-        if lowest == 0 || datum - begins(lowest) < THICKNESS_DEPTH + GRADIENT_HEIGHT {
+        if lowest == 0 || datum - begins(lowest) < LEAST_FLANGE {
             return None;
         }
         let tip = crossing([knots[lowest - 1], knots[lowest + 1]], slope);

@@ -72,7 +72,7 @@ impl KinematicMotion {
         let last = self.lateral[self.lateral.len() - 1];
         let (mut low, mut high) = (self.lateral[0] + amplitude, last - amplitude);
         let uphill = |middle: f64| self.potential(middle + amplitude) - self.potential(middle - amplitude);
-        // Of an amplitude of half the displacements both are the same to round-off, and there S(m + a) is S(m − a) to round-off.
+        // An amplitude of half the range has one possible middle: `low` and `high` then differ by round-off, and S at the two ends does as well.
         let rounding = ROUNDING * self.sums.iter().fold(0.0, |most: f64, sum| most.max(sum.abs()));
         if low - high > ROUNDING * amplitude || uphill(low) > rounding || uphill(high) < -rounding {
             return None;

@@ -331,6 +331,11 @@ fn a_steep_flange_touches_close_to_the_rails_edge() {
         let pose = wheelset.at(1e-4 * f64::from(step), 0.0).unwrap();
         steepest = steepest.max(pose.touches[0].inclination);
     }
+    // At the jump from the tread both places are as high, and the wheelset as it passes from one to the other.
+    let sweep = Sweep::new(&wheelset, [-5e-3, 5e-3], 1e-4, 0.0).unwrap();
+    let jump = sweep.jumps.iter().find(|jump| jump.side == 0).unwrap();
+    let [before, after] = [-1e-8, 1e-8].map(|way| wheelset.at(jump.lateral + way, 0.0).unwrap().vertical);
+    assert!((before - after).abs() < 1e-6, "{before} {after}");
     // On the face itself, as the rail is steeper only beyond.
     assert!((steepest - steep).abs() < 1e-3, "{steepest}");
 }
