@@ -3,9 +3,12 @@
 use super::CurvePoint;
 use super::curve::{CELL, Curve};
 use super::divided::Part;
-use super::measures::LEAST_FLANGE;
 use crate::geometry::quintics::{Quintics, Span};
 use std::ops::Range;
+
+/// Height of a flange at least, `m`: its thickness is measured 10 mm below the running circle and its gradient from 2 mm above its tip
+/// (EN 15313:2016).
+pub(super) const LEAST_FLANGE: f64 = 12e-3;
 
 /// Slope up to which the height counts as a function of the lateral position: 84.3° from the horizontal. Flanges are up to 75° steep
 /// where they carry.

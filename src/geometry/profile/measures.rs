@@ -3,6 +3,7 @@
 //! They refer to the running circle, which is the origin of a wheel's profile: 70 mm from the back of the flange (EN 15313:2016), or another distance.
 
 use super::curve::Curve;
+use super::height::LEAST_FLANGE;
 use super::{Body, CurvePoint, HeightFunction, Profile};
 use crate::error::ProfileError;
 use crate::numerics::root::crossing;
@@ -16,8 +17,7 @@ const FLANGE_BACKS: [f64; 2] = [10e-3, 200e-3];
 const THICKNESS_DEPTH: f64 = 10e-3;
 /// Height above the flange's tip at which its gradient begins, `m`.
 const GRADIENT_HEIGHT: f64 = 2e-3;
-/// Height of a flange at least, `m`: without it the places of the measures are none.
-pub const LEAST_FLANGE: f64 = THICKNESS_DEPTH + GRADIENT_HEIGHT;
+
 /// Measures of a wheel's profile by EN 15313, all in `m`.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct WheelMeasures {
