@@ -1,6 +1,7 @@
 """What comes back from a run: its memory, its points, fields over time; progress; pictures, also in a notebook."""
 
 import io
+import re
 import sys
 import tracemalloc
 from itertools import pairwise
@@ -298,6 +299,46 @@ def test_over_time(fmu):
         assert np.array_equal(x, result["time"])
         assert y == pytest.approx(factor * result[name].to_numpy() + offset, rel=1e-14)
     assert len(plots.over_time(result, "traction_force").axes) == 1
+
+
+def test_elements_of_arrays(fmu, fmu3):
+    """Elements have the same names and values by either version of FMI, alone and beside their array."""
+    names = ["contact.rail_position[2]", "force_y", "contact.normal_force[1]", "contact.rail_position"]
+    results = [wheelrail.simulate(MOVING, outputs=names, fmu=path, **PROFILES) for path in (fmu, fmu3)]
+    pd.testing.assert_index_equal(*(result.columns for result in results))
+    others = [f"contact.rail_position[{number}]" for number in (1, 3, 4)]
+    assert list(results[0]) == ["time", "lateral_displacement", "vehicle_speed", "wheel_speed", *names[:3], *others]
+    assert results[0].attrs == results[1].attrs
+    result, _ = wheelrail.simulate(MOVING, outputs=names, fmu=fmu3, fields="pressure", **PROFILES)
+    pd.testing.assert_frame_equal(result, results[1])
+    start = {name: value for name, value in PROFILES.items() if name != "step"}
+    found = []
+    for path in (fmu, fmu3):
+        with wheelrail.Instance(path, lateral_displacement=5.1e-3, **start).start() as instance:
+            instance.step(5e-4)
+            first, second, one = instance.get("force_y", "contact.rail_position[2]", "contact.rail_position[1]")
+            every = instance.get("contact.rail_position", "force_y")
+            assert [first, second, one] == [every[4], every[1], every[0]]
+            found.append(instance.get(names))
+            for wrong in ("contact.area[5]", "contact.area[0]", "contact.area[1,1]", "force_y[1]"):
+                with pytest.raises(ValueError, match=re.escape(f"there is no variable {wrong}")):
+                    instance.get(wrong)
+                with pytest.raises(ValueError, match=re.escape(f"there is no variable {wrong}")):
+                    wheelrail.simulate(instance=instance, stop_time=1.0, outputs=wrong)
+    assert found[0] == found[1]
+
+
+def test_elements_of_fields(fmu3):
+    """A cell of a field goes by its strip and its place in it, as a column is called, also where lengths are given."""
+    start = {"contact_model": "patch", "patch_nodes": 14, "patch_strips": 9, "creepage": 1e-3}
+    with wheelrail.Instance(fmu3, **start).start() as instance:
+        instance.step(0.01)
+        cell, whole = instance.get("patch.pressure[5,7]")[0], instance.get("patch.pressure")
+        assert cell == np.reshape(whole, (9, 14))[4, 6] > 1e8
+        with pytest.raises(ValueError, match="there is no variable patch"):
+            instance.get("patch.pressure[5,15]")
+    columns = list(wheelrail.simulate(stop_time=1e-3, outputs="patch.pressure", fmu=fmu3, **start))[2:]
+    assert (len(columns), columns[4 * 14 + 6]) == (9 * 14, "patch.pressure[5,7]")
 
 
 def test_over_time_of_all_elements(fmu, fmu3):

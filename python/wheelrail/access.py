@@ -1,13 +1,12 @@
 """What an instance is told and asked: variables by name, and calls that are refused before they can do harm."""
 
 import math
-import re
 import warnings
 from collections.abc import Mapping, Sequence
 from itertools import groupby
 from pathlib import Path
 from types import TracebackType
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 from fmpy.fmi1 import FMICallException
@@ -24,6 +23,7 @@ from .variables import (
     TABLE_POINTS,
     bounds,
     choices,
+    element_named,
     missing,
     shape,
     start_values,
@@ -46,6 +46,10 @@ SHAPING = {"rail_profile", "wheel_profile", "profile_smoothing", "rail_inclinati
 
 # Bounds that nothing lies between.
 NONE = (math.inf, -math.inf)
+
+# The calls that read variables, each with its arguments, and the places of what is asked for among the values that they
+# return; none where that is all of them in their order.
+Plan: TypeAlias = tuple[list[tuple[str, list[Any]]], list[int] | None]
 
 
 class Calls:
@@ -102,7 +106,7 @@ class Access:
     variables: Mapping[str, ModelVariable]
     lengths: dict[str, int]
     # How groups of variables are read.
-    _plans: dict[tuple[str, ...], list[tuple[str, list[Any]]]]
+    _plans: dict[tuple[str, ...], Plan]
     # Between what values real inputs lie; other variables between none.
     _bounds: dict[str, tuple[float, float]]
 
@@ -212,7 +216,7 @@ class Access:
 
     def _count(self, name: str) -> int:
         """A count as it is, within a call."""
-        ((getter, arguments),) = self._plan((name,))
+        ((getter, arguments),), _ = self._plan((name,))
         return int(getattr(self.slave, getter)(*arguments)[0])
 
     def _fits(self, name: str, value: Any) -> bool:
@@ -244,7 +248,7 @@ class Access:
         ----------
         *names
             Names, or one sequence of them; that of an array, `profile.pressure` for example, stands for its elements
-            one after another.
+            one after another, `profile.pressure[2]` for one of them.
 
         Returns
         -------
@@ -265,13 +269,14 @@ class Access:
         asked = tuple(names_of("get()", names[0] if single else names))
         before = self.slave.phase is Phase.INITIALISING
         with self._calls("get", Phase.INITIALISING, Phase.RUNNING, Phase.ENDED, Phase.FAILED, undo=before):
-            plan = self._plans.get(asked) or self._plan(asked)
-            return [value for getter, arguments in plan for value in getattr(self.slave, getter)(*arguments)]
+            calls, places = self._plans.get(asked) or self._plan(asked)
+            values = [value for getter, arguments in calls for value in getattr(self.slave, getter)(*arguments)]
+            return values if places is None else [values[place] for place in places]
 
-    def _plan(self, names: tuple[str, ...]) -> list[tuple[str, list[Any]]]:
-        """The calls that read variables, in their order; kept for the next time."""
-        variables = [variable for name in names for variable in self._elements(name)]
-        plan = []
+    def _plan(self, names: tuple[str, ...]) -> Plan:
+        """The calls that read variables, and what of their values is meant; kept for the next time."""
+        variables, places, count = self._meant(names)
+        calls = []
         for kind, together in groupby(variables, key=self._kind):
             group = list(together)
             if kind in ("String", "Binary", "Clock"):
@@ -280,10 +285,10 @@ class Access:
             arguments: list[Any] = [[variable.valueReference for variable in group]]
             if isinstance(self.slave, FMU3Component):
                 arguments.append(sum(math.prod(shape(variable, self.lengths)) for variable in group))
-            plan.append((f"get{kind}", arguments))
+            calls.append((f"get{kind}", arguments))
         if len(self._plans) > 100:
             self._plans.clear()
-        self._plans[names] = plan
+        plan = self._plans[names] = calls, None if places == list(range(count)) else places
         return plan
 
     def _elements(self, name: str) -> list[ModelVariable]:
@@ -293,16 +298,23 @@ class Access:
         elements = [variable for other, variable in self.variables.items() if other.startswith(f"{name}[")]
         return elements or [self._variable(name)]
 
-    def _part(self, name: str) -> tuple[list[ModelVariable], slice]:
-        """The variables of a name, and which of their values it means: all, or in FMI 3.0 one element of an array."""
-        array = re.fullmatch(r"(.+)\[([1-9]\d*)\]", name)
-        variable = self.variables.get(array[1]) if array and name not in self.variables else None
-        if array is None or variable is None:
-            return self._elements(name), slice(None)
-        place, lengths = int(array[2]), shape(variable, self.lengths)
-        if len(lengths) != 1 or place > lengths[0]:
-            raise ValueError(missing(self.fmu, name, self.variables))
-        return [variable], slice(place - 1, place)
+    def _meant(self, names: Sequence[str]) -> tuple[list[ModelVariable], list[int], int]:
+        """What names mean: variables to read, each once; the places among their values; how many values these are."""
+        begins: dict[str, int] = {}
+        variables: list[ModelVariable] = []
+        places: list[int] = []
+        count = 0
+        for name in names:
+            element = None if name in self.variables else element_named(self.variables, name, self.lengths)
+            for variable in self._elements(name) if element is None else [element[0]]:
+                width = math.prod(shape(variable, self.lengths))
+                if variable.name not in begins:
+                    begins[variable.name] = count
+                    variables.append(variable)
+                    count += width
+                place = begins[variable.name]
+                places += range(place, place + width) if element is None else [place + element[1]]
+        return variables, places, count
 
     def parameters(self) -> dict[str, Any]:
         """Parameters as they are, choices by name and texts: what an instance like this one is made with.

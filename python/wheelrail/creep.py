@@ -14,8 +14,7 @@ from .inputs import check_inputs, parameters_of, with_window
 from .instance import Instance, SimulationError
 from .progress import Progress, reporter
 from .simulation import fmu_of, given_values
-from .stepping import labels
-from .variables import by_name, choices, near, number, outputs_named, several, start_values, units
+from .variables import by_name, choices, lengths_of, near, number, outputs_named, several, start_values, units
 
 # The input of each creepage, and by default what it is driven to, to where the contact slides.
 DRIVEN = {"longitudinal": "creepage", "lateral": "lateral_creepage", "spin": "spin_creepage"}
@@ -186,7 +185,7 @@ def creep_curves(
         raise ValueError(f"{DRIVEN[kinds[0]]} is what is driven: its values go into creepages")
     if isinstance(creepages, Mapping) and (others := [kind for kind in creepages if kind not in kinds]):
         raise ValueError(f"creepages: {', '.join(map(str, others))} is not driven; driven: {', '.join(kinds)}")
-    names = [name for name in outputs_named(fmu, outputs) if name not in fixed]
+    names = [name for name in outputs_named(fmu, outputs, lengths_of(fmu, checked)) if name not in fixed]
     radius = checked.get("wheel_radius", float(known["wheel_radius"].start))
     curves = {kind: along(fmu, kind, creepages) for kind in kinds}
     for name, curve in ((DRIVEN[kind], curve) for kind, curve in curves.items()):
@@ -209,14 +208,13 @@ def creep_curves(
         instance, place = Instance(fmu, "creep_curves", **checked), kind
         try:
             instance.start()
-            found = labels(instance, names)
             for value in curve:
                 place = f"{kind} creepage {value:g}"
                 now = fixed | {DRIVEN[kind]: value}
                 moving = {"creepage": now["creepage"]} if line else now
                 instance.set(wheel_speed=speed * (1.0 + now["creepage"]) / radius, **moving)
                 instance.steady(STEADY, STEP, RELATIVE, ABSOLUTE * load)
-                rows.append({"driven": kind, **now, **dict(zip(found, instance.get(*names), strict=True))})
+                rows.append({"driven": kind, **now, **dict(zip(names, instance.get(*names), strict=True))})
                 report(float(len(rows)))
         except SimulationError as error:
             failed = SimulationError(f"{place}: {error}")

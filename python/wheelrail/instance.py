@@ -18,7 +18,7 @@ from .errors import InstanceClosedError, SimulationError
 from .native import FMU3Component, Phase, connect
 from .saving import Saving
 from .states import SavedState, state_of
-from .variables import by_name, choices, number, shape, unit
+from .variables import by_name, choices, number, unit
 
 __all__ = ["Instance", "InstanceClosedError", "SimulationError"]
 
@@ -349,8 +349,7 @@ class Instance(Saving):
             The FMU has no derivatives, or the component cannot compute them.
         """
         self.slave.check()
-        parts = [self._part(name) for name in names_of("outputs", outputs)]
-        unknown = [variable for variables, _ in parts for variable in variables]
+        unknown, places, count = self._meant(names_of("outputs", outputs))
         wanted = self._variable(known)
         for variable, causality in [*((variable, "output") for variable in unknown), (wanted, "input")]:
             if variable.causality != causality or self._kind(variable) not in ("Real", "Float64"):
@@ -359,19 +358,12 @@ class Instance(Saving):
                 )
         if not self.slave.can_differentiate:
             raise SimulationError(f"{self.fmu} does not provide derivatives")
-        # Places of the derivatives that are asked for among those of whole arrays.
-        asked: list[int] = []
-        count = 0
-        for variables, chosen in parts:
-            width = sum(math.prod(shape(variable, self.lengths)) for variable in variables)
-            asked += range(count, count + width)[chosen]
-            count += width
         arguments: list[Any] = [[variable.valueReference for variable in unknown], [wanted.valueReference], [1.0]]
         if isinstance(self.slave, FMU3Component):
             arguments.append(count)
         with self._calls("derivative", Phase.INITIALISING, Phase.RUNNING, undo=True):
             found = self.slave.getDirectionalDerivative(*arguments)
-        return [found[place] for place in asked]
+        return [found[place] for place in places]
 
     # ---- in another process ------------------------------------------------------------------------------------------
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import os
 from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Any, Literal, overload
@@ -19,7 +18,7 @@ from .instance import Instance
 from .progress import Progress, reporter
 from .stepping import follow, points
 from .tables import Table, columns_of
-from .variables import by_name, choices, outputs_named, shape, start_values
+from .variables import by_name, choices, lengths_of, outputs_named, start_values
 
 if TYPE_CHECKING:
     import xarray
@@ -92,7 +91,7 @@ def simulate(
         End [s]; by default the last time of the table. Behind the table inputs stay as they are in its last row.
     outputs
         Names of what comes back, or one name; by default every output but arrays. A profile's name, `profile.pressure`,
-        stands for its points, `contact.normal_force` for the contacts.
+        stands for its points, `contact.normal_force` for the contacts, `contact.normal_force[1]` for the first of them.
     preset
         Name of a set of parameters, "wet" for example; what is given by name goes before it.
     parameters
@@ -174,8 +173,9 @@ def simulate(
         raise ValueError(f"{where} a run from {start:g} s needs a stop_time after that")
     listed = {"time", *columns, *constants}
     # What is an input already has its column.
-    names = [name for name in outputs_named(fmu, without_time(outputs)) if name not in listed]
-    times = points(start, end, seconds("step", step), columns["time"], len(listed) + width(fmu, names, given))
+    lengths = lengths_of(fmu, given) if instance is None else instance.lengths
+    names = [name for name in outputs_named(fmu, without_time(outputs), lengths) if name not in listed]
+    times = points(start, end, seconds("step", step), columns["time"], len(listed) + len(names))
     report = reporter(progress, start, end, "simulate", "s")
     every = whole("fields_every", fields_every)
     models = choices(known["contact_model"]) if "contact_model" in known else {}
@@ -240,17 +240,6 @@ def given_values(preset: str | None, parameters: Mapping[str, Any] | None, value
     if twice := named.keys() & values.keys():
         raise ValueError(f"given in parameters and by name: {', '.join(sorted(twice))}")
     return {**(preset_named(preset) if preset is not None else {}), **named, **values}
-
-
-def width(fmu: AnyPath, names: Iterable[str], given: Mapping[str, Any]) -> int:
-    """Columns that outputs take, under the values that are given: an array of FMI 3.0 takes one for each element."""
-    known = by_name(str(fmu))
-    lengths = {
-        name: int(given.get(name, variable.start))
-        for name, variable in known.items()
-        if variable.causality == "structuralParameter"
-    }
-    return sum(math.prod(shape(known[name], lengths)) for name in names)
 
 
 def without_time(outputs: str | Iterable[str] | None) -> str | Iterable[str] | None:

@@ -8,7 +8,7 @@ import pandas as pd
 
 from .fields import Fields
 from .instance import Instance, SimulationError
-from .variables import shape, unit
+from .variables import unit
 
 # What a run can hardly mean: more communication points, or a result that is larger.
 MOST_POINTS = 100_000_000
@@ -62,15 +62,6 @@ def points(start: float, end: float, step: float, table: np.ndarray, columns: in
     return np.insert(times, np.searchsorted(times, others), others)
 
 
-def labels(instance: Instance, names: Sequence[str]) -> list[str]:
-    """Names of the columns of outputs: an array of FMI 3.0 has one for each element."""
-    return [
-        f"{name}[{','.join(str(i + 1) for i in index)}]" if index else name
-        for name in names
-        for index in np.ndindex(shape(instance.variables[name], instance.lengths))
-    ]
-
-
 def follow(
     instance: Instance,
     times: np.ndarray,
@@ -93,7 +84,7 @@ def follow(
     constants
         Inputs that are constant, to be listed in the result.
     names
-        Outputs.
+        Outputs, one for each column: of an array its elements.
     report
         Called with the time after each step.
     fields
@@ -110,20 +101,19 @@ def follow(
         A step could not be completed; its `table` has the rows before, its `fields` the fields.
     """
     moving = [name for name in table if name != "time"]
-    found = labels(instance, names)
     head = ["time", *moving, *constants]
     # One array, a column of the result behind the other, as pandas keeps them: it is not copied.
-    values = np.empty((len(head) + len(found), times.size))
+    values = np.empty((len(head) + len(names), times.size))
     values[0] = times
     for number, name in enumerate(moving, 1):
         # At a jump the value after it.
         values[number] = np.interp(times, table["time"], table[name])
     for number, constant in enumerate(constants.values(), 1 + len(moving)):
         values[number] = constant
-    columns = head + found
+    columns = [*head, *names]
 
     def read(number: int) -> None:
-        if found:
+        if names:
             values[len(head) :, number] = instance.get(*names)
         if fields is not None:
             fields.take(instance, number)

@@ -385,8 +385,50 @@ def shape(variable: ModelVariable, lengths: Mapping[str, int]) -> tuple[int, ...
     )
 
 
-def outputs_named(fmu: AnyPath, names: str | Iterable[str] | None) -> list[str]:
-    """Names of outputs: by default all but arrays; a profile's name stands for all of its points.
+def lengths_of(fmu: AnyPath, given: Mapping[str, Any]) -> dict[str, int]:
+    """Lengths of the arrays of FMI 3.0 by the parameters that give them, for given values of some of these."""
+    return {
+        name: int(given.get(name, variable.start))
+        for name, variable in by_name(fspath(fmu)).items()
+        if variable.causality == "structuralParameter"
+    }
+
+
+def element_names(variable: ModelVariable, lengths: Mapping[str, int]) -> list[str]:
+    """Names of the elements of an array of FMI 3.0, counted from 1; the variable's own where it is a single value."""
+    places = np.ndindex(shape(variable, lengths))
+    return [
+        f"{variable.name}[{','.join(str(index + 1) for index in place)}]" if place else variable.name
+        for place in places
+    ]
+
+
+def element_named(
+    known: Mapping[str, ModelVariable], name: str, lengths: Mapping[str, int]
+) -> tuple[ModelVariable, int] | None:
+    """The array of FMI 3.0 that has an element of this name, and the place of it; nothing where none has."""
+    found = re.fullmatch(r"(.+)\[([1-9]\d*(?:,[1-9]\d*)*)\]", name)
+    array = known.get(found[1]) if found else None
+    if found is None or array is None:
+        return None
+    place, sizes = [int(number) - 1 for number in found[2].split(",")], shape(array, lengths)
+    if len(place) != len(sizes) or any(index >= size for index, size in zip(place, sizes, strict=True)):
+        return None
+    return array, int(np.ravel_multi_index(place, sizes))
+
+
+def outputs_named(fmu: AnyPath, names: str | Iterable[str] | None, lengths: Mapping[str, int]) -> list[str]:
+    """Names of outputs, an array's elements one by one: by default all outputs but arrays.
+
+    Parameters
+    ----------
+    fmu
+        The component.
+    names
+        Names that are asked for; that of an array, `contact.position`, stands for its elements, in either version of
+        FMI.
+    lengths
+        Lengths of the arrays of FMI 3.0.
 
     Raises
     ------
@@ -405,21 +447,27 @@ def outputs_named(fmu: AnyPath, names: str | Iterable[str] | None) -> list[str]:
         names = (names,)
     if not isinstance(names, Iterable):
         raise TypeError(f"outputs = {names!r}: a name or a list of names is needed")
-    points: dict[str, list[str]] = {}
-    for name in known:
-        points.setdefault(name.partition("[")[0], []).append(name)
-    chosen: list[str] = []
+    # Elements of the arrays that FMI 2.0 has as variables of their own.
+    points: dict[str, list[ModelVariable]] = {}
+    for name, variable in known.items():
+        points.setdefault(name.partition("[")[0], []).append(variable)
+    chosen: dict[str, ModelVariable] = {}
     for name in names:
         if not isinstance(name, str):
             raise TypeError(f"outputs: {name!r} is no name of an output")
+        found = element_named(known, name, lengths)
+        if found is not None:
+            chosen[name] = found[0]
+            continue
         if name not in known and name not in points:
             raise ValueError(missing(fmu, name, points))
-        chosen += [name] if name in known else points[name]
-    for name in chosen:
-        if known[name].type not in ("Real", "Float64"):
-            what = "text" if known[name].type == "String" else "number that counts or chooses"
+        for variable in [known[name]] if name in known else points[name]:
+            chosen |= dict.fromkeys(element_names(variable, lengths), variable)
+    for name, variable in chosen.items():
+        if variable.type not in ("Real", "Float64"):
+            what = "text" if variable.type == "String" else "number that counts or chooses"
             raise ValueError(f"{name} is a {what}, and no output")
-    return list(dict.fromkeys(chosen))
+    return list(chosen)
 
 
 def units(model: ModelDescription) -> dict[str, str]:
