@@ -99,6 +99,8 @@ SIMULATE = {
     "empty": ({}, {}, "no column time; columns: none"),
     "one row": ({"time": [1.0], "creepage": [0.1]}, {}, "a run from 1 s needs a stop_time after that"),
     "unknown column": (TABLE | {"normal_lod": 1.0}, {}, "there is no variable normal_lod; did you mean normal_load"),
+    "part of a column": (TABLE | {"load": 1.0}, {}, "there is no variable load; did you mean normal_load?"),
+    "time misspelt": ({"tme": [0.0, 1.0], "creepage": [0.0, 0.1]}, {}, "there is no variable tme; did you mean time?"),
     "parameter as a column": (TABLE | {"friction_hot": [0.1, 0.2]}, {}, "friction_hot is of kind parameter: it cannot be set as input; give it by name, friction_hot=…"),
     "output as a column": (TABLE | {"traction_force": [0.1, 0.2]}, {}, "traction_force is of kind output: it cannot be set as input"),
     "two of one name": (pd.DataFrame([[0.0, 0.0, 0.1], [1.0, 0.0, 0.1]], columns=["time", "creepage", "creepage"]), {}, "creepage: two columns of the table have this name"),
@@ -125,6 +127,8 @@ SIMULATE = {
     "neither table nor end": (None, {}, "without a table stop_time is needed"),
     # Values by name.
     "typing error": (TABLE, {"frictio_law": 1}, "there is no variable frictio_law; did you mean friction_law"),
+    "part of a name": (TABLE, {"load": 60e3}, "there is no variable load; did you mean normal_load or largest_load?"),
+    "name with capitals": (TABLE, {"SLIP_SOURCE": 2}, "there is no variable SLIP_SOURCE; did you mean slip_source"),
     "choice that is none": (TABLE, {"friction_law": "piecewise"}, "friction_law = 'piecewise': choose one of constant, piecewise_linear"),
     "choice with a capital": (TABLE, {"contact_model": "Patch"}, "contact_model = 'Patch': choose one of line, patch, profiles; did you mean patch?"),
     "grid that is none": (TABLE, {"patch_grid": "fats"}, "patch_grid = 'fats': choose one of fast, default, fine; did you mean fast?"),

@@ -21,6 +21,8 @@ PATCH_GRID = "patch_grid"
 # The table of friction coefficients: the lists of its points, and the parameter that says how many of them are used.
 FRICTION_TABLE = ("friction_table.temperature", "friction_table.coefficient")
 TABLE_POINTS = "friction_table_points"
+# Letters from which on a part of a name hints at it.
+SHORTEST_PART = 4
 # Arrays that FMI 3.0 alone has: fields of a patch and of profiles, and these profiles.
 THIRD_ALONE = ("patch.", "surface.", "wheel_profile.", "rail_profile.")
 
@@ -92,9 +94,14 @@ def choices(variable: ModelVariable) -> dict[str, int]:
 
 def near(name: str, names: Iterable[str]) -> str:
     """A hint at what may have been meant."""
-    if found := re.fullmatch(r"(.*\S)\s*\(([^()]*)\)", name):
-        return f"; a unit stands in square brackets, {found[1]} [{found[2]}]"
-    close = difflib.get_close_matches(name, list(names), n=3, cutoff=0.6)
+    if with_unit := re.fullmatch(r"(.*\S)\s*\(([^()]*)\)", name):
+        return f"; a unit stands in square brackets, {with_unit[1]} [{with_unit[2]}]"
+    # A name by its letters, whatever their case; else those that it is a part of, as `load` is of `normal_load`.
+    known, asked = {other.lower(): other for other in names}, name.lower()
+    found = difflib.get_close_matches(asked, known, n=3, cutoff=0.6)
+    if not found and len(asked) >= SHORTEST_PART:
+        found = difflib.get_close_matches(asked, [other for other in known if asked in other], n=3, cutoff=0.0)
+    close = [known[other] for other in found]
     return f"; did you mean {' or '.join(close)}?" if close else ""
 
 
@@ -120,7 +127,8 @@ def settable(fmu: AnyPath, name: str, causalities: tuple[str, ...]) -> ModelVari
     known = by_name(fspath(fmu))
     if name not in known:
         candidates = [other for other, variable in known.items() if variable.causality in causalities]
-        candidates += [PATCH_GRID] if "parameter" in causalities else []
+        # Beside the parameters there is the grid by its name, beside the columns of inputs that of the time.
+        candidates += [PATCH_GRID] if "parameter" in causalities else ["time"]
         raise ValueError(missing(fmu, name, candidates))
     variable = known[name]
     if variable.causality not in causalities:
