@@ -311,6 +311,26 @@ def test_what_has_no_effect_is_told_of(either):
     assert len(told) == 1
 
 
+def test_a_warning_stands_at_the_callers_line(either):
+    """Whatever of the package is called, and however far below the component speaks, the line is that of the call."""
+    gauge = {"gauge": 1.43}
+    table = {"time": [0.0, 2e-3], "creepage": 0.0}
+    curve = {"driven": "longitudinal", "creepages": [0.01], "contact_model": "line"}
+    calls = [
+        lambda: wheelrail.simulate(table, **gauge, fmu=either),
+        lambda: wheelrail.creep_curves(**curve, **gauge, fmu=either),
+        lambda: Instance(either, **gauge).start(),
+    ]
+    for call in calls:
+        with pytest.warns(SimulationWarning, match="gauge = 1.43") as told:
+            call()
+        assert [(one.filename, one.lineno) for one in told] == [(__file__, call.__code__.co_firstlineno)]
+    with Instance(either, control="penetration", normal_load=50e3).start() as instance:
+        with pytest.warns(SimulationWarning, match="normal_load = 50000") as told:
+            wheelrail.simulate(stop_time=2e-3, instance=instance)
+        assert [one.filename for one in told] == [__file__]
+
+
 def test_more_contacts_than_windows_are_told_of_once(either, tmp_path):
     """A hollow wheel on a rail with crests 11 mm apart, of which five touch: one warning, by the first such step."""
     y = np.linspace(-34.0, 34.0, 681)

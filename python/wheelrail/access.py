@@ -1,7 +1,6 @@
 """What an instance is told and asked: variables by name, and calls that are refused before they can do harm."""
 
 import math
-import warnings
 from collections.abc import Mapping, Sequence
 from itertools import groupby
 from pathlib import Path
@@ -13,7 +12,7 @@ from fmpy.fmi1 import FMICallException
 from fmpy.model_description import ModelVariable
 
 from .arguments import names_of, plain
-from .errors import SimulationError, SimulationWarning
+from .errors import SimulationError, warn
 from .geometry import is_given, is_inclined
 from .native import FMU3Component, Phase
 from .surface import LINE, formed, sources
@@ -84,7 +83,7 @@ class Calls:
         try:
             if error is None:
                 for words in slave.messages:
-                    warnings.warn(words, SimulationWarning, stacklevel=3)
+                    warn(words)
                 return
             words, failed = "; ".join(slave.messages), slave.phase is Phase.FAILED
             back = self.undo and slave.gone is None and slave.go_back()

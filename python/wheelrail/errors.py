@@ -1,6 +1,11 @@
 """What the package raises, beside ValueError and TypeError, and warns of."""
 
+import inspect
+import warnings
+from pathlib import Path
 from typing import Any
+
+PACKAGE = Path(__file__).resolve().parent
 
 
 class SimulationError(RuntimeError):
@@ -24,3 +29,11 @@ class InstanceClosedError(SimulationError):
 
 class SimulationWarning(UserWarning):
     """The component did what it was asked and remarks on it: a staggered step, a contact that fills its window."""
+
+
+def warn(words: str) -> None:
+    """Warn with `SimulationWarning`, in the name of the line that called the package."""
+    level, frame = 1, inspect.currentframe()
+    while frame is not None and Path(frame.f_code.co_filename).parent == PACKAGE:
+        level, frame = level + 1, frame.f_back
+    warnings.warn(words, SimulationWarning, stacklevel=level)
