@@ -477,6 +477,31 @@ def test_shown(running):
     assert repr(running.save()) == "<wheelrail.SavedState of t = 0.01 s, of 'instance'>"
 
 
+# What is set, and which of these inputs a line about the instance then has.
+GIVEN = ("normal_load", "prescribed_penetration", "vertical_displacement", "contact_penetration")
+MOTION = ("vehicle_speed", "wheel_speed", "creepage")
+USED = {
+    "load": ({}, ["normal_load", "wheel_speed", "creepage"]),
+    "penetration": ({"control": "penetration"}, ["prescribed_penetration", "wheel_speed", "creepage"]),
+    "height of a patch": (
+        {"control": "height", "contact_model": "patch", "contact_penetration": 1e-4, "slip_source": "vehicle_speed"},
+        ["contact_penetration", "vehicle_speed", "wheel_speed"],
+    ),
+    "height of a wheel": (
+        {"control": "height", "contact_model": "profiles", "slip_source": "vehicle_speed"},
+        ["vertical_displacement", "vehicle_speed", "wheel_speed"],
+    ),
+}
+
+
+@pytest.mark.parametrize("case", USED)
+def test_shown_is_what_is_used(either, case):
+    """Load, penetration or height, speed or creepage: what the choices that are made leave unused is not shown."""
+    values, used = USED[case]
+    with Instance(either, **values).start() as instance:
+        assert [name for name in (*GIVEN, *MOTION) if f"{name} = " in repr(instance)] == used
+
+
 # ---- states ----------------------------------------------------------------------------------------------------------
 
 

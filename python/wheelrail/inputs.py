@@ -9,7 +9,7 @@ from fmpy.model_description import ModelVariable
 
 from .archive import AnyPath
 from .instance import Instance
-from .variables import allowed, bounds, by_name, choices, settable, unit
+from .variables import allowed, bounds, by_name, choices, settable, unit, users
 
 # Gives the value of a parameter under which inputs are to be judged.
 Parameter = Callable[[str], float]
@@ -98,19 +98,15 @@ def check_inputs(
 
 def check_used(fmu: AnyPath, variable: ModelVariable, says: bool, value: Parameter) -> None:
     """Refuse an input that says something where the component does not use it: its description has the choice."""
-    found = re.search(r"used where (\w+) is (\w+)", variable.description or "")
     known = by_name(str(fmu))
-    if not says or found is None or found[1] not in known:
-        return
-    choice, needed = found.groups()
-    named = choices(known[choice])
-    chosen = value(choice)
-    if needed in named and named[needed] != chosen:
-        now = next((name for name, number in named.items() if number == chosen), f"{chosen:g}")
-        raise ValueError(
-            f"{variable.name} is given and not used: {choice} is {now!r}; choose {choice}={needed!r},"
-            f" or leave {variable.name} out"
-        )
+    for choice, needed in users(known, variable, "used where"):
+        chosen = value(choice)
+        if says and chosen not in needed.values():
+            now = next((name for name, number in choices(known[choice]).items() if number == chosen), f"{chosen:g}")
+            raise ValueError(
+                f"{variable.name} is given and not used: {choice} is {now!r};"
+                f" choose {' or '.join(f'{choice}={name!r}' for name in needed)}, or leave {variable.name} out"
+            )
 
 
 def check_range(

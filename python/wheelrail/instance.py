@@ -18,12 +18,16 @@ from .errors import InstanceClosedError, SimulationError
 from .native import FMU3Component, Phase, connect
 from .saving import Saving
 from .states import SavedState, state_of
-from .variables import by_name, choices, number, unit
+from .variables import by_name, choices, number, unit, users
 
 __all__ = ["Instance", "InstanceClosedError", "SimulationError"]
 
-# What a line about an instance shows, where it has them.
-SHOWN = ("contact_model", "slip_source", "normal_load", "vehicle_speed", "wheel_speed", "creepage")
+# What a line about an instance shows, where it has them and uses them.
+SHOWN = (
+    *("contact_model", "slip_source"),
+    *("normal_load", "prescribed_penetration", "vertical_displacement", "contact_penetration"),
+    *("vehicle_speed", "wheel_speed", "creepage"),
+)
 SHOWN_RUNNING = ("traction_force", "friction_coefficient", "peak_temperature")
 
 
@@ -185,13 +189,18 @@ class Instance(Saving):
                 return f"<wheelrail.Instance {what}: closed>"
             text, phase = f"{what}: {self.slave.phase.value}, t = {self.time:g} s", self.slave.phase
             shown = SHOWN + (SHOWN_RUNNING if phase is Phase.RUNNING else ())
-            found = [name for name in shown if name in self.variables]
             # FMI 2.0 has nothing to read before the initialisation, and an error to no avail would be one more.
             if phase in (Phase.INITIALISING, Phase.RUNNING):
                 with suppress(SimulationError):
+                    found = [name for name in shown if name in self.variables and self._is_used(name)]
                     values = zip(found, self.get(*found), strict=True)
                     text = "; ".join([text, *(self._said(name, value) for name, value in values)])
         return f"<wheelrail.Instance {text}>"
+
+    def _is_used(self, name: str) -> bool:
+        """Whether the component uses a variable under the choices that are made."""
+        conditions = users(self.variables, self.variables[name], "used where|0 unless")
+        return all(self.get(choice)[0] in needed.values() for choice, needed in conditions)
 
     def _said(self, name: str, value: float) -> str:
         """A variable with its value, as a line about the instance has it."""

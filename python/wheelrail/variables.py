@@ -92,6 +92,20 @@ def choices(variable: ModelVariable) -> dict[str, int]:
     return found if len(found) == high - low + 1 else {}
 
 
+def users(known: Mapping[str, ModelVariable], variable: ModelVariable, words: str) -> list[tuple[str, dict[str, int]]]:
+    """Choices that the use of a variable depends on, each with names and numbers of those that use it.
+
+    The description has them behind some words, "used where" or "0 unless": "…, used where control is height; 0 unless
+    contact_model is patch or profiles".
+    """
+    found = []
+    for choice, needed in re.findall(rf"(?:{words}) (\w+) is (\w+(?: or \w+)*)", variable.description or ""):
+        named = choices(known[choice]) if choice in known else {}
+        if named.keys() >= set(needed.split(" or ")):
+            found.append((choice, {name: named[name] for name in needed.split(" or ")}))
+    return found
+
+
 def near(name: str, names: Iterable[str]) -> str:
     """A hint at what may have been meant."""
     if with_unit := re.fullmatch(r"(.*\S)\s*\(([^()]*)\)", name):
