@@ -169,6 +169,16 @@ SIMULATE = {
 }  # fmt: skip
 
 
+def test_a_clone_says_how_its_fmus_are_built():
+    """The package as it is in a clone has no FMU in it: the error has the commands, and where they put them."""
+    for version, file in (("2.0", "WheelRailContact.fmu"), ("3.0", "WheelRailContact-fmi3.fmu")):
+        with pytest.raises(
+            FileNotFoundError, match="`make wheel` builds the package with them, `make fmu fmu3`"
+        ) as said:
+            wheelrail.fmu_path(version)
+        assert str(said.value).endswith(f"for fmu={str(REPOSITORY / 'target' / file)!r}")
+
+
 @pytest.mark.parametrize("case", SIMULATE)
 def test_simulate(case, fmu):
     """What is wrong is said with the name, the value, the place and the way out."""

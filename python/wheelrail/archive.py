@@ -42,7 +42,15 @@ def fmu_path(version: str = "2.0") -> Path:
     path = PACKAGE / "fmu" / ARCHIVES[version]
     if not path.exists():
         there = [name for name, file in ARCHIVES.items() if (path.parent / file).exists()]
-        raise FileNotFoundError(f"{path} is not there; FMUs in this package: {', '.join(there) or 'none'}")
+        words = f"{path} is not there; FMUs in this package: {', '.join(there) or 'none'}"
+        # A package that runs from the repository has none in it.
+        clone = PACKAGE.parent.parent
+        if (clone / "Makefile").exists():
+            words += (
+                "; in a clone `make wheel` builds the package with them, `make fmu fmu3` the FMUs alone, for"
+                f" fmu={str(clone / 'target' / ARCHIVES[version])!r}"
+            )
+        raise FileNotFoundError(words)
     return path
 
 
