@@ -175,7 +175,7 @@ REFUSED = {
     "lengths": (
         lambda i: i.follow(["creepage"], [0.0, 1.0], [0.1], 1.0),
         ValueError,
-        "before has 2 values for 1 names",
+        "before has 2 values for 1 name",
     ),
     "followed": (lambda i: i.follow(["wheel_radius"], [0.0], [0.1], 1.0), ValueError, "a real input is needed"),
     "half-way": (

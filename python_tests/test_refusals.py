@@ -143,7 +143,7 @@ SIMULATE = {
     "points of nothing": (TABLE, {"parameters": {"friction_tabel.temperature": [300.0]}}, "there is no variable friction_tabel.temperature; did you mean friction_table.temperature"),
     "fewer points than the number": (TABLE, {"friction_table_points": 3, "parameters": POINTS}, "friction_table_points = 3, and friction_table.temperature has 2 values: as many are needed"),
     "more points than the number": (TABLE, {"friction_table_points": 2, "parameters": {name: [*of, of[-1]] for name, of in POINTS.items()}}, "friction_table_points = 2, and friction_table.temperature has 3 values"),
-    "lists of two lengths": (TABLE, {"parameters": POINTS | {"friction_table.coefficient": [0.4]}}, "friction_table.temperature has 2, friction_table.coefficient has 1 values: as many of each are needed"),
+    "lists of two lengths": (TABLE, {"parameters": POINTS | {"friction_table.coefficient": [0.4]}}, "friction_table.temperature has 2 values, friction_table.coefficient has 1 value: as many of each are needed"),
     "one list of two": (TABLE, {"parameters": {"friction_table.coefficient": [0.4, 0.3, 0.2]}}, "friction_table.coefficient has 3 values, and friction_table.temperature is not given and has 2: give both lists"),
     "one point": (TABLE, {"parameters": {"friction_table.temperature": [300.0], "friction_table.coefficient": [0.4]}}, "friction_table.temperature has 1 value: 2 to 10 are needed"),
     "parameters that are none": (TABLE, {"parameters": ["friction_hot"]}, "parameters = ['friction_hot']: a mapping of names to values"),

@@ -39,6 +39,11 @@ def finite(what: str, value: Any) -> float:
         raise ValueError(f"{what}: the number is too large") from None
 
 
+def counted(count: int, noun: str) -> str:
+    """A number of things: "1 value", "2 values"."""
+    return f"{count} {noun}" if count == 1 else f"{count} {noun}s"
+
+
 def names_of(what: str, names: Any) -> list[str]:
     """Names of variables, of which one may stand alone.
 
@@ -103,5 +108,5 @@ def values_of(what: str, values: Any, count: int) -> Sequence[float]:
         raise TypeError(f"{what} = {values!r}: a sequence of numbers is needed")
     found = list(values)
     if len(found) != count:
-        raise ValueError(f"{what} has {len(found)} values for {count} names")
+        raise ValueError(f"{what} has {counted(len(found), 'value')} for {counted(count, 'name')}")
     return found

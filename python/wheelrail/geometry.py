@@ -22,7 +22,7 @@ import numpy as np
 import pandas as pd
 
 from .archive import PACKAGE, AnyPath, kept_folder
-from .arguments import finite
+from .arguments import counted, finite
 from .units import heading
 from .variables import near
 
@@ -351,7 +351,9 @@ class Profile:
         """
         columns = [places("y", y), places("z", z)]
         if columns[0].size != columns[1].size:
-            raise ValueError(f"y has {columns[0].size} values and z {columns[1].size}: as many of each are needed")
+            raise ValueError(
+                f"y has {counted(columns[0].size, 'value')} and z {columns[1].size}: as many of each are needed"
+            )
         given = options({"body": body, "y_to": "field", "z": "up", "smoothing": smoothing})
         made = cls.__new__(cls)
         with tempfile.TemporaryDirectory() as folder:

@@ -14,6 +14,7 @@ import numpy as np
 import pandas as pd
 
 from .archive import AnyPath
+from .arguments import counted
 from .units import heading, in_component_units, model, said_units, scale_of, spelling
 from .variables import settable
 from .variables import unit as unit_of
@@ -175,7 +176,7 @@ def columns_of(table: Table, fmu: AnyPath) -> dict[str, np.ndarray]:
         raise ValueError(f"time goes back in row {row + 1}: {time[row]:g} s after {time[row - 1]:g} s")
     for name, column in arrays.items():
         if column.size not in (1, time.size):
-            raise ValueError(f"column {name} has {column.size} values, time has {time.size} rows")
+            raise ValueError(f"column {name} has {column.size} values, time has {counted(time.size, 'row')}")
     return {"time": time} | {name: np.broadcast_to(column, time.shape) for name, column in arrays.items()}
 
 

@@ -14,7 +14,7 @@ import pandas as pd
 from fmpy.model_description import ModelDescription, ModelVariable
 
 from .archive import AnyPath, description, fmu_path
-from .arguments import finite
+from .arguments import counted, finite
 
 # Name under which a grid of the patch is chosen.
 PATCH_GRID = "patch_grid"
@@ -364,15 +364,15 @@ def points_of_lists(
     if not lengths or TABLE_POINTS not in known:
         return {}
     if len(set(lengths.values())) > 1:
-        said = ", ".join(f"{name} has {length}" for name, length in lengths.items())
-        raise ValueError(f"{said} values: as many of each are needed, one for each point")
+        said = ", ".join(f"{name} has {counted(length, 'value')}" for name, length in lengths.items())
+        raise ValueError(f"{said}: as many of each are needed, one for each point")
     name, length = next(iter(lengths.items()))
     every = elements_of(known, name)
     if TABLE_POINTS in given:
         points = number(known[TABLE_POINTS], given[TABLE_POINTS])
         if length not in (points, every):
             raise ValueError(
-                f"{TABLE_POINTS} = {points}, and {name} has {length} values: as many are needed; without"
+                f"{TABLE_POINTS} = {points}, and {name} has {counted(length, 'value')}: as many are needed; without"
                 f" {TABLE_POINTS} the lists say how many points there are"
             )
         return {}
@@ -381,8 +381,8 @@ def points_of_lists(
         (other,) = set(FRICTION_TABLE) - set(lengths)
         if length not in (before, every):
             raise ValueError(
-                f"{name} has {length} values, and {other} is not given and has {before}: give both lists in one call,"
-                f" or {TABLE_POINTS} = {length} before"
+                f"{name} has {counted(length, 'value')}, and {other} is not given and has {before}: give both lists in"
+                f" one call, or {TABLE_POINTS} = {length} before"
             )
         return {}
     least = int(bounds(known[TABLE_POINTS])[0])
