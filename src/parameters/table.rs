@@ -164,7 +164,7 @@ parameters! {
     /// Largest normal load: it sizes the contact window; a larger normal_load is refused, and one that follows from a penetration or a height is
     /// remarked on
     largest_load: f64 = real { "N" shown in "kN", 100e3, 1.0, 1e7 }
-    /// Number of evenly spaced surface nodes in the contact window of the graded mesh
+    /// Number of evenly spaced surface nodes in the contact window of the graded mesh, used where contact_model is line
     contact_nodes: usize = count { 51, 13, 401 }
     /// Number of nodes over the depth of the strip of the graded mesh
     depth_nodes: usize = count { 41, 9, 161 }
@@ -179,7 +179,7 @@ parameters! {
     strip_height "h": f64 = real { "m", 1.0, 0.05, 10.0 }
     /// Half-length of the elastic strip that stands for the rail
     strip_half_length "L": f64 = real { "m", 2.0, 0.1, 20.0 }
-    /// Width of the equivalent line contact
+    /// Width of the equivalent line contact, used where contact_model is line
     contact_width "b": f64 = real { "m" shown in "mm", 0.01, 1e-4, 1.0 }
     /// First Lame coefficient of the rail
     lame_lambda "λ": f64 = real { "Pa" shown in "GPa", 11.66e10, 1e5, 1e13 }

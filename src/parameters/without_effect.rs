@@ -201,6 +201,19 @@ mod tests {
             rail_profile: "UIC60".to_owned(),
             ..Parameters::default()
         };
+        let of_a_line = Parameters {
+            contact_model: ContactModel::Patch,
+            contact_width: 0.02,
+            contact_nodes: 61,
+            ..Parameters::default()
+        };
+        assert_eq!(
+            of_a_line.without_effect(),
+            [
+                "contact_width = 0.02 has no effect with contact_model = 2 (patch); it is used where contact_model is line",
+                "contact_nodes = 61 has no effect with contact_model = 2 (patch); it is used where contact_model is line",
+            ]
+        );
         assert_eq!(
             parameters.without_effect(),
             [
