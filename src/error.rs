@@ -4,6 +4,7 @@ mod profile;
 mod text;
 
 pub use profile::ProfileError;
+pub(crate) use profile::in_thousandths;
 pub use text::{LONGEST_TEXT, TextProblem};
 use thiserror::Error;
 

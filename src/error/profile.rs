@@ -36,9 +36,9 @@ pub enum ProfileError {
     /// A place that the profile does not reach.
     #[error(
         "{name}: {what} = {} mm: the profile reaches from {} to {} mm",
-        1e3 * value,
-        1e3 * minimum,
-        1e3 * maximum
+        in_thousandths(*value),
+        in_thousandths(*minimum),
+        in_thousandths(*maximum)
     )]
     NotReached {
         /// Profile.
@@ -226,7 +226,7 @@ pub enum ProfileError {
 }
 
 /// A value in thousandths of its unit, without digits of round-off.
-fn in_thousandths(value: f64) -> f64 {
+pub(crate) fn in_thousandths(value: f64) -> f64 {
     (1e9 * value).round() / 1e6
 }
 

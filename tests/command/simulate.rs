@@ -467,6 +467,8 @@ fn units_that_are_none_of_the_variable_are_refused() {
             "largest_load",
         ],
     );
+    // Without digits of round-off: 2.01 / 1000 is 0.0020099999999999996.
+    Place::new("unit_digits", "time [ms]\n0\n5\n2.01\n").refused(&[], &[": 0.00201 s is not after 0.005 s"]);
     Place::new("unit_backwards", "time [ms]\n0\n5\n4\n")
         .refused(&[], &["line 4", "\"time [ms]\"", "0.004 s is not after 0.005 s"]);
 }
@@ -860,6 +862,17 @@ fn steps_that_cannot_be_are_refused() {
         &["--step=1e-12"],
         &["--step 1e-12", "0.002 s", "2e9 steps, more than 1e9"],
     );
+}
+
+/// A run tells how many steps it took: one is a step, two are steps.
+#[test]
+fn a_single_step_is_one() {
+    let place = Place::new("one-step", GOOD);
+    for (step, said) in [("2e-3", "\n1 step to 0.002 s: "), ("1e-3", "\n2 steps to 0.002 s: ")] {
+        let output = place.simulate(&["--step", step]);
+        let message = format!("\n{}", String::from_utf8(output.stderr).unwrap());
+        assert!(message.contains(said), "{message}");
+    }
 }
 
 /// What the command line itself cannot read is answered with status 2 and the usage.

@@ -220,18 +220,24 @@ impl Simulate {
         }
         if staggered > 0 {
             eprintln!(
-                "{staggered} steps: mechanics, heat and wear were not solved together, but one after the other; shorter steps may be solved"
+                "{}: mechanics, heat and wear were not solved together, but one after the other; shorter steps may be solved",
+                steps_in_words(staggered)
             );
         }
         if full > 0 {
-            eprintln!("{full} steps: {}", simulation.model.parameters().full_window_remark());
+            eprintln!(
+                "{}: {}",
+                steps_in_words(full),
+                simulation.model.parameters().full_window_remark()
+            );
         }
         if crowded > 0 {
-            eprintln!("{crowded} steps: {}", Convergence::CROWDED);
+            eprintln!("{}: {}", steps_in_words(crowded), Convergence::CROWDED);
         }
         if overloaded > 0 {
             eprintln!(
-                "{overloaded} steps: {}",
+                "{}: {}",
+                steps_in_words(overloaded),
                 simulation.model.parameters().overload_remark()
             );
         }
@@ -240,7 +246,7 @@ impl Simulate {
             return Err(Error::Interrupted { output, source });
         }
         let end = schedule.end().time;
-        eprintln!("{count} steps to {end} s: {}", self.output.display());
+        eprintln!("{} to {end} s: {}", steps_in_words(count), self.output.display());
         Ok(())
     }
 
@@ -364,6 +370,11 @@ impl Simulate {
         parameters.validate().map_err(Error::Parameter)?;
         Ok(parameters)
     }
+}
+
+/// A number of steps, in words.
+fn steps_in_words(count: usize) -> String {
+    format!("{count} step{}", if count == 1 { "" } else { "s" })
 }
 
 /// Columns of the table of results beside the time: all inputs and outputs, but what profiles alone have only with profiles.

@@ -6,7 +6,7 @@
 
 use super::CurvePoint;
 use super::curve::{CELL, Curve, Piece};
-use crate::error::ProfileError;
+use crate::error::{ProfileError, in_thousandths};
 use crate::geometry::quintics::Jet;
 use crate::geometry::spline::{CubicSpline, penalty};
 
@@ -124,8 +124,8 @@ pub fn curve(name: &str, points: &[Weighted], smoothing: f64) -> Result<Curve, P
     let chords: Vec<f64> = points.windows(2).map(|pair| distance(&pair[0], &pair[1])).collect();
     let length: f64 = chords.iter().sum();
     if !(LENGTHS[0]..=LENGTHS[1]).contains(&length) {
-        let [shortest, longest] = LENGTHS.map(|length| 1e3 * length);
-        let found = 1e3 * length;
+        let [shortest, longest] = LENGTHS.map(in_thousandths);
+        let found = in_thousandths(length);
         return Err(refused(format!(
             "it is {found} mm long: allowed is {shortest} to {longest} mm"
         )));

@@ -5,7 +5,7 @@
 use super::curve::Curve;
 use super::height::LEAST_FLANGE;
 use super::{Body, CurvePoint, HeightFunction, Profile};
-use crate::error::ProfileError;
+use crate::error::{ProfileError, in_thousandths};
 use crate::numerics::root::crossing;
 use serde::{Deserialize, Serialize};
 
@@ -157,7 +157,7 @@ impl Profile {
         if tip >= self.middle || -lowest < LEAST_FLANGE {
             return Err(refused(format!(
                 "it has no flange of {} mm: its lowest place is {:.3} mm below the running circle, at y = {:.3} mm",
-                1e3 * LEAST_FLANGE,
+                in_thousandths(LEAST_FLANGE),
                 -1e3 * lowest,
                 1e3 * y
             )));
@@ -170,7 +170,7 @@ impl Profile {
         }
         // From the running circle to the flange, and from its tip to the tread: the heights pass between the two.
         let crossing = |node: Option<usize>, z: f64| -> Result<f64, ProfileError> {
-            let node = node.ok_or_else(|| refused(format!("it does not pass the height {} mm", 1e3 * z)))?;
+            let node = node.ok_or_else(|| refused(format!("it does not pass the height {} mm", in_thousandths(z))))?;
             let [from, to] = [arcs[node].max(tip), arcs[node + 1].min(self.middle)];
             Ok(self.curve.root(from, to, |point| point.place[1] - z))
         };

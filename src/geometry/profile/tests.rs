@@ -358,3 +358,21 @@ fn a_crowned_roller_has_no_tip() {
     let height = roller.height_function().unwrap();
     assert_eq!(height.flange_tip(), height.range()[0]);
 }
+
+/// Lengths in messages have no digits of round-off: 1e3 times 4.1e-3 is 4.1000000000000005.
+#[test]
+fn lengths_in_messages_are_round() {
+    let (value, maximum) = (4.1e-3, 0.3e-3);
+    assert_ne!((1e3 * value).to_string(), "4.1");
+    let error = ProfileError::NotReached {
+        name: "a rail".to_owned(),
+        what: "depth of the gauge below the top",
+        value,
+        minimum: 0.0,
+        maximum,
+    };
+    assert_eq!(
+        error.to_string(),
+        "a rail: depth of the gauge below the top = 4.1 mm: the profile reaches from 0 to 0.3 mm"
+    );
+}

@@ -12,7 +12,7 @@
 use super::curve::{Curve, Piece};
 use super::divided::{Joint, Part, divided, joint};
 use super::{Body, CurvePoint, DepthGrid, Profile};
-use crate::error::ProfileError;
+use crate::error::{ProfileError, in_thousandths};
 
 /// Part of its length that a place must keep where the profile is convex: beyond its radius of curvature an outline crosses itself.
 const LEAST_STRETCH: f64 = 0.02;
@@ -263,7 +263,7 @@ fn worn_piece(curve: &Curve, part: &Part, depths: &Depths, side: f64) -> Result<
         if worn.stretch < LEAST_STRETCH {
             return Err(format!(
                 "{} mm are worn at the arc length {:.3} mm, where its radius is {:.3} mm: nothing is left of it",
-                1e3 * depths.at(arc, within)[0],
+                in_thousandths(depths.at(arc, within)[0]),
                 1e3 * arc,
                 1e3 / curve.within(cell, arc).curvature.abs()
             ));

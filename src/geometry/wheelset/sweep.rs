@@ -14,6 +14,10 @@ const LEAP: f64 = 0.1e-3;
 const CLOSE: f64 = 1e-8;
 /// Part of a step that is round-off: of 2 million steps of 1e-7 m, which the farthest displacement is away from 0, it is 1e-9.
 const ROUNDING: f64 = 1e-9;
+/// Round-off of a displacement, which is 0.2 m at most, `m`.
+const ROUND_OFF: f64 = 1e-16;
+/// Picometres in a metre.
+const PICOMETRES: f64 = 1e12;
 
 /// Jump of a contact at a lateral displacement: there the wheel touches at two places.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -69,11 +73,12 @@ impl Sweep {
         let number = (first / step).round();
         let begins_at_multiple = (first / step - number).abs() <= ROUNDING;
         let lateral = |k: usize| {
-            if begins_at_multiple {
+            let displacement = if begins_at_multiple {
                 (number + k as f64) * step
             } else {
                 first + k as f64 * step
-            }
+            };
+            without_round_off(displacement)
         };
         let poses = (0..=count)
             .map(|k| wheelset.at(lateral(k), yaw))
@@ -109,6 +114,16 @@ impl Sweep {
     /// Equivalent conicity of an amplitude, `m`; `None` where no motion of that amplitude lies within the displacements.
     pub fn conicity(&self, amplitude: f64) -> Option<Conicity> {
         self.motion()?.conicity(amplitude)
+    }
+}
+
+/// Displacement as a table has it, `m`: in whole picometres where it is that to round-off, without the digits of that.
+fn without_round_off(displacement: f64) -> f64 {
+    let rounded = (PICOMETRES * displacement).round() / PICOMETRES;
+    if (rounded - displacement).abs() <= ROUND_OFF {
+        rounded
+    } else {
+        displacement
     }
 }
 

@@ -104,6 +104,25 @@ fn s1002_on_60e1_has_its_jumps_and_its_conicity() {
     assert_eq!(sweep.conicity(8e-3), None);
 }
 
+/// Displacements are the numbers that are read, without digits of round-off; those that are given with more digits keep them.
+#[test]
+fn displacements_of_a_sweep_are_round() {
+    let wheelset = wheelset("60E1", "S1002", &Dimensions::default());
+    for (range, step, expected) in [
+        (
+            [-0.0002, 0.0003],
+            1e-4,
+            &[-0.0002, -0.0001, 0.0, 0.0001, 0.0002, 0.0003][..],
+        ),
+        ([0.0068, 0.0069], 3e-5, &[0.0068, 0.00683, 0.00686, 0.00689]),
+        ([0.001234567890123456, 0.002], 1e-3, &[0.001234567890123456]),
+    ] {
+        let sweep = Sweep::new(&wheelset, range, step, 0.0).unwrap();
+        let found: Vec<_> = sweep.poses.iter().map(|pose| pose.lateral).collect();
+        assert_eq!(found, expected);
+    }
+}
+
 /// Displacements of a table, `mm`: from the first one on, the last one where steps reach it to round-off, and no other.
 #[test]
 fn a_sweep_begins_at_the_first_displacement() {

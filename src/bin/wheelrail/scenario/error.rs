@@ -107,7 +107,11 @@ pub enum Error {
         value: f64,
     },
     /// A time that does not lie after the one before it.
-    #[error("{path}, line {line}, column {column:?}: {value} s is not after {before} s, the time of the row before")]
+    #[error(
+        "{path}, line {line}, column {column:?}: {} s is not after {} s, the time of the row before",
+        to_twelve_digits(*value),
+        to_twelve_digits(*before)
+    )]
     TimeNotAscending {
         /// The file.
         path: PathBuf,
@@ -164,4 +168,9 @@ pub enum Error {
         /// Number of rows in the file.
         rows: usize,
     },
+}
+
+/// A time to twelve digits, without those of round-off that a conversion of units leaves.
+fn to_twelve_digits(time: f64) -> f64 {
+    format!("{time:.11e}").parse().unwrap_or(time)
 }

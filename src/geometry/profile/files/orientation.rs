@@ -4,7 +4,7 @@
 //! way that fits is taken, and named in the profile's source; none, or more than one, is an error that says what was seen.
 
 use super::{Lateral, LengthUnit, Raw, ReadOptions, Weighted};
-use crate::error::ProfileError;
+use crate::error::{ProfileError, in_thousandths};
 use crate::geometry::profile::Body;
 use crate::geometry::profile::measured::cleaned;
 
@@ -239,8 +239,8 @@ fn check_datum(name: &str, points: &[Weighted]) -> Result<(), ProfileError> {
             name: name.to_owned(),
             seen: format!(
                 "its running circle is to be at y = 0, {} to {} mm from the tip of the flange, which is at y = {:.2} mm",
-                1e3 * DATUM[0],
-                1e3 * DATUM[1],
+                in_thousandths(DATUM[0]),
+                in_thousandths(DATUM[1]),
                 1e3 * y
             ),
             option: "flange_back_position",
