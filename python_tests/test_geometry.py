@@ -235,8 +235,12 @@ def test_noise_is_warned_of():
     points = package.Profile("S1002").points
     noise = np.random.default_rng(3).uniform(-0.03e-3, 0.03e-3, (2, len(points)))
     rough = package.Profile.from_points(points["y"] + noise[0], points["z"] + noise[1], body="wheel")
-    with pytest.warns(UserWarning, match="^points: its direction turns to and fro, as noise does"):
+    noisy = re.escape("its direction turns to and fro, as noise does, which smoothing takes off (smoothing=…)")
+    with pytest.warns(UserWarning, match=f"^points: {noisy}; the contacts jump with it"):
         package.contact_geometry("60E1", rough, step=4e-3)
+    rougher = package.Profile.from_points(points["y"] + 10 * noise[0], points["z"] + 10 * noise[1], body="wheel")
+    with pytest.raises(ValueError, match=f"^points: .*; {noisy}$"):
+        package.contact_geometry("60E1", rougher, step=4e-3)
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         package.contact_geometry("60E1", rough.smoothed(2e-3), step=4e-3)

@@ -88,7 +88,7 @@ pub enum Error {
         other: &'static str,
     },
     /// A profile of wheel or rail that does not serve.
-    #[error(transparent)]
+    #[error("{0}{way}", way = way_to_say(.0))]
     Profile(ProfileError),
     /// A profile that a parameter names does not serve.
     #[error("{name} = {text:?}: {reason}{}", way_to_say(reason))]
@@ -296,12 +296,16 @@ pub enum Error {
     },
 }
 
-/// Way to a file that says of itself what the parameter has no option for, as its unit.
+/// Names of what smooths a profile, behind words on its noise.
+pub(crate) const BY_SMOOTHING: &str = " (profile_smoothing; of a Profile in Python its smoothing)";
+
+/// Way to a profile that serves: the parameter that smooths it, or a file that says of itself what no parameter does, as its unit.
 fn way_to_say(reason: &ProfileError) -> &'static str {
     match reason {
         ProfileError::NotSaid { .. } | ProfileError::TooBroad { .. } => {
             "; `wheelrail profile`, or `Profile` in Python, can be told, and writes a file that says it itself"
         }
+        _ if reason.is_of_noise() => BY_SMOOTHING,
         _ => "",
     }
 }

@@ -94,7 +94,8 @@ def run(*arguments: str, named: Mapping[Path, str] | None = None) -> "subprocess
 
 
 def called(text: str, named: Mapping[Path, str]) -> str:
-    """A text of the command with the user's names in place of the files that were made for the call."""
+    """A text of the command in the package's words: names in place of files that were made for the call."""
+    text = text.replace("(--smoothing)", "(smoothing=…)")
     for path, name in named.items():
         text = text.replace(str(path), name).replace(path.name, name)
     return text
@@ -269,7 +270,9 @@ class Profile:
     part
         Number of the profile in a file with more than one.
     flange_back_position
-        Distance of a wheel's running circle from the back of its flange, where the file has another origin [m].
+        Distance of a wheel's running circle from the back of its flange, where the y of the file is not 0 on the
+        running circle: moves the points, the outermost of which is the back [m]. That of `contact_geometry` says where
+        the wheels stand in the track.
     smoothing
         Wavelength of the smoothing: waves of this length are halved [m].
     inclination

@@ -60,13 +60,22 @@ pub enum ProfileError {
         /// Reason in words, with the values that made it.
         reason: String,
     },
+    /// A profile without a running surface.
+    #[error("{name}: it is nowhere a function of the lateral position{}", noise("its", *rough))]
+    NowhereFlat {
+        /// Profile.
+        name: String,
+        /// Whether the profile is rough, which may be the cause.
+        rough: bool,
+    },
     /// A wheel with a wall on the face of its flange.
     #[error(
         "{name}: the face of its flange is 84 degrees steep or more at y = {:.2} mm, z = {:.2} mm, above its tip at z = {:.2} mm: no contact can be \
-         found beyond{because}",
+         found beyond{}",
         1e3 * place[0],
         1e3 * place[1],
-        1e3 * tip
+        1e3 * tip,
+        noise("its", *rough)
     )]
     SteepFlange {
         /// Profile.
@@ -75,8 +84,8 @@ pub enum ProfileError {
         place: [f64; 2],
         /// Height of the flange's tip, `m`.
         tip: f64,
-        /// Roughness of the profile that may be the cause, as the end of the sentence; empty where it is smooth.
-        because: &'static str,
+        /// Whether the profile is rough, which may be the cause.
+        rough: bool,
     },
     /// Wear that leaves no profile.
     #[error("{name} cannot wear so: {reason}")]
@@ -188,26 +197,28 @@ pub enum ProfileError {
     },
     /// A wheel that stands beside its rail, or on the edge of its profile.
     #[error(
-        "at the lateral displacement {} mm and the yaw {} mrad a wheel touches beside its rail, or with the edge of a profile{because}",
+        "at the lateral displacement {} mm and the yaw {} mrad a wheel touches beside its rail, or with the edge of a profile{}",
         in_thousandths(*lateral),
-        in_thousandths(*yaw)
+        in_thousandths(*yaw),
+        noise("a profile's", *rough)
     )]
     WheelBesideRail {
         /// Lateral displacement of the wheelset, `m`.
         lateral: f64,
         /// Yaw of the wheelset, rad.
         yaw: f64,
-        /// Roughness of a profile that may be the cause, as the end of the sentence; empty where all are smooth.
-        because: &'static str,
+        /// Whether a profile is rough, which may be the cause.
+        rough: bool,
     },
     /// A wheel that stands on its flange.
     #[error(
         "at the lateral displacement {} mm and the yaw {} mrad the {side} wheel stands on its flange: it touches at {:.2} mm on its profile, and the tip \
-         of the flange reaches to {:.2} mm{because}",
+         of the flange reaches to {:.2} mm{}",
         in_thousandths(*lateral),
         in_thousandths(*yaw),
         1e3 * on_wheel,
-        1e3 * tip
+        1e3 * tip,
+        noise("a profile's", *rough)
     )]
     WheelOnFlange {
         /// "left" or "right".
@@ -220,9 +231,34 @@ pub enum ProfileError {
         on_wheel: f64,
         /// Place of the flange's tip there towards the tread, `m`.
         tip: f64,
-        /// Roughness of a profile that may be the cause, as the end of the sentence; empty where all are smooth.
-        because: &'static str,
+        /// Whether a profile is rough, which may be the cause.
+        rough: bool,
     },
+}
+
+impl ProfileError {
+    /// Words on a rough profile, behind whose it is: "its", for example.
+    pub const NOISE: &'static str = "direction turns to and fro, as noise does, which smoothing takes off";
+
+    /// Whether noise of a profile may be the cause, which smoothing takes off.
+    pub fn is_of_noise(&self) -> bool {
+        match self {
+            ProfileError::NowhereFlat { rough, .. }
+            | ProfileError::SteepFlange { rough, .. }
+            | ProfileError::WheelBesideRail { rough, .. }
+            | ProfileError::WheelOnFlange { rough, .. } => *rough,
+            _ => false,
+        }
+    }
+}
+
+/// Noise as the cause, as the end of a message; nothing where no profile is rough.
+fn noise(whose: &str, rough: bool) -> String {
+    if rough {
+        format!("; {whose} {}", ProfileError::NOISE)
+    } else {
+        String::new()
+    }
 }
 
 /// A value in thousandths of its unit, without digits of round-off.

@@ -286,11 +286,11 @@ fn what_cannot_be_is_refused() {
         ),
         (
             &["geometry", "--wheel", noisy],
-            "as noise does; profile_smoothing, on the command line --smoothing,",
+            "lateral position; its direction turns to and fro, as noise does, which smoothing takes off (--smoothing)",
         ),
         (
             &["geometry", "--wheel", noisier],
-            "as noise does, which --smoothing takes off",
+            "no contact can be found beyond; its direction turns to and fro, as noise does, which smoothing takes off (--smoothing)",
         ),
         (
             &["geometry", "--from", "0.004", "--to", "-4e-3"],

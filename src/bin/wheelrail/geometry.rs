@@ -52,7 +52,8 @@ pub struct Geometry {
     /// Distance between the backs of the flanges, `m`.
     #[arg(long, value_name = "METRES", default_value_t = Dimensions::default().flange_back_distance, allow_hyphen_values = true)]
     flange_back_distance: f64,
-    /// Distance of the running circles from the backs of their flanges, `m`.
+    /// Distance of the running circles from the backs of their flanges, `m`: says where the wheels stand in the track. The option of this
+    /// name of `wheelrail profile` is another one, which moves the points of a file.
     #[arg(long, value_name = "METRES", default_value_t = Dimensions::default().flange_back_position, allow_hyphen_values = true)]
     flange_back_position: f64,
     /// Radius of the running circles, `m`.
@@ -91,7 +92,7 @@ pub struct Geometry {
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
     /// A profile or a dimension that does not serve.
-    #[error(transparent)]
+    #[error("{0}{hint}", hint = profile::hint(.0))]
     Profile(#[from] ProfileError),
     /// A profile that is neither built in nor a file.
     #[error(transparent)]
@@ -256,8 +257,9 @@ fn remark(profiles: &[Profile]) {
     rough.dedup_by_key(|profile| profile.name());
     for profile in rough {
         eprintln!(
-            "remark: {}: its direction turns to and fro, as noise does, and the contacts jump with it; smoothing takes that off (--smoothing)",
-            profile.name()
+            "remark: {}: its {} (--smoothing); the contacts jump with it",
+            profile.name(),
+            ProfileError::NOISE
         );
     }
 }

@@ -31,7 +31,8 @@ pub struct Options {
     /// Number of the profile in a file with more than one: of a section of .mpt; 1 left, 2 right of VAMPIRE.
     #[arg(long, requires = "profile")]
     part: Option<usize>,
-    /// Distance of a wheel's running circle from the back of its flange, `m`, where the file has another origin.
+    /// Distance of a wheel's running circle from the back of its flange, `m`, where the y of the file is not 0 on the running circle: moves the
+    /// points, the outermost of which is the back. The option of this name of `wheelrail geometry` is another one.
     #[arg(long, value_name = "METRES", requires = "profile", allow_hyphen_values = true)]
     flange_back_position: Option<f64>,
     /// Wavelength of the smoothing, `m`: waves of this length are halved.
@@ -122,8 +123,11 @@ pub enum Error {
     Output(#[from] io::Error),
 }
 
-/// Returns how a file is made readable that does not say all that it must.
-fn hint(error: &ProfileError) -> String {
+/// Returns the option that takes noise off, or how a file is made readable that does not say all that it must.
+pub fn hint(error: &ProfileError) -> String {
+    if error.is_of_noise() {
+        return " (--smoothing)".to_owned();
+    }
     // The reader's names of what `wheelrail profile` has options for.
     let option = match error {
         ProfileError::NotSaid { option, .. } => *option,

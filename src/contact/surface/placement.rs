@@ -13,7 +13,7 @@ use super::windows::{EVERYWHERE, Place, Region, Sizes, WINDOWS};
 use crate::contact::fields::Fields;
 use crate::contact::patch::fields::PatchFields;
 use crate::contact::problem::Coupling;
-use crate::error::{Error, Result};
+use crate::error::{BY_SMOOTHING, Error, ProfileError, Result};
 use crate::geometry::profile::Profile;
 use crate::geometry::unrolled::{PlacedWheel, WheelsetPosition};
 use crate::mechanics::patch::normal::is_free;
@@ -185,7 +185,7 @@ fn cause(problem: &SurfaceProblem) -> String {
     let (operators, parameters) = (problem.operators, problem.parameters);
     let beside = parameters.running_circle() - operators.bodies.rail.top();
     if operators.profiles.iter().any(Profile::is_rough) {
-        "a profile's direction turns to and fro, as noise does, which profile_smoothing takes off".to_owned()
+        format!("a profile's {}{BY_SMOOTHING}", ProfileError::NOISE)
     } else if beside.abs() > FARTHEST_BESIDE {
         format!(
             "gauge = {} m, flange_back_distance = {} m and flange_back_position = {} m put the running circle {:.1} mm to the {} side of the rail's top",

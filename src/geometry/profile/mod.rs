@@ -226,28 +226,15 @@ impl Profile {
             name: self.name.clone(),
             place: [first, end],
             tip: tip[1],
-            because: if self.is_rough() {
-                "; its direction turns to and fro, as noise does, which --smoothing takes off, profile_smoothing of the component"
-            } else {
-                ""
-            },
+            rough: self.is_rough(),
         })
     }
 
     /// Error of a profile that is nowhere flat.
     fn nowhere_flat(&self) -> ProfileError {
-        let turning = self.turning().to_degrees();
-        let noise = if self.is_rough() {
-            format!(
-                ": its direction turns to and fro by {turning:.0} degrees in all, as noise does; profile_smoothing, on the command line \
-                 --smoothing, of a larger wavelength takes that off"
-            )
-        } else {
-            String::new()
-        };
-        ProfileError::NoCurve {
+        ProfileError::NowhereFlat {
             name: self.name.clone(),
-            reason: format!("it is nowhere a function of the lateral position{noise}"),
+            rough: self.is_rough(),
         }
     }
 

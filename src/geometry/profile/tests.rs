@@ -1,4 +1,5 @@
 use super::*;
+use crate::error::Error;
 
 fn built_in(name: &str) -> Profile {
     Profile::built_in(name).unwrap()
@@ -31,14 +32,20 @@ fn noise_is_named_as_the_reason() {
     for (size, smoothing) in [(0.2e-3, 10e-3), (5e-6, 0.0)] {
         assert!(!with_noise(size, smoothing).is_rough(), "{size}, {smoothing}");
     }
-    let error = rough.nowhere_flat().to_string();
-    for part in [
-        "it is nowhere a function",
-        "turns to and fro by",
-        "profile_smoothing",
-        "--smoothing",
-    ] {
-        assert!(error.contains(part), "{error}");
+    let error = Error::Profile(rough.nowhere_flat()).to_string();
+    assert_eq!(
+        error,
+        "a wheel: it is nowhere a function of the lateral position; its direction turns to and fro, as noise does, which smoothing takes off \
+         (profile_smoothing; of a Profile in Python its smoothing)"
+    );
+    let (lateral, yaw) = (0.0, 0.0);
+    for rough in [false, true] {
+        let beside = ProfileError::WheelBesideRail { lateral, yaw, rough }.to_string();
+        assert_eq!(
+            beside.contains("; a profile's direction turns to and fro"),
+            rough,
+            "{beside}"
+        );
     }
     let smooth = wheel.nowhere_flat().to_string();
     assert_eq!(smooth, "S1002: it is nowhere a function of the lateral position");

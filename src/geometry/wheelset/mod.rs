@@ -169,12 +169,8 @@ impl Wheelset {
                 unit: "rad",
             });
         }
-        let because = if self.rough {
-            ": a profile's direction turns to and fro, as noise does, which --smoothing takes off"
-        } else {
-            ""
-        };
-        let beside = || ProfileError::WheelBesideRail { lateral, yaw, because };
+        let rough = self.rough;
+        let beside = || ProfileError::WheelBesideRail { lateral, yaw, rough };
         // Height of the left wheel's lowest point over its rail, less that of the right one's: rises with the roll.
         let tilt = |roll: f64| -> Option<f64> {
             let [left, right] = Self::attitudes(lateral, yaw, roll);
@@ -193,7 +189,7 @@ impl Wheelset {
                     yaw,
                     on_wheel: touch.on_wheel,
                     tip,
-                    because,
+                    rough,
                 });
             }
         }

@@ -80,7 +80,8 @@ pub struct ReadOptions {
     /// Number of the profile in a file with more than one: of MiniProf's `.mpt` that of its section, of VAMPIRE 1 for the left and 2 for the
     /// right one. `None` is the right one of VAMPIRE, and the only one of `.mpt`.
     pub part: Option<usize>,
-    /// Distance of a wheel's running circle from the back of its flange, `m`: moves the origin there. `None` keeps the file's y.
+    /// Distance of a wheel's running circle from the back of its flange, the outermost point, `m`: moves the origin there. `None` keeps the
+    /// file's y. That of [`Dimensions`](crate::contact_geometry::Dimensions) says where the wheels stand, and moves no point.
     pub flange_back_position: Option<f64>,
     /// Wavelength of the smoothing, `m`; 0 goes through the points.
     pub smoothing: f64,
