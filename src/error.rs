@@ -103,10 +103,10 @@ pub enum Error {
     /// A contact has become larger than the window it was sought in; the step is tried again with a larger one.
     #[error("the contact has become larger than the window it was sought in")]
     ContactOutgrowsWindow,
-    /// The wheel touches the rail with its flange's tip or beyond it, or the rail's end, or nothing of it.
+    /// The wheel touches the rail with its flange's tip or beyond it, or where the rail is as steep as a wall, or at the rail's end, or nothing of it.
     #[error(
         "the wheel has left the rail: with lateral_displacement = {lateral} m and roll_angle = {roll} rad, relative to the rail, it would touch it \
-         at its flange's tip or not at all{}; the state before is kept",
+         at its flange's tip, where the rail is steeper than 82 degrees, or not at all{}; the state before is kept",
         after("; ", because)
     )]
     WheelOffRail {

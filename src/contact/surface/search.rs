@@ -17,6 +17,8 @@ const TOUCH_STEPS: usize = 30;
 const LINEAR: f64 = 1e-5;
 /// Least change of the distance with the height that counts: walls of 84° and more carry nothing of a load. The steepest flanges have 75°.
 pub const LEAST_RISE: f64 = 0.1;
+/// Most of that: where the bodies touch it is the vertical part of the normal, and more where a line along the rail's normal grazes the wheel.
+const MOST_RISE: f64 = 2.0;
 /// Size of the region that a window is placed for over that of the overlap.
 const REGION_SHARE: f64 = 0.82;
 /// Size of a contact over that of the overlap.
@@ -36,6 +38,17 @@ struct Closest {
     rise: f64,
     /// Second derivative of the distance along the rail, `1/m`.
     curvature: f64,
+}
+
+impl Closest {
+    /// Way that the wheel may be lowered until it touches there, `m`; infinite where nothing tells.
+    fn room(&self) -> f64 {
+        if LEAST_RISE < self.rise && self.rise < MOST_RISE {
+            self.distance / self.rise
+        } else {
+            f64::INFINITY
+        }
+    }
 }
 
 /// Region in which the bodies overlap.
@@ -105,13 +118,20 @@ impl Search {
         let (mut bracket, mut last) = ([f64::NEG_INFINITY, f64::INFINITY], f64::INFINITY);
         for _ in 0..TOUCH_STEPS {
             self.scan(bodies, &WheelsetPosition { height, ..*position });
-            let room = self.room();
+            let (within, first) = (self.room(), self.first_room());
+            // A flange that stands beside the head is closest where the rail is as steep as a wall, at the end of the points, and the wheel is to rise by
+            // what it overlaps there.
+            let room = if within.is_finite() && first > within.min(0.0) - LINEAR {
+                within
+            } else {
+                first
+            };
             if !room.is_finite() {
                 break;
             }
             bracket[usize::from(room > 0.0)] = height;
             height -= room;
-            if room.abs() <= LINEAR {
+            if room == within && room.abs() <= LINEAR {
                 self.touches = true;
                 self.lower(room);
                 height -= self.sharpen(bodies, &WheelsetPosition { height, ..*position });
@@ -163,13 +183,11 @@ impl Search {
 
     /// Number of the point of the scan at which the bodies touch first, and its place along the rail, `m`; none where they do not.
     pub fn first(&self) -> Option<(usize, f64)> {
-        let rooms = self
-            .points
-            .iter()
-            .enumerate()
-            .filter(|(_, point)| point.rise > LEAST_RISE);
-        let least = rooms.min_by(|(_, a), (_, b)| (a.distance / a.rise).total_cmp(&(b.distance / b.rise)));
-        least.map(|(number, point)| (number, point.along))
+        let rooms = self.points.iter().map(Closest::room).enumerate();
+        let least = rooms
+            .filter(|(_, room)| room.is_finite())
+            .min_by(|(_, a), (_, b)| a.total_cmp(b));
+        least.map(|(number, _)| (number, self.points[number].along))
     }
 
     /// Place along the rail and arc length, `m`, of the point at which the bodies touch first; none where they do not.
@@ -207,16 +225,15 @@ impl Search {
         -((1.0 - ratio * ratio) * here_change + sides[0] * before_change + sides[1] * after_change)
     }
 
+    /// Way that the wheel may be lowered until one of the points touches, `m`.
+    fn first_room(&self) -> f64 {
+        self.first()
+            .map_or(f64::INFINITY, |(number, _)| self.points[number].room())
+    }
+
     /// Way that the wheel may be lowered until it touches, `m`: the smallest at the points, and on the parabolas through three of them.
     fn room(&self) -> f64 {
-        let room = |point: usize| {
-            let Closest { distance, rise, .. } = self.points[point];
-            if rise > LEAST_RISE {
-                distance / rise
-            } else {
-                f64::INFINITY
-            }
-        };
+        let room = |point: usize| self.points[point].room();
         let mut least = f64::INFINITY;
         for point in 1..self.points.len().saturating_sub(1) {
             let [before, here, after] = [point - 1, point, point + 1].map(room);

@@ -6,6 +6,7 @@ use super::operators::SurfaceOperators;
 use super::placement::place;
 use super::pressure::hold;
 use super::problem::SurfaceProblem;
+use super::search::Search;
 use super::solvers::SurfaceSolvers;
 use super::windows::{EVERYWHERE, Place};
 use super::worn_bodies::WornBodies;
@@ -18,8 +19,12 @@ use crate::contact::patch::undeformed::Undeformed;
 use crate::contact::problem::{Coupling, Problem, StepConditions, Task};
 use crate::contact::surface::fields::SurfaceFields;
 use crate::contact::{ContactState, ContactWorkspace};
+use crate::geometry::profile::Profile;
+use crate::geometry::profile::files::Format;
+use crate::geometry::profile::tests::steep_flange;
 use crate::geometry::rail::PlacedRail;
 use crate::geometry::unrolled::{PlacedWheel, RailPoint, WheelsetPosition};
+use crate::geometry::wheelset::{Dimensions, Wheelset};
 use crate::parameters::{ContactModel, Control, Parameters, ProfileContents, ProfileWear, Side, SlipSource};
 use crate::settings::Settings;
 use crate::signals::{INPUTS, Inputs, Outputs};
@@ -549,6 +554,56 @@ fn rough_bodies_have_a_window_where_they_touch_first() {
         let grid = |place: &Place| operators.sizes.grid(place.length, place.breadth);
         let holds = |place: &Place| place.region(&grid(place)).holds(first);
         assert!(now.used().any(|(_, place)| holds(&place)), "{step}: {first:?}");
+    }
+}
+
+/// The height at which a wheel with a steep flange touches is the same one from centimetres below, where the wheel is closest at the end of the rail's points,
+/// and from centimetres above, where lines along the rail's normals graze the wheel. A level wheelset has it where the silhouettes of wheel and rail have it:
+/// the other wheel stands on its flat tread.
+#[test]
+fn the_height_of_a_steep_flange_is_found_from_far() {
+    let rail = Profile::built_in("UIC60").unwrap();
+    for degrees in [70.0, 76.0, 80.0] {
+        let wheel = steep_flange(degrees);
+        let parameters = Parameters {
+            wheel_profile: "steep.prw".to_owned(),
+            ..parameters(Control::Load)
+        };
+        let contents = ProfileContents {
+            wheel: Some(wheel.text(Format::Simpack).into()),
+            rail: None,
+        };
+        let operators = SurfaceOperators::build(&parameters, &contents).unwrap();
+        let bodies = &operators.bodies;
+        let mut search = Search::new(bodies);
+        let wheelset = Wheelset::new([&rail; 2], [&wheel; 2], &Dimensions::default()).unwrap();
+        let wheelset = wheelset.level();
+        for (step, roll) in (0..60).flat_map(|step| [-0.01, 0.0, 0.006].map(|roll| (step, roll))) {
+            let lateral = -2e-4 * f64::from(step);
+            let inputs = Inputs {
+                lateral_displacement: lateral,
+                roll_angle: roll,
+                ..Inputs::default()
+            };
+            let pose = Pose::new(&operators, &inputs, parameters.wheel_radius);
+            let [first, rest @ ..] = [-0.02, -0.004, 0.0, 0.004, 0.02].map(|way| {
+                let height = search.touch(bodies, &pose.position, parameters.wheel_radius + way);
+                assert!(search.touches(), "{degrees} degrees, {lateral} m, {roll}, from {way} m");
+                height
+            });
+            for height in rest {
+                assert!(
+                    (height - first).abs() < 1e-9,
+                    "{degrees} degrees, {lateral} m, {roll}: {height}, {first}"
+                );
+            }
+            if roll == 0.0 {
+                let risen = 2.0 * wheelset.at(lateral, 0.0).unwrap().vertical;
+                // The parabola through three points half a millimetre from each other is as good as that on a face of 80 degrees.
+                let error = first - parameters.wheel_radius - risen;
+                assert!(error.abs() < 1e-5, "{degrees} degrees, {lateral} m: {error}");
+            }
+        }
     }
 }
 

@@ -346,4 +346,4 @@ fn rising(curve: &Curve, y: f64, about: Option<f64>) -> Option<f64> {
 }
 
 #[cfg(test)]
-mod tests;
+pub mod tests;

@@ -383,3 +383,30 @@ fn lengths_in_messages_are_round() {
         "a rail: depth of the gauge below the top = 4.1 mm: the profile reaches from 0 to 0.3 mm"
     );
 }
+
+/// A wheel with a flat tread, a root of 10 mm, a face of a steepness in degrees down to 18.5 mm below the tread, and a tip of 11.5 mm.
+pub fn steep_flange(degrees: f64) -> Profile {
+    let (root, tip, steep) = (10.0, 11.5, degrees.to_radians());
+    let (sine, cosine) = steep.sin_cos();
+    // Millimetres, from the field side to the flange's back: tread, root, face, tip.
+    let mut points: Vec<[f64; 2]> = (0..85).map(|k| [60.0 - f64::from(k), 0.0]).collect();
+    let arc = |[y, z]: [f64; 2], radius: f64, angle: f64| [y + radius * angle.sin(), z - radius * angle.cos()];
+    let parts = |k: i32| 0.01 * f64::from(k);
+    points.extend((0..=100).map(|k| arc([-25.0, -root], -root, parts(k) * steep)));
+    let [y, z] = points[points.len() - 1];
+    let length = (z + 18.5) / sine;
+    points.extend(
+        (1..=40)
+            .map(|k| 0.025 * f64::from(k) * length)
+            .map(|way| [y - way * cosine, z - way * sine]),
+    );
+    let [y, z] = points[points.len() - 1];
+    let centre = [y - tip * sine, z + tip * cosine];
+    points.extend((1..=100).map(|k| arc(centre, tip, steep - parts(k) * (steep + 1.5))));
+    let points: Vec<_> = points
+        .into_iter()
+        .rev()
+        .map(|place| place.map(|value| 1e-3 * value))
+        .collect();
+    Profile::from_points(Body::Wheel, "steep", "a test", &points, 0.0).unwrap()
+}

@@ -168,16 +168,26 @@ impl Pair {
                 minima.push([before, here, after]);
             }
         };
-        let mut last = None;
+        let mut last: Option<Above> = None;
+        let mut at_edges = Vec::new();
         for k in 0..=count as usize {
             let next = at(k as f64);
             // A steep flange touches within less than a station of where the rail ends.
             if k > 0 && last.is_some() != next.is_some() {
-                visit(edge(at, [k - 1, k].map(|k| k as f64), last.is_some()));
+                let end = edge(at, [k - 1, k].map(|k| k as f64), last.is_some());
+                visit(end);
+                let between = if last.is_some() { [last, end] } else { [end, next] };
+                if let [Some(from), Some(to)] = between
+                    && from.opening < 0.0
+                    && to.opening > 0.0
+                {
+                    at_edges.push([from, if from.height < to.height { from } else { to }, to]);
+                }
             }
             visit(next);
             last = next;
         }
+        minima.append(&mut at_edges);
         let near = minima.iter().filter(|[_, here, _]| here.height <= lowest + NEAR);
         let found = near.map(|minimum| self.refined(attitude, minimum));
         // Where the lowest station is the first or the last one, no minimum between stations is as low.
