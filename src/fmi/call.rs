@@ -73,10 +73,13 @@ pub trait Instance: Sized {
             .err()?;
         let blame = failure.blame();
         let component = self.component();
-        component
-            .journal
-            .failure(blame, || format!("{}: {failure}", function.name()));
         component.fail(blame);
+        // Inside the fence as well: the reason may compute a number in the unit that it is told in.
+        let journal = &mut component.journal;
+        let told = fence::fenced(|| journal.failure(blame, || format!("{}: {failure}", function.name())));
+        if let Err(panic) = told {
+            journal.failure(blame, || format!("{}: {}", function.name(), panic.message));
+        }
         Some(blame)
     }
 }

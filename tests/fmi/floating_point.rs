@@ -3,7 +3,7 @@
 //! were.
 
 use super::importer::{
-    Api, Client, ContactModel, DISCARD, ERROR, Handle, Line, OK, Patch, Standard, sideways, with_each,
+    Api, Client, ContactModel, DISCARD, ERROR, Handle, Line, OK, Patch, Profiles, Standard, coarse, sideways, with_each,
 };
 use super::own_process::in_own_process;
 use super::{functions, probes};
@@ -342,6 +342,29 @@ fn no_function_leaves_a_flag() {
                     }
                 }
             }
+        }
+    });
+}
+
+/// Nor does the reason of a refusal, in which metres become millimetres.
+#[test]
+fn a_reason_leaves_no_flag() {
+    in_own_process("floating_point::a_reason_leaves_no_flag", || {
+        for standard in Standard::ALL {
+            let api = &Api::load(standard);
+            let mut client = Client::new(api);
+            client.contact = Profiles;
+            client.hear_refusals();
+            client.expect(OK, client.set_integers(coarse(Profiles)));
+            client.expect(OK, client.set(&[("gauge_depth", 0.0437)]));
+            client.expect(OK, client.begin(0.0, Some(10.0)));
+            let host = Host::with(USUAL_MXCSR, USUAL_X87);
+            let status = client.exit();
+            host.check("the refusal of a gauge");
+            drop(host);
+            client.expect(ERROR, status);
+            let message = client.last_message();
+            assert!(message.contains("= 43.7 mm"), "{message}");
         }
     });
 }
