@@ -9,6 +9,7 @@ pub mod dense;
 pub mod differences;
 pub mod elliptic;
 pub mod fourier;
+pub mod gauss;
 pub mod gmres;
 pub mod interpolation;
 pub mod inverse;

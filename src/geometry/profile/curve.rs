@@ -2,19 +2,11 @@
 
 use super::CurvePoint;
 use crate::geometry::quintics::{Jet, Quintics, Span};
+use crate::numerics::gauss::GAUSS;
 
 /// Length of a cell at most, `m`. On the sharpest arc of the profiles that are built in, of 8 mm, the curvature is then right to
 /// (h/r)⁴/720, 1e-9 of it, and the place to round-off.
 pub const CELL: f64 = 0.25e-3;
-
-/// Abscissae and weights of Gauss and Legendre's rule with five points on (0, 1).
-const GAUSS: [[f64; 2]; 5] = [
-    [0.046_910_077_030_668_0, 0.118_463_442_528_094_5],
-    [0.230_765_344_947_158_5, 0.239_314_335_249_683_2],
-    [0.5, 0.284_444_444_444_444_4],
-    [0.769_234_655_052_841_5, 0.239_314_335_249_683_2],
-    [0.953_089_922_969_332, 0.118_463_442_528_094_5],
-];
 
 /// A curve over its arc length. Within a smooth piece it is twice differentiable; curvature and direction may jump between pieces.
 #[derive(Debug, Clone, PartialEq)]
