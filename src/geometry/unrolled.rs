@@ -123,6 +123,10 @@ const LARGEST_ERROR: f64 = 1e-8;
 /// Distance from the guess within which the wheel is then looked for in steps, and their length, `m`: worn grooves are broader.
 const FARTHEST: f64 = 5e-3;
 const GROOVE: f64 = 1e-4;
+/// Way from the guess, `m`, after which the wheel has not been found as it is so far off.
+const ON_THE_WAY: f64 = 0.9 * STEPS as f64 * LONGEST_STEP;
+/// Distance where a rail's normal passes the wheel by, as below its flange, `m`: far more than any approach.
+pub const NOWHERE: f64 = 0.1;
 /// Least slope of f along the normal in a step: the wheel's surface may be seen from the side.
 const LEAST_SLOPE: f64 = 0.05;
 
@@ -161,7 +165,8 @@ impl<'a> PlacedWheel<'a> {
         [self.centre[1] + y, self.centre[2] + z]
     }
 
-    /// Distance from a rail's point at `x` `m` along its normal, from a guess of it, `m`.
+    /// Distance from a rail's point at `x` `m` along its normal, from a guess of it, `m`. Where the normal passes the wheel by it is [`NOWHERE`], and nothing
+    /// changes it.
     pub fn distance(&self, x: f64, point: &RailPoint, guess: f64) -> Distance {
         let normal = [0.0, point.normal[0], point.normal[1]];
         let from = sub([x, point.place[0], point.place[1]], self.centre);
@@ -188,11 +193,22 @@ impl<'a> PlacedWheel<'a> {
         // The wheel begins where f falls along the normal. Between the steep walls of a groove Newton's method goes to and fro, leaps over another wall, or
         // finds where the normal leaves the wheel.
         let missed = found.outside.abs() > LARGEST_ERROR || dot(found.gradient, along) >= 0.0;
-        if (missed || leapt && (distance - guess).abs() < FARTHEST)
-            && let Some(nearest) = self.nearest_crossing(base, along, guess)
-        {
-            distance = nearest;
-            found = self.at(base, along, distance);
+        if missed || leapt && (distance - guess).abs() < FARTHEST {
+            match self.nearest_crossing(base, along, guess) {
+                Some(nearest) => {
+                    distance = nearest;
+                    found = self.at(base, along, distance);
+                }
+                // All steps went the same way to a wheel that is far off, or the normal passes the wheel by.
+                None if missed && (distance - guess).abs() < ON_THE_WAY => {
+                    return Distance {
+                        distance: NOWHERE,
+                        arm: add(from, normal, NOWHERE),
+                        ..Distance::default()
+                    };
+                }
+                None => {}
+            }
         }
         let gradient = found.gradient;
         let slope = dot(gradient, along);

@@ -351,8 +351,8 @@ fn damping_acts_along_the_normal_at_the_contact() {
     }
 }
 
-/// A wheelset that is moved over its flange and off the rail: each place is solved or refused as off the rail. Where the flange stands beside the head, the height
-/// at which they touch was not found, and the wheel pressed into the rail by millimetres.
+/// A wheelset that is moved over its flange and off the rail: each place is solved or refused as off the rail, and the force across falls as the flange's tip comes
+/// near. The normals of the rail's side pass below the flange, and what was found there counted as contacts with hundreds of kilonewtons.
 #[test]
 fn a_flange_beside_the_head_is_off_the_rail() {
     let parameters = Parameters {
@@ -364,9 +364,8 @@ fn a_flange_beside_the_head_is_off_the_rail() {
         patch_strips: 10,
         ..bodies(Side::Left)
     };
-    let model = Model::new(parameters).unwrap();
-    let mut workspace = model.workspace();
-    let mut stands = |lateral: f64| {
+    let across = |step: u32| {
+        let lateral = 2e-4 * f64::from(step) + 1.2e-2;
         let inputs = Inputs {
             normal_load: 48.9e3,
             vehicle_speed: 30.0,
@@ -374,16 +373,26 @@ fn a_flange_beside_the_head_is_off_the_rail() {
             lateral_displacement: lateral,
             ..Inputs::default()
         };
-        match model.initial_state(&mut workspace, &inputs) {
-            Ok(_) => true,
-            Err(Error::WheelOffRail { .. }) => false,
-            Err(error) => panic!("{lateral} m: {error}"),
+        match Simulation::new(&parameters, &inputs) {
+            Ok(simulation) => {
+                let outputs = simulation.outputs();
+                assert_eq!(outputs.contacts, 1.0, "{lateral} m");
+                Some(-outputs.force_y)
+            }
+            Err(error) => {
+                assert!(error.to_string().contains("has left the rail"), "{lateral} m: {error}");
+                None
+            }
         }
     };
-    let found: Vec<bool> = (0..=60).map(|step| stands(2e-4 * f64::from(step) + 1.2e-2)).collect();
-    // From some place on it is off the rail.
-    let last = found.iter().rposition(|stands| *stands).unwrap();
-    assert!(found[..last].iter().all(|stands| *stands) && last < 60, "{found:?}");
+    let found: Vec<Option<f64>> = (0..=80).map(across).collect();
+    let stands = found.iter().position(Option::is_none).unwrap();
+    assert!(found[stands..].iter().all(Option::is_none), "{found:?}");
+    // From 45 degrees on, up to the flange's tip.
+    assert!(
+        stands > 50 && found[..stands].is_sorted_by(|before, after| before > after),
+        "{found:?}"
+    );
 }
 
 /// Where dimensions that do not belong together put the wheel beside its rail, they are what the refusal names.

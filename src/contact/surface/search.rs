@@ -7,7 +7,7 @@
 use super::bodies::Bodies;
 use super::windows::Region;
 use crate::geometry::hertz::HertzEllipse;
-use crate::geometry::unrolled::{PlacedWheel, RailPoint, WheelsetPosition};
+use crate::geometry::unrolled::{NOWHERE, PlacedWheel, RailPoint, WheelsetPosition};
 
 /// Regions that a search may find.
 pub const REGIONS: usize = 8;
@@ -258,7 +258,9 @@ impl Search {
         let mut guess = (0.0, 0.0);
         for (found, (arc, point)) in self.points.iter_mut().zip(&bodies.scan) {
             *found = closest(&wheel, *arc, point, guess);
-            guess = (found.along, found.distance);
+            if found.distance < NOWHERE {
+                guess = (found.along, found.distance);
+            }
         }
     }
 
