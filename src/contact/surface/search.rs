@@ -325,13 +325,15 @@ impl Search {
     }
 
     /// Breadth of a contact under the same approach whose bodies are curved against each other all over as these are at their sharpest place, `m`: of the places
-    /// between two arc lengths at which they overlap. `approach` as in [`Search::is_near`].
+    /// between two arc lengths, or no farther from them than the points are from each other, at which they overlap. `approach` as in [`Search::is_near`].
     pub fn sharpest(&self, across: [f64; 2], approach: f64) -> f64 {
-        let chord = CURVED as f64 * self.spacing();
+        let spacing = self.spacing();
+        let chord = CURVED as f64 * spacing;
         let breadth = |number: usize| {
             let [before, here, after] = [number - CURVED, number, number + CURVED].map(|number| self.points[number]);
             let deep = approach * here.rise;
-            let carries = deep > here.distance.max(0.0) && across[0] <= here.arc && here.arc <= across[1];
+            let carries =
+                deep > here.distance.max(0.0) && across[0] - spacing <= here.arc && here.arc <= across[1] + spacing;
             let curvature = (before.distance + after.distance - 2.0 * here.distance) / (chord * chord);
             if carries && curvature > 0.0 {
                 2.0 * CONTACT_SHARE * (2.0 * deep / curvature).sqrt()
