@@ -5,7 +5,8 @@ import warnings
 from pathlib import Path
 from typing import Any
 
-PACKAGE = Path(__file__).resolve().parent
+# As in the frames of calls: not resolved, where the folder is a link.
+PACKAGE = Path(__file__).parent
 
 
 class SimulationError(RuntimeError):

@@ -98,10 +98,12 @@ def check_inputs(
 
 def check_used(fmu: AnyPath, variable: ModelVariable, says: bool, value: Parameter) -> None:
     """Refuse an input that says something where the component does not use it: its description has the choice."""
+    if not says:
+        return
     known = by_name(str(fmu))
     for choice, needed in users(known, variable, "used where"):
         chosen = value(choice)
-        if says and chosen not in needed.values():
+        if chosen not in needed.values():
             now = next((name for name, number in choices(known[choice]).items() if number == chosen), f"{chosen:g}")
             raise ValueError(
                 f"{variable.name} is given and not used: {choice} is {now!r};"

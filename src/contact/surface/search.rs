@@ -17,7 +17,8 @@ const TOUCH_STEPS: usize = 30;
 const LINEAR: f64 = 1e-5;
 /// Least change of the distance with the height that counts: walls of 84° and more carry nothing of a load. The steepest flanges have 75°.
 pub const LEAST_RISE: f64 = 0.1;
-/// Most of that: where the bodies touch it is the vertical part of the normal, and more where a line along the rail's normal grazes the wheel.
+/// Most of that at a place where the bodies can touch: there it is the vertical part of the normal, at most 1. Where a line along the rail's normal
+/// grazes the wheel it is up to 20.
 const MOST_RISE: f64 = 2.0;
 /// Size of the region that a window is placed for over that of the overlap.
 const REGION_SHARE: f64 = 0.82;
@@ -41,13 +42,18 @@ struct Closest {
 }
 
 impl Closest {
-    /// Way that the wheel may be lowered until it touches there, `m`; infinite where nothing tells.
+    /// Way that the wheel may be lowered until it touches there, `m`; infinite where the normal does not lead to a place of the wheel that can touch.
     fn room(&self) -> f64 {
-        if LEAST_RISE < self.rise && self.rise < MOST_RISE {
+        if self.rise > LEAST_RISE {
             self.distance / self.rise
         } else {
             f64::INFINITY
         }
+    }
+
+    /// Whether the normal leads to a place of the wheel that can touch.
+    fn is_met(&self) -> bool {
+        self.distance < NOWHERE
     }
 }
 
@@ -164,9 +170,11 @@ impl Search {
         };
         let wheel = PlacedWheel::new(&bodies.wheel, position);
         for number in middle - 1..=middle + 1 {
-            let Closest { along, distance, .. } = self.points[number];
-            let (arc, point) = &bodies.scan[number];
-            self.points[number] = closest(&wheel, *arc, point, (along, distance));
+            let before = self.points[number];
+            if before.is_met() {
+                let (arc, point) = &bodies.scan[number];
+                self.points[number] = closest(&wheel, *arc, point, (before.along, before.distance));
+            }
         }
         let room = self.room();
         if !room.is_finite() {
@@ -211,6 +219,12 @@ impl Search {
         else {
             return 0.0;
         };
+        if !self.points[middle - 1..=middle + 1]
+            .iter()
+            .all(|point| point.room().is_finite())
+        {
+            return 0.0;
+        }
         let wheel = PlacedWheel::new(&bodies.wheel, position);
         let three = [middle - 1, middle, middle + 1].map(|point| {
             let Closest {
@@ -258,7 +272,7 @@ impl Search {
         let mut guess = (0.0, 0.0);
         for (found, (arc, point)) in self.points.iter_mut().zip(&bodies.scan) {
             *found = closest(&wheel, *arc, point, guess);
-            if found.distance < NOWHERE {
+            if found.is_met() {
                 guess = (found.along, found.distance);
             }
         }
@@ -335,7 +349,7 @@ impl Search {
             let carries =
                 deep > here.distance.max(0.0) && across[0] - spacing <= here.arc && here.arc <= across[1] + spacing;
             let curvature = (before.distance + after.distance - 2.0 * here.distance) / (chord * chord);
-            if carries && curvature > 0.0 {
+            if carries && before.is_met() && after.is_met() && curvature > 0.0 {
                 2.0 * CONTACT_SHARE * (2.0 * deep / curvature).sqrt()
             } else {
                 f64::INFINITY
@@ -376,12 +390,22 @@ fn closest(wheel: &PlacedWheel, arc: f64, point: &RailPoint, guess: (f64, f64)) 
         ..WheelsetPosition::default()
     };
     let (along, at) = wheel.closest(point, guess);
-    Closest {
+    let rise = wheel.distance_change(&at, &rise);
+    let found = Closest {
         arc,
         along,
         distance: at.distance,
-        rise: wheel.distance_change(&at, &rise),
+        rise,
         curvature: at.curvature_along,
+    };
+    if rise < MOST_RISE {
+        found
+    } else {
+        Closest {
+            distance: NOWHERE,
+            rise: 0.0,
+            ..found
+        }
     }
 }
 
@@ -415,7 +439,9 @@ fn about(points: &[Closest], deepest: usize, depth: &impl Fn(usize) -> f64) -> O
     // The parabola through the three points: a small contact may lie between them.
     let slope = 0.5 * (depth(deepest - 1) - depth(deepest + 1)) / step;
     let second = (2.0 * depth(deepest) - depth(deepest - 1) - depth(deepest + 1)) / (step * step);
-    let shift = if second > 0.0 {
+    // Beside a point whose normal passes the wheel by there is no parabola.
+    let is_between = [deepest - 1, deepest + 1].iter().all(|&point| points[point].is_met());
+    let shift = if is_between && second > 0.0 {
         (slope / second).clamp(-step, step)
     } else {
         0.0
@@ -452,7 +478,7 @@ fn about(points: &[Closest], deepest: usize, depth: &impl Fn(usize) -> f64) -> O
     };
     // The points go from the field side to the gauge side.
     let mut across = [reach(1), reach(-1)];
-    if second > 0.0 && across[1] - across[0] < 2.0 * step {
+    if is_between && second > 0.0 && across[1] - across[0] < 2.0 * step {
         let half_breadth = REGION_SHARE * (2.0 * most.max(0.0) / second).sqrt();
         across = [middle - half_breadth, middle + half_breadth];
     }

@@ -607,6 +607,36 @@ fn the_height_of_a_steep_flange_is_found_from_far() {
     }
 }
 
+/// No overlap of a wheel that is lower by an approach is much deeper than that: neither where a line along the rail's normal grazes the flange, nor beside a point
+/// whose normal passes below it.
+#[test]
+fn no_overlap_is_deeper_than_the_approach() {
+    const APPROACH: f64 = 1e-4;
+    let parameters = Parameters {
+        wheel_profile: "steep.prw".to_owned(),
+        ..parameters(Control::Load)
+    };
+    let contents = ProfileContents {
+        wheel: Some(steep_flange(70.0).text(Format::Simpack).into()),
+        rail: None,
+    };
+    let operators = SurfaceOperators::build(&parameters, &contents).unwrap();
+    let mut search = Search::new(&operators.bodies);
+    for step in 40..240 {
+        let inputs = Inputs {
+            lateral_displacement: -1e-4 * f64::from(step),
+            ..Inputs::default()
+        };
+        let pose = Pose::new(&operators, &inputs, parameters.wheel_radius);
+        search.touch(&operators.bodies, &pose.position, parameters.wheel_radius);
+        if search.touches() {
+            let deepest = search.overlaps(APPROACH).iter().map(|overlap| overlap.depth);
+            let deepest = deepest.fold(0.0, f64::max);
+            assert!(deepest < 1.2 * APPROACH, "{step}: {deepest}");
+        }
+    }
+}
+
 /// A load that grows a ten thousandfold, from an approach that little of it has made: windows are placed for no more than that and the approach of ellipses.
 #[test]
 fn the_approach_of_a_small_load_does_not_grow_with_it() {
